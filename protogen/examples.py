@@ -99,7 +99,7 @@ class _Verification:
         parts = {name: stated.get(name, parts[name]) for name in self._chosen}
         try:
             message = self._class.from_dict(_hex_digits(values))
-            made = self._module.PROTOCOL.encode(message, self._example.sender, **parts)
+            made = self._encoded(message, parts, strict=True)
         except EncodeError:
             return None
         if len(made) > _GREATEST_SHOWN or self._example.contradicts is not None:
@@ -139,7 +139,7 @@ class _Verification:
         return numbers
 
     def _read(self, wire: bytes) -> _Reading:
-        decoder = self._module.Decoder(sender=self._example.sender)
+        decoder = self._module.Decoder(sender=self._sender.name)
         events = [*decoder.feed(wire), *decoder.flush()]
         bad = next((event for event in events if isinstance(event, InvalidEvent)), None)
         if bad is not None:
@@ -174,14 +174,20 @@ class _Verification:
         parts = {name: getattr(reading.parts, name) for name in self._chosen}
         try:
             message = self._class.from_payload(reading.message.to_payload(strict=False))
-            made = self._module.PROTOCOL.encode(
-                message, self._example.sender, strict=False, **parts
-            )
+            made = self._encoded(message, parts, strict=False)
         except EncodeError as error:
             self._report("PG161", str(error))
             return
         if made != wire:
             self._report("PG161", f"its values encode to {_hex(made)}, not to {_hex(wire)}")
+
+    def _encoded(self, message: Any, parts: dict[str, int], *, strict: bool) -> bytes:
+        sender = self._sender
+        form = sender.form or None
+        made: bytes = self._module.PROTOCOL.encode(
+            message, sender.name, strict=strict, form=form, **parts
+        )
+        return made
 
     def _contradicts(self, reading: _Reading) -> None:
         """It fails, and in just the way that the schema says."""

@@ -72,7 +72,8 @@ def is_protected(spec: FrameSpec) -> bool:
 def shared_start(spec: FrameSpec) -> bytes:
     """The start, where it can also be the end of the frame in front."""
     if isinstance(spec.start, StartLiteral) and spec.end is not None:
-        return spec.start.value if spec.start.value == spec.end.value else b""
+        is_shared = spec.start.value == spec.end.value and spec.end.protected
+        return spec.start.value if is_shared else b""
     return b""
 
 

@@ -67,7 +67,7 @@ class Subject:
 
     def samples(self, random: int = 20) -> Iterator[Values]:
         """Values with each boundary, and some random ones."""
-        frame = self.protocol.sender(self.message.senders[0]).frame
+        frame = self.protocol.senders_of(self.message)[0].frame
         rounds = boundary_rounds(self.message, frame)
         for values, _ in islice(samples(self.message, frame, self.dice), rounds + random):
             yield values

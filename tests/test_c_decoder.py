@@ -210,9 +210,15 @@ def test_a_selection_decodes_as_the_same_selection_does_in_python(
 
 
 def each(kind: str) -> pytest.MarkDecorator:
-    items = [(file, item) for file in FILES for item in getattr(file, kind)]
+    every = ((file, item) for file in FILES for item in getattr(file, kind))
+    items = [(file, item) for file, item in every if is_of_one_form(file, item.sender)]
     names = [f"{file.name}-{item.name}" for file, item in items]
     return pytest.mark.parametrize(("file", "item"), items, ids=names)
+
+
+def is_of_one_form(file: VectorFile, sender: str) -> bool:
+    """C has a decoder for each form of frame, Python one for all of them as well."""
+    return any(item.name == sender for item in protocol_of(file.schema).senders)
 
 
 @each("vectors")

@@ -296,7 +296,8 @@ def test_frames_that_only_one_can_have_sent_need_no_sender(command: str) -> None
     said = run(command, MATTY, "--hex", "55020141BC", "--sender", "esp")
     guessed = run(command, MATTY, "--hex", "55020141BC")
     assert guessed.exit_code == 0, guessed.stderr
-    assert guessed.stdout == said.stdout
+    named = "0  esp  ack" if command == "decode" else "0  ack"
+    assert guessed.stdout == said.stdout.replace("0  ack", named)
 
 
 # --- mistakes -------------------------------------------------------------------------------------
@@ -305,8 +306,6 @@ def test_frames_that_only_one_can_have_sent_need_no_sender(command: str) -> None
 @pytest.mark.parametrize(
     ("arguments", "messages"),
     [
-        (["--hex", "00"], ["nothing says who sent the bytes", "give --sender pc or esp"]),
-        (["--hex", "55020141BC00"], ["nothing says who sent the bytes", "give --sender pc or esp"]),
         (
             ["--sender", "esq", "--hex", "00"],
             ["`matty` has no sender `esq`; it has pc, esp", "did you mean `esp`?"],

@@ -152,7 +152,6 @@ def test_bytes_that_are_no_text() -> None:
     [
         (["--sender", "pc", "--hex", "5"], "line 1, column 1: `5` has an odd number"),
         (["--sender", "nobody", "--hex", "55"], "`matty` has no sender `nobody`"),
-        (["--hex", "55"], "--sender"),
     ],
 )
 def test_mistakes(arguments: list[str], message: str) -> None:

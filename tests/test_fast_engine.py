@@ -535,6 +535,8 @@ def test_messages_are_sent_without_the_reference(
     module = module_at(path)
     spec = module.PROTOCOL.sender(sender)
     assert all(message in module._ENCODERS for message in spec.messages)
+    if spec.form:
+        return  # Of several forms, the encoder takes the first that fits.
     sent = [(event.message, event.numbers) for event in decoded(path, sender)]
     names = [part.name for part in spec.layout.values]
     due = [

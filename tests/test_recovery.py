@@ -225,8 +225,9 @@ def test_one_damaged_frame_costs_no_other(path: Path, sender: str, kind: str) ->
 @pytest.mark.parametrize("path", FRAMINGS, ids=name_of)
 def test_a_torrent_of_noise_fills_no_memory(path: Path) -> None:
     """Nothing but marks, so that frames seem to begin all the time."""
-    marks = marks_of(path, "station")
-    decoder = module_at(path).Decoder("station")
+    sender = protocol_of(path).senders[0].name
+    marks = marks_of(path, sender)
+    decoder = module_at(path).Decoder(sender)
     noise = bytes(Random(1).choices(marks, k=18_000))
     portions = [noise[start : start + 100] for start in range(0, len(noise), 100)]
 

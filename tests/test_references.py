@@ -73,8 +73,30 @@ def tree(text: str) -> Node:
     return document.root
 
 
-ROOT = tree(TEXT)
-DATA = to_data(ROOT)
+FORMS = """\
+protocol: all_references_of_forms
+endpoints: {robot: Robot}
+forms:
+  short:
+    from: robot
+    behind: accepted
+    frame:
+      number: {type: uint8, id: true}
+      payload: {}
+      sum: {type: uint8, algorithm: sum-8, covers: number..payload}
+    transparency: {covers: payload, preset: slip}
+messages:
+  report:
+    from: robot
+    id: {number: 1}
+    forms: [short]
+    fields: {size: uint8}
+    examples: {first: {form: short, content: {hex: 00}, covers: payload}}
+decisions: {accepted: {question: q, document: d, choice: c, because: b}}
+"""
+
+ROOTS = (tree(TEXT), tree(FORMS))
+DATA = to_data(ROOTS[0])
 
 
 def is_marked(form: Form | None) -> bool:
@@ -111,16 +133,18 @@ def under(data: Any, key: Key) -> list[Reference]:
 @pytest.mark.parametrize("key", MARKED, ids=".".join)
 def test_a_marked_key_follows_every_rename(key: Key) -> None:
     followed = 0
-    for found in under(DATA, key):
-        for *place, name in found.declarations(DATA):
-            dialect = f"{{rename: {{{name}: other_name}}}}"
-            for step in reversed(place):
-                dialect = f"{{{step}: {dialect}}}"
-            renamed = apply_renames(ROOT, tree(dialect), Problems())
-            names = [now.name for now in under(to_data(renamed), key) if now.kind is found.kind]
-            assert "other_name" in names
-            followed += 1
-    assert followed, "the schema above lacks a reference under this key"
+    for root in ROOTS:
+        data = to_data(root)
+        for found in under(data, key):
+            for *place, name in found.declarations(data):
+                dialect = f"{{rename: {{{name}: other_name}}}}"
+                for step in reversed(place):
+                    dialect = f"{{{step}: {dialect}}}"
+                renamed = apply_renames(root, tree(dialect), Problems())
+                names = [now.name for now in under(to_data(renamed), key) if now.kind is found.kind]
+                assert "other_name" in names
+                followed += 1
+    assert followed, "the schemas above lack a reference under this key"
 
 
 def test_the_schema_is_one() -> None:

@@ -685,13 +685,13 @@ def decode(
 ) -> EspMessage: ...
 @_typing.overload
 def decode(
-    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: Sender | None = None, engine: _rt.Engine = "fast"
 ) -> PcMessage | EspMessage: ...
 def decode(
-    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: Sender | None = None, engine: _rt.Engine = "fast"
 ) -> PcMessage | EspMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
-    if engine == "fast":
+    if engine == "fast" and sender is not None:
         try:
             return _DECODERS[sender](frame)
         except _fast.ANYTHING:  # The reference says what is wrong.
@@ -702,7 +702,10 @@ def decode(
 
 
 class Decoder(_rt.Decoder[_rt.MessageT_co, _rt.PartsT_co]):
-    """Cuts what one endpoint sends into events: `feed(bytes)`, and `flush()` after a silence."""
+    """Cuts what is on the line into events: `feed(bytes)`, and `flush()` after a silence.
+
+    Without `sender`, frames of all endpoints are looked for.
+    """
 
     @_typing.overload
     def __init__(
@@ -716,17 +719,19 @@ class Decoder(_rt.Decoder[_rt.MessageT_co, _rt.PartsT_co]):
     ) -> None: ...
     @_typing.overload
     def __init__(
-        self: Decoder[PcMessage | EspMessage, Parts], sender: Sender, engine: _rt.Engine = "fast"
+        self: Decoder[PcMessage | EspMessage, Parts],
+        sender: Sender | None = None,
+        engine: _rt.Engine = "fast",
     ) -> None: ...
-    def __init__(self, sender: Sender, engine: _rt.Engine = "fast") -> None:
-        super().__init__(PROTOCOL.sender(sender), engine)
+    def __init__(self, sender: Sender | None = None, engine: _rt.Engine = "fast") -> None:
+        super().__init__(PROTOCOL.forms(sender), engine)
 
 
 class Encoder(_rt.Encoder):
     """Makes the frames of one endpoint and advances its counters."""
 
     def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender), encode)
+        super().__init__(PROTOCOL.forms(sender), encode)
 
     def encode(
         self,

@@ -1297,13 +1297,13 @@ def decode(
 ) -> FlexMessage: ...
 @_typing.overload
 def decode(
-    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: Sender | None = None, engine: _rt.Engine = "fast"
 ) -> LinuxMessage | FlexMessage: ...
 def decode(
-    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: Sender | None = None, engine: _rt.Engine = "fast"
 ) -> LinuxMessage | FlexMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
-    if engine == "fast":
+    if engine == "fast" and sender is not None:
         try:
             return _DECODERS[sender](frame)
         except _fast.ANYTHING:  # The reference says what is wrong.
@@ -1314,7 +1314,10 @@ def decode(
 
 
 class Decoder(_rt.Decoder[_rt.MessageT_co, _rt.PartsT_co]):
-    """Cuts what one endpoint sends into events: `feed(bytes)`, and `flush()` after a silence."""
+    """Cuts what is on the line into events: `feed(bytes)`, and `flush()` after a silence.
+
+    Without `sender`, frames of all endpoints are looked for.
+    """
 
     @_typing.overload
     def __init__(
@@ -1331,18 +1334,18 @@ class Decoder(_rt.Decoder[_rt.MessageT_co, _rt.PartsT_co]):
     @_typing.overload
     def __init__(
         self: Decoder[LinuxMessage | FlexMessage, Parts],
-        sender: Sender,
+        sender: Sender | None = None,
         engine: _rt.Engine = "fast",
     ) -> None: ...
-    def __init__(self, sender: Sender, engine: _rt.Engine = "fast") -> None:
-        super().__init__(PROTOCOL.sender(sender), engine)
+    def __init__(self, sender: Sender | None = None, engine: _rt.Engine = "fast") -> None:
+        super().__init__(PROTOCOL.forms(sender), engine)
 
 
 class Encoder(_rt.Encoder):
     """Makes the frames of one endpoint."""
 
     def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender), encode)
+        super().__init__(PROTOCOL.forms(sender), encode)
 
     def encode(
         self,

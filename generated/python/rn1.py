@@ -722,13 +722,13 @@ def decode(
 ) -> BrainMessage: ...
 @_typing.overload
 def decode(
-    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: Sender | None = None, engine: _rt.Engine = "fast"
 ) -> HostMessage | BrainMessage: ...
 def decode(
-    frame: _rt.BytesLike, sender: Sender, engine: _rt.Engine = "fast"
+    frame: _rt.BytesLike, sender: Sender | None = None, engine: _rt.Engine = "fast"
 ) -> HostMessage | BrainMessage:
     """The message of exactly one frame. Raises DecodeError with offset, path and reason."""
-    if engine == "fast":
+    if engine == "fast" and sender is not None:
         try:
             return _DECODERS[sender](frame)
         except _fast.ANYTHING:  # The reference says what is wrong.
@@ -739,7 +739,10 @@ def decode(
 
 
 class Decoder(_rt.Decoder[_rt.MessageT_co, _rt.PartsT_co]):
-    """Cuts what one endpoint sends into events: `feed(bytes)`, and `flush()` after a silence."""
+    """Cuts what is on the line into events: `feed(bytes)`, and `flush()` after a silence.
+
+    Without `sender`, frames of all endpoints are looked for.
+    """
 
     @_typing.overload
     def __init__(
@@ -756,18 +759,18 @@ class Decoder(_rt.Decoder[_rt.MessageT_co, _rt.PartsT_co]):
     @_typing.overload
     def __init__(
         self: Decoder[HostMessage | BrainMessage, Parts],
-        sender: Sender,
+        sender: Sender | None = None,
         engine: _rt.Engine = "fast",
     ) -> None: ...
-    def __init__(self, sender: Sender, engine: _rt.Engine = "fast") -> None:
-        super().__init__(PROTOCOL.sender(sender), engine)
+    def __init__(self, sender: Sender | None = None, engine: _rt.Engine = "fast") -> None:
+        super().__init__(PROTOCOL.forms(sender), engine)
 
 
 class Encoder(_rt.Encoder):
     """Makes the frames of one endpoint."""
 
     def __init__(self, sender: Sender) -> None:
-        super().__init__(PROTOCOL.sender(sender), encode)
+        super().__init__(PROTOCOL.forms(sender), encode)
 
     def encode(
         self,

@@ -55,7 +55,8 @@ def capture_schema(protocol: Protocol, sender: Sender) -> CaptureSchema:
     reason = Column(name="reason", role="reason", source="reason", shape=_BYTE)
     return CaptureSchema(
         protocol=protocol.name,
-        sender=sender.name,
+        sender=sender.endpoint,
+        form="" if sender.is_only_form else sender.form,
         spec_hash=protocol.spec_hash,
         messages={item.name: _table(framed, item) for item in sender.received},
         invalid=TableSchema(row=record([*head, reason])),

@@ -253,6 +253,9 @@ class CaptureSchema(msgspec.Struct, frozen=True, kw_only=True):
 
     protocol: str
     sender: str
+    """The endpoint that sends."""
+    form: str
+    """The form of its frames; empty where there is only one."""
     spec_hash: str
     messages: dict[str, TableSchema]
     """By the message's name, in the schema's order; what a decoder never yields is left out."""

@@ -24,8 +24,9 @@ def print_analysis(out: Console, path: str, protocol: Protocol) -> None:
     out.print(Text.assemble((path, "bold cyan"), ": ", (protocol.title, "bold")))
     out.print(f"{_INDENT}{_contents(protocol)}")
     for sender in protocol.senders:
-        title = next(item.title for item in protocol.endpoints if item.name == sender.name)
-        out.print(Text.assemble(_INDENT, (sender.name, "bold"), f": {title}"))
+        title = next(item.title for item in protocol.endpoints if item.name == sender.endpoint)
+        form = "" if sender.is_only_form else f", {sender.form}"
+        out.print(Text.assemble(_INDENT, (f"{sender.endpoint}{form}", "bold"), f": {title}"))
         _print_properties(out, sender)
         _print_messages(out, sender)
     out.print()
@@ -116,8 +117,10 @@ def analysis(path: str, protocol: Protocol) -> dict[str, object]:
 
 def _sender_analysis(sender: Sender) -> dict[str, object]:
     framing = sender.framing
+    form = {} if sender.is_only_form else {"form": sender.form}
     return {
-        "sender": sender.name,
+        "sender": sender.endpoint,
+        **form,
         "start": framing.finds_start,
         "end": framing.finds_end,
         "self_synchronising": framing.self_synchronising,

@@ -20,7 +20,8 @@ CaptureFile = Annotated[
 ]
 
 SenderOfBytes = Annotated[
-    str | None, typer.Option(metavar="NAME", help="The endpoint that sent the bytes.")
+    str | None,
+    typer.Option(metavar="NAME", help="The endpoint that sent the bytes. Default: any of them."),
 ]
 
 HexText = Annotated[

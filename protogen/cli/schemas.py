@@ -147,6 +147,21 @@ def find_sender(protocol: Protocol, name: str) -> Sender:
     raise UsageError(message, hint_for(name, names))
 
 
+def find_senders(protocol: Protocol, name: str) -> tuple[Sender, ...]:
+    """Return the endpoint called ``name`` as a sender, in each form of its frames.
+
+    A name such as `vesc_long` stands for one form alone. Raises UsageError otherwise.
+    """
+    from protogen.problems import hint_for
+
+    found = tuple(item for item in protocol.senders if name in (item.endpoint, item.name))
+    if found:
+        return found
+    names = tuple(dict.fromkeys((*protocol.sending, *(item.name for item in protocol.senders))))
+    message = f"`{protocol.name}` has no sender `{name}`; it has {', '.join(names)}"
+    raise UsageError(message, hint_for(name, names))
+
+
 def find_message(protocol: Protocol, name: str) -> Message:
     """Return the message called ``name``. Raises UsageError with what was probably meant."""
     names = [message.name for message in protocol.messages]

@@ -46,15 +46,17 @@ def _changes(
 ) -> Iterator[Change]:
     if old.name != new.name:
         yield Change(rule="protocol-renamed", place="protocol", text=named(old.name, new.name))
-    for before, after in endpoints.items():
+    for endpoint in old.endpoints:
+        before, after = endpoint.name, endpoints.get(endpoint.name, endpoint.name)
         if before != after:
             yield Change(
                 rule="endpoint-renamed", place=f"endpoint {before}", text=named(before, after)
             )
     yield from _link(old.link, new.link)
     yield from compare_reserved(old, new, endpoints, messages)
+    yield from _forms(old, new, endpoints)
     for sender in old.senders:
-        other = _sender(new, endpoints.get(sender.name, sender.name))
+        other = _counterpart(sender, new, endpoints)
         if other is not None:
             yield from compare_frames(sender, other)
             yield from _overloads(sender, other, messages)
@@ -95,11 +97,11 @@ def _unskippable(
 ) -> Iterator[Change]:
     """A message whose frames an old receiver can't pass over: it would look for frames inside."""
     for sender in old.senders:
-        name = endpoints.get(sender.name, sender.name)
+        other = _counterpart(sender, new, endpoints)
         is_known = any(item.identity == message.identity for item in sender.messages)
-        if name not in message.senders or is_known:
+        if other is None or not other.sends(message) or is_known:
             continue
-        words = _obstacle(message, sender.plan, new.sender(name).plan)
+        words = _obstacle(message, sender.plan, other.plan)
         if words:
             found = _change("message-unskippable", message, f"{sender.name}: {words}")
             yield replace(found, sender=sender.name)
@@ -206,7 +208,11 @@ def _paired_endpoints(old: Protocol, new: Protocol) -> dict[str, str]:
         after.index(n) for n in fresh
     ]:
         pairs |= dict(zip(gone, fresh, strict=True))
-    return pairs
+    return pairs | {
+        sender.name: other.name
+        for sender in old.senders
+        if not sender.is_only_form and (other := _counterpart(sender, new, pairs)) is not None
+    }
 
 
 def _paired_messages(old: Protocol, new: Protocol, endpoints: dict[str, str]) -> dict[str, str]:
@@ -242,8 +248,31 @@ def _layout(message: Message) -> list[object]:
     return [(field.name, shape(field.type), field.position) for field in message.fields]
 
 
-def _sender(protocol: Protocol, name: str) -> Sender | None:
-    return next((item for item in protocol.senders if item.name == name), None)
+def _counterpart(sender: Sender, new: Protocol, endpoints: dict[str, str]) -> Sender | None:
+    """The same endpoint in NEW, in the same form of its frames."""
+    forms = new.forms(endpoints.get(sender.endpoint, sender.endpoint))
+    if sender.is_only_form and len(forms) == 1:
+        return forms[0]
+    return next((item for item in forms if item.form == sender.form), None)
+
+
+def _forms(old: Protocol, new: Protocol, endpoints: dict[str, str]) -> Iterator[Change]:
+    """Forms of frame that are gone or new, or stand in another order."""
+    for endpoint in old.sending:
+        before, after = old.forms(endpoint), new.forms(endpoints.get(endpoint, endpoint))
+        if not after or (len(before) == 1 and len(after) == 1):
+            continue
+        kept = [item.form for item in before if item.form in {other.form for other in after}]
+        for rule, items in (("form-deleted", before), ("form-added", after)):
+            for item in items:
+                if item.form not in kept:
+                    text = f"frames of {', '.join(message.name for message in item.messages)}"
+                    place = f"{endpoint} forms.{item.form or 'frame'}"
+                    yield Change(rule=rule, place=place, text=text, sender=item.name)
+        order = [item.form for item in after if item.form in kept]
+        if order != kept:
+            words = named(", ".join(kept), ", ".join(order))
+            yield Change(rule="form-moved", place=f"{endpoint} forms", text=words)
 
 
 def _link(old: Link, new: Link) -> Iterator[Change]:

@@ -106,9 +106,12 @@ class Side:
             return None  # Values of the other version may be none of this one's.
 
     def _decoder(self, sender: str) -> Decoder[Any, Any]:
-        """Receiver that takes one frame after the other, each with an end of input behind it."""
+        """Receiver that takes one frame after the other, each with an end of input behind it.
+
+        It takes all forms of an endpoint's frames.
+        """
         if sender not in self._decoders:
-            self._decoders[sender] = Decoder(self._codec.sender(sender))
+            self._decoders[sender] = Decoder(self._codec.forms(sender))
         return self._decoders[sender]
 
     def reads(self, sender: str, frame: bytes, like: Reading | None = None) -> Reading:

@@ -66,6 +66,9 @@ RULES: tuple[Rule, ...] = (
     Rule("frame-transparency", _W, "bytes are stuffed another way", _TOGETHER),
     Rule("frame-leniency", _S, "receivers take other sloppy encodings", "check the receivers"),
     Rule("frame-size-limit", _S, "the greatest frame has another size", "rebuild the receivers"),
+    Rule("form-added", _W, "an endpoint sends frames of a new form", "rebuild the receivers first"),
+    Rule("form-deleted", _W, "a form of frame is gone", _TOGETHER),
+    Rule("form-moved", _S, "forms of frame are tried in another order", "check the receivers"),
     # messages
     Rule("message-added", _N, "a message is new", "old receivers report it as unknown"),
     Rule("message-unskippable", _W, "old receivers can't skip a new message", _TOGETHER),

@@ -191,13 +191,13 @@ class Witnesses:
         names = self._comparison
         one, other = (self._old, self._new) if old_sends else (self._new, self._old)
         endpoints = names.endpoints if old_sends else _swapped(names.endpoints)
-        theirs = endpoints.get(sender.name, sender.name)
-        listens = any(item.name == theirs for item in other.protocol.senders)
+        theirs = endpoints.get(sender.endpoint, sender.endpoint)
+        listens = theirs in other.protocol.sending
         for values, parts in samples:
             frame = one.frame(sender.name, message.name, values, parts)
             if frame is None:
                 continue
-            sent = one.reads(sender.name, frame)
+            sent = one.reads(sender.endpoint, frame)
             if sent.message != message.name:
                 continue  # A frame that its own side can't tell proves nothing.
             received = Reading(None, "nobody listens")

@@ -26,6 +26,7 @@ from protogen.model.payload_plan import (
     Reference,
     RepeatStep,
 )
+from protogen.model.sizes import SizeSet
 from protogen.model.types import Fixed, Text
 
 _USUAL_COUNT = 24
@@ -53,11 +54,11 @@ def part_choices(part: CounterPart | ValuePart) -> Choices:
     return Choices((least, greatest), lambda random: random.randint(least, greatest))
 
 
-def unspecified_choices(message: Message) -> Choices:
-    """The payload of a message of which only the size is known."""
+def unspecified_choices(message: Message, sizes: SizeSet) -> Choices:
+    """The payload of a message of which only the sizes are known."""
     seven = Check.SEVEN_BIT in message.plan.checks
-    greatest = min(message.sizes.greatest, _GREATEST_COUNT)
-    return bytes_choices(message.sizes.least, greatest, SEVEN_BITS if seven else 0xFF)
+    greatest = min(sizes.greatest, max(sizes.least, _GREATEST_COUNT))
+    return bytes_choices(sizes.least, greatest, SEVEN_BITS if seven else 0xFF)
 
 
 # --- numbers that count or select ----------------------------------------------------------------

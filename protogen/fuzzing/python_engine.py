@@ -46,13 +46,16 @@ class PythonEngine:
         """Encode a whole frame. Raises Refused."""
         try:
             record = self._messages[message].from_dict(values)
-            return self._encode(record, sender, **parts)
+            spec = self._codec.sender(sender)
+            form: dict[str, Any] = {"form": spec.form} if spec.form else {}
+            return self._encode(record, spec.name, **form, **parts)
         except EncodeError as error:
             raise Refused(str(error)) from None
 
     def events(self, sender: str, pieces: Sequence[bytes]) -> list[Seen]:
         """Feed the pieces to a new decoder and flush it."""
-        decoder = Decoder(self._codec.sender(sender), self._engine)
+        endpoint = self._codec.sender(sender).name
+        decoder = Decoder(self._codec.forms(endpoint), self._engine)
         events = [event for piece in pieces for event in decoder.feed(piece)]
         return [_seen(event) for event in (*events, *decoder.flush())]
 

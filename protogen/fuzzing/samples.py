@@ -40,6 +40,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Text
+from protogen.passes.framing.capacity import payload_range
 
 _TRIES = 100
 """Draws until one has a size that the frame lets a payload have."""
@@ -129,15 +130,24 @@ def _boundary_samples(message: Message, frame: Frame) -> Iterator[tuple[Values, 
 
 def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, Values] | None:
     """A sample; None where its payload has a size that the frame does not let it have."""
+    sizes = _carried(message, frame)
     if message.unspecified:
-        fields = {message.fields[0].name: chooser.choose(unspecified_choices(message))}
+        fields = {message.fields[0].name: chooser.choose(unspecified_choices(message, sizes))}
     else:
-        sampler = _Sampler(message.sizes)
+        sampler = _Sampler(sizes)
         fields = sampler.record(message.plan.steps, chooser)
-        if sampler.size not in message.sizes:
+        if sampler.size not in sizes:
             return None
     parts = {part.name: chooser.choose(part_choices(part)) for part in frame.caller_parts}
     return fields, parts
+
+
+def _carried(message: Message, frame: Frame) -> SizeSet:
+    """The sizes of the message that the frame's length can say: other forms may carry others."""
+    stated = payload_range(frame)
+    if stated is None:
+        return message.sizes
+    return message.sizes.within(stated.least, stated.greatest) or message.sizes
 
 
 # --- composites ---------------------------------------------------------------------------------

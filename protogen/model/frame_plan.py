@@ -383,8 +383,11 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
 
     @property
     def shares_delimiter(self) -> bool:
-        """True if the end of a frame may also be the start of the next."""
-        return bool(self.start_bytes) and self.start_bytes == self.end_bytes
+        """True if the end of a frame may also be the start of the next.
+
+        Where the literal can stand in the data as well, it is one or the other.
+        """
+        return self.end_is_unique and self.start_bytes == self.end_bytes
 
     @property
     def end_begins_start(self) -> bool:

@@ -44,6 +44,7 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     title: str
     summary: str
     senders: tuple[str, ...]
+    """The endpoints that send it."""
     identity: tuple[int, ...]
     """Raw value of each identity part, in wire order."""
     fields: tuple[Field, ...]
@@ -56,6 +57,8 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     """SHA-256, in hex, of identity, layout and meaning of values."""
     renamed_from: str | None = None
     """Name in the version before, where that was another one."""
+    forms: tuple[str, ...] = ()
+    """The forms of frame that carry it; none are named where all of its senders' do."""
     about: About = NOTHING
     span: Span
 

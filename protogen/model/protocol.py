@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cached_property
 
 import msgspec
 
@@ -50,15 +51,38 @@ class Decision(msgspec.Struct, frozen=True, kw_only=True):
     source: Source | None = None
 
 
-class Sender(msgspec.Struct, frozen=True, kw_only=True):
-    """An endpoint that sends: its frame, the framing and the plan of it, and its messages."""
+class Sender(msgspec.Struct, frozen=True, kw_only=True, dict=True):
+    """An endpoint that sends: its frame, the framing and the plan of it, and its messages.
+
+    An endpoint with several forms of frame is a sender in each of them.
+    """
 
     name: str
+    """The endpoint's, with that of the form behind it where there are several."""
     frame: Frame
     framing: Framing
     messages: tuple[Message, ...]
     overloads: tuple[Overload, ...]
     plan: FramePlan
+    form: str = ""
+    """Name of the form; empty where the schema has none."""
+    is_only_form: bool = True
+    """True if the endpoint has no other form of frame."""
+    behind: str | None = None
+    """The decision that accepts that bytes can be a frame of an earlier form, too."""
+
+    @property
+    def endpoint(self) -> str:
+        """The endpoint that sends."""
+        return self.name if self.is_only_form else self.name.removesuffix(f"_{self.form}")
+
+    def sends(self, message: Message) -> bool:
+        """True if the endpoint sends the message in this form of frame."""
+        return message.name in self._sent
+
+    @cached_property
+    def _sent(self) -> frozenset[str]:
+        return frozenset(message.name for message in self.messages)
 
     @property
     def received(self) -> tuple[Message, ...]:
@@ -119,7 +143,7 @@ class Protocol(msgspec.Struct, frozen=True, kw_only=True):
     byte_bits: int
     endpoints: tuple[Endpoint, ...]
     senders: tuple[Sender, ...]
-    """In the order of the endpoints; an endpoint that sends nothing is left out."""
+    """In the order of the endpoints, and of the forms of each; what sends nothing is left out."""
     enums: tuple[Enum, ...]
     flags: tuple[Flags, ...]
     structs: tuple[Struct, ...]
@@ -131,12 +155,25 @@ class Protocol(msgspec.Struct, frozen=True, kw_only=True):
     spec_hash: str
     """SHA-256, in hex, of layout, framing and meaning of values."""
 
-    def sender(self, name: str) -> Sender:
-        """The sender called `name`; raises KeyError."""
+    def sender(self, name: str, form: str = "") -> Sender:
+        """The sender called `name`, or the endpoint of that name in a form; raises KeyError."""
         for sender in self.senders:
-            if sender.name == name:
+            if sender.name == name or (form and (sender.endpoint, sender.form) == (name, form)):
                 return sender
         raise KeyError(name)
+
+    @property
+    def sending(self) -> tuple[str, ...]:
+        """Names of the endpoints that send, in their order."""
+        return tuple(dict.fromkeys(sender.endpoint for sender in self.senders))
+
+    def forms(self, endpoint: str) -> tuple[Sender, ...]:
+        """An endpoint as a sender, in each of its forms of frame; empty if it sends nothing."""
+        return tuple(sender for sender in self.senders if sender.endpoint == endpoint)
+
+    def senders_of(self, message: Message) -> tuple[Sender, ...]:
+        """The senders of a message, in their order."""
+        return tuple(item for item in self.senders if item.sends(message))
 
     def message(self, name: str) -> Message:
         """The message called `name`; raises KeyError."""

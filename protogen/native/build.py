@@ -38,8 +38,8 @@ def build(driver: Driver) -> Built:
     Two processes may do this at once. Raises NativeError where it can't be done.
     """
     schema = driver.schema
-    name = f"{schema.protocol}_{schema.sender}"
-    return compiled(name, driver.text, (schema.spec_hash, schema.sender))
+    sender = f"{schema.sender}_{schema.form}" if schema.form else schema.sender
+    return compiled(f"{schema.protocol}_{sender}", driver.text, (schema.spec_hash, sender))
 
 
 @as_native_error()

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import cached_property
 from typing import Any
 
 import msgspec
 
 from protogen.model.origin import NOTHING, About, Source
 from protogen.model.types import ByteOrder
+from protogen.passes.framing.written_frames import Loc, WrittenFrame, written_frames
 from protogen.problems import Problem, Problems, Span
 from protogen.problems.problem import Note
 from protogen.schema.syntax.base import Source as SourceSyntax
 from protogen.schema.syntax.protocol import ALL_SENDERS, ProtocolSyntax
 
-Loc = tuple[str | int, ...]
-"""Place in the schema: keys and indexes from the root."""
+__all__ = ["Context", "Find", "Loc", "Tally", "about", "source_of"]
 
 _CERTAIN = frozenset(
     {"PG104", "PG105", "PG106", "PG108", "PG120", "PG123", "PG134", "PG143", "PG165"}
@@ -38,7 +39,7 @@ class Tally(msgspec.Struct):
     """Number of errors that concern examples only."""
 
 
-class Context(msgspec.Struct, frozen=True):
+class Context(msgspec.Struct, frozen=True, dict=True):
     """One schema on its way through the passes."""
 
     syntax: ProtocolSyntax
@@ -107,9 +108,10 @@ class Context(msgspec.Struct, frozen=True):
         names = (_letters(str(loc[1])) for loc in self.lost if loc[0] == key and len(loc) > 1)
         return (key,) in self.lost or _letters(name) in names
 
-    def frame_key(self, sender: str) -> str:
-        """Key of the frame of a sender: its own, or that of all senders."""
-        return sender if sender in self.syntax.frame else ALL_SENDERS
+    @cached_property
+    def frames(self) -> Mapping[str, WrittenFrame]:
+        """The frames as they are written, by the names of their senders."""
+        return dict(written_frames(self.syntax))
 
     def byte_order(self, sender: str) -> ByteOrder | None:
         """Byte order that the protocol states for a sender."""

@@ -16,6 +16,9 @@ class Draft(msgspec.Struct):
 
     named: NamedTypes
     senders: tuple[str, ...] = ()
+    """Endpoints that send something, in each of their forms of frame."""
+    carried: dict[str, frozenset[str]] = msgspec.field(default_factory=dict)
+    """The messages that each sender's frame carries."""
     frames: dict[str, Frame] = msgspec.field(default_factory=dict)
     messages: dict[str, Message] = msgspec.field(default_factory=dict)
     unidentified: set[str] = msgspec.field(default_factory=set)
@@ -33,8 +36,5 @@ class Draft(msgspec.Struct):
 
     def sent_by(self, sender: str) -> list[Message]:
         """The messages of a sender that have an identity, in the order of the schema."""
-        return [
-            message
-            for message in self.messages.values()
-            if sender in message.senders and message.name not in self.unidentified
-        ]
+        carried = self.carried.get(sender, frozenset()) - self.unidentified
+        return [message for message in self.messages.values() if message.name in carried]

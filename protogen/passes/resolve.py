@@ -11,6 +11,7 @@ from protogen.model.protocol import Endpoint, Link, Protocol, Sender
 from protogen.passes.context import Context, about, source_of
 from protogen.passes.draft import Draft
 from protogen.passes.framing.analysis import analyse_framing
+from protogen.passes.framing.forms import check_forms
 from protogen.passes.framing.frame_plan import plan_frame
 from protogen.passes.framing.frames import resolve_frames
 from protogen.passes.framing.transparencies import check_codes
@@ -42,6 +43,7 @@ PASSES: tuple[Pass, ...] = (
     attach_examples,
     resolve_exchanges,
     analyse_framing,
+    check_forms,
 )
 """Each pass asks one question, reports what is wrong, and leaves something to go on with."""
 
@@ -73,7 +75,7 @@ def _assemble(context: Context, draft: Draft) -> Protocol:
             Endpoint(name=name, title=item.title, doc=item.doc or "")
             for name, item in syntax.endpoints.items()
         ),
-        senders=tuple(_sender(draft, messages, name) for name in draft.senders),
+        senders=tuple(_sender(context, draft, messages, name) for name in draft.senders),
         enums=draft.named.enums,
         flags=draft.named.flags,
         structs=draft.named.structs,
@@ -98,11 +100,15 @@ def _link(context: Context) -> Link:
     )
 
 
-def _sender(draft: Draft, hashed: Mapping[str, Message], name: str) -> Sender:
+def _sender(context: Context, draft: Draft, hashed: Mapping[str, Message], name: str) -> Sender:
     frame, framing, overloads = draft.frames[name], draft.framings[name], draft.overloads[name]
     messages = tuple(hashed[message.name] for message in draft.sent_by(name))
+    written = context.frames[name]
     return Sender(
         name=name,
+        form=written.form,
+        is_only_form=written.is_only,
+        behind=written.behind,
         frame=frame,
         framing=framing,
         messages=messages,

@@ -30,10 +30,15 @@ def select(
     for name in messages or ():
         protocol.message(name)
     for name in senders or ():
-        protocol.sender(name)
+        if not protocol.forms(name):
+            protocol.sender(name)
     if messages is None and senders is None:
         return protocol
-    chosen = [item for item in protocol.senders if senders is None or item.name in senders]
+    chosen = [
+        item
+        for item in protocol.senders
+        if senders is None or item.name in senders or item.endpoint in senders
+    ]
     left = [narrowed for item in chosen if (narrowed := _sender(item, messages)).messages]
     names = {message.name for sender in left for message in sender.messages}
     return replace(

@@ -24,7 +24,7 @@ _LEFT_OUT = frozenset(
         "about", "doc", "title", "summary", "source", "span", "examples", "exchanges", "decision",
         "decisions", "unprotected", "unknown", "version", "files", "link", "endpoints", "framing",
         "ranged", "stated", "preset", "spec_hash", "reserved", "plan", "needs", "holds_values",
-        "renamed_from",
+        "renamed_from", "behind",
     }
 )  # fmt: skip
 """Text for readers, and facts that follow from the rest."""

@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import gc
+from collections.abc import Sequence
 from typing import Generic, Literal
 
 from protogen.runtime.errors import PayloadFault, Reason
 from protogen.runtime.events import Event, InvalidEvent, frame_event
+from protogen.runtime.framing.forms import (
+    FormsCandidate,
+    FormsCutter,
+    FormStarts,
+    check_together,
+    cutter_of,
+)
 from protogen.runtime.framing.frame import AfterEnd, Anywhere
 from protogen.runtime.framing.machine import Candidate, Cut, Failure
 from protogen.runtime.framing.prefix import Prefix, prefix_of
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
-from protogen.runtime.framing.starts import starts_of
+from protogen.runtime.framing.starts import Starts, starts_of
 from protogen.runtime.plain_cut import PlainCutter
 
 Engine = Literal["fast", "construct"]
@@ -44,27 +52,74 @@ def octets(data: object) -> bytes:
         raise TypeError(f"needs bytes, a bytearray or a memoryview, not {kind}") from None
 
 
+class _Search(Generic[MessageT_co, PartsT_co]):
+    """Search for the frames of one sender, or of several forms at once."""
+
+    starts: Starts | FormStarts
+    cutter: PlainCutter[MessageT_co, PartsT_co] | FormsCutter | None
+    """Takes what is plainly in order; None where only the reference does."""
+
+    def __init__(
+        self, senders: Sequence[SenderSpec[MessageT_co, PartsT_co]], engine: Engine
+    ) -> None:
+        self._senders = senders
+        if len(senders) == 1:
+            cut = senders[0].cut if engine == "fast" else None
+            self.starts = starts_of(senders[0].frame)
+            self.cutter = None if cut is None else PlainCutter(senders[0], cut, self.starts)
+            return
+        check_together(senders)
+        self._forms = FormStarts(senders)
+        self.starts = self._forms
+        self.cutter = cutter_of(senders, self._forms) if engine == "fast" else None
+
+    def candidate(self, data: bytes, at: int, *, is_fresh: bool) -> Candidate | FormsCandidate:
+        """What begins there; `is_fresh`: nothing has come in front of it."""
+        if len(self._senders) == 1:
+            return Candidate(self._senders[0])
+        return FormsCandidate(self._senders, self._forms, data, at, is_fresh=is_fresh)
+
+    def sharing(self) -> Candidate | FormsCandidate:
+        """What begins with the end of the frame before."""
+        if len(self._senders) == 1:
+            return Candidate(self._senders[0], shares_start=True)
+        return FormsCandidate.sharing(self._senders)
+
+
 class Decoder(Generic[MessageT_co, PartsT_co]):
-    """Cuts what one endpoint sends into events.
+    """Cuts what is on a line into events: what one endpoint sends, or several.
 
     The raw bytes of all events, joined, are the input; how the input is divided among calls of
     `feed` changes nothing. At most one greatest frame is kept between calls, and behind it what may
     yet become a start literal of three bytes or more.
     """
 
-    def __init__(self, sender: SenderSpec[MessageT_co, PartsT_co], engine: Engine = "fast") -> None:
+    def __init__(
+        self,
+        sender: SenderSpec[MessageT_co, PartsT_co] | Sequence[SenderSpec[MessageT_co, PartsT_co]],
+        engine: Engine = "fast",
+    ) -> None:
+        """`sender` may be several: endpoints, and forms of their frames.
+
+        Raises ValueError where their frames are found in different ways.
+        """
         check_engine(engine)
-        self._sender = sender
-        cut = sender.cut if engine == "fast" else None
-        self._starts = starts_of(sender.frame)
-        self._plain_cut = None if cut is None else PlainCutter(sender, cut, self._starts)
-        is_alone = not self._starts.context and not sender.layout.shares_delimiter
+        senders = (sender,) if isinstance(sender, SenderSpec) else tuple(sender)
+        self._senders = senders
+        names = {item.name for item in senders}
+        self._name = names.pop() if len(names) == 1 else ""
+        self._search = _Search(senders, engine)
+        self._starts = self._search.starts
+        self._plain_cut = self._search.cutter
+        self._shares = senders[0].layout.shares_delimiter
+        is_alone = not self._starts.context and not self._shares
         self._lane = self._plain_cut.take if is_alone and self._plain_cut else None
         """Takes what comes in, where nothing of earlier frames tells how a frame starts."""
-        shared = len(sender.layout.start) if sender.layout.shares_delimiter else 0
-        self._least = sender.frame.least - shared  # So many bytes a frame has that can be cut.
-        self._greatest = sender.frame.greatest
-        self._is_anywhere = isinstance(sender.frame.start, Anywhere)
+        shared = len(senders[0].layout.start) if self._shares else 0
+        # So many bytes a frame has that can be cut.
+        self._least = min(item.frame.least for item in senders) - shared
+        self._greatest = max(item.frame.greatest for item in senders)
+        self._is_anywhere = isinstance(senders[0].frame.start, Anywhere)
         self._events: list[Event[MessageT_co, PartsT_co]] = []
         self._data = b""  # What is not delivered, and a little context in front of it.
         self._behind = bytearray()  # What came behind it, and the candidate has taken.
@@ -73,11 +128,12 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._done = 0  # All in front of it is delivered.
         self._scan = 0  # No frame starts between `_done` and here.
         self._pushed = 0  # The candidate has taken all in front of it.
-        self._candidate: Candidate | None = None
+        self._candidate: Candidate | FormsCandidate | None = None
         self._failure: Failure | None = None  # The candidate's, until the next start is known.
         self._shares_start = False  # Whether the candidate starts with the end before it.
         self._wanted = 0  # Before so many bytes come in, what stands at `_scan` is not judged.
-        self._judges = cut is not None  # Whether beginnings of frames can be judged.
+        # Whether beginnings of frames can be judged.
+        self._judges = len(senders) == 1 and self._plain_cut is not None
         self._prefix: Prefix | None = None  # Judge of them, made when first needed.
         self._plain = b""  # Bytes that the judge needs not see one by one.
         self._is_fresh = True  # Nothing came in since the start or the last flush.
@@ -184,7 +240,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         return size - self._scan > _LOOKED * len(data)
 
     def _feed_little(
-        self, candidate: Candidate, data: bytes
+        self, candidate: Candidate | FormsCandidate, data: bytes
     ) -> list[Event[MessageT_co, PartsT_co]]:
         """The same where all in front is the candidate's, and nothing else is looked at."""
         self._behind += data
@@ -244,21 +300,23 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
     def _seek(self, final: bool) -> bool:
         """Look for the next possible start; what is in front of it is noise."""
         start = self._next_start()
-        if start >= 0:
-            return self._open(start, final)
         end = len(self._data)
-        self._scan = end if final else self._starts.undecided(self._data, self._scan)
+        if not final:
+            end = self._starts.undecided(self._data, self._scan)
+        if 0 <= start <= end:
+            return self._open(start, final)
+        self._scan = end
         self._noise(self._scan, final)
         return False
 
     def _next_start(self) -> int:
-        if self._is_fresh and isinstance(self._sender.frame.start, AfterEnd):
+        if self._is_fresh and isinstance(self._senders[0].frame.start, AfterEnd):
             return self._scan
         return self._starts.find(self._data, self._scan, len(self._data) + 1)
 
     def _open(self, start: int, final: bool) -> bool:
         """Begin at a possible start. False: nothing can be said before more comes in."""
-        self._is_fresh = False
+        is_fresh, self._is_fresh = self._is_fresh, False
         if not self._is_anywhere:
             self._noise(start, complete=True)
         self._scan = self._pushed = start
@@ -270,7 +328,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
                 return True
         self._wanted = 0 if final else self._wanted_at(start)
         if not self._wanted:
-            self._candidate = Candidate(self._sender)
+            self._candidate = self._search.candidate(self._data, start, is_fresh=is_fresh)
         return not self._wanted
 
     def _wanted_at(self, start: int) -> int:
@@ -278,7 +336,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         if not self._judges:
             return 0
         if self._prefix is None:
-            self._prefix = prefix_of(self._sender)
+            self._prefix = prefix_of(self._senders[0])
             if self._prefix is None:
                 self._judges = False
                 return 0
@@ -289,9 +347,9 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """Leave what was waited for to a candidate, from its first byte on."""
         self._join()
         self._wanted = 0
-        self._is_fresh = False
         self._pushed = self._scan
-        self._candidate = Candidate(self._sender)
+        is_fresh, self._is_fresh = self._is_fresh, False
+        self._candidate = self._search.candidate(self._data, self._scan, is_fresh=is_fresh)
 
     def _cut_frames(self) -> bool:
         """Take whole frames that stand here and are plainly in order; whether there were any."""
@@ -304,11 +362,11 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
             return False
         self._done = end
         self._give_up(end)
-        if self._sender.layout.shares_delimiter:
+        if self._shares:
             self._share_end()
         return True
 
-    def _take(self, candidate: Candidate, final: bool) -> bool:
+    def _take(self, candidate: Candidate | FormsCandidate, final: bool) -> bool:
         """Give the candidate bytes until its verdict."""
         data = self._data
         for place in range(self._pushed, len(data)):
@@ -330,7 +388,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._failure = self._read(verdict) if isinstance(verdict, Cut) else verdict
         if self._failure is None:
             self._give_up(self._done)
-            if self._sender.layout.shares_delimiter and not self._cut_frames():
+            if self._shares and not self._cut_frames():
                 self._share_end()
         return True
 
@@ -338,15 +396,19 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         """Begin a candidate with the end of the frame before, where it may be its start as well."""
         self._pushed = self._scan
         self._shares_start = True
-        self._candidate = Candidate(self._sender, shares_start=True)
+        self._candidate = self._search.sharing()
 
     def _read(self, cut: Cut) -> Failure | None:
         """Deliver the frame, unless its payload is not that of its message."""
+        assert self._candidate is not None
+        sender = self._candidate.sender
         try:
-            message = self._sender.read(cut.numbers, cut.payload)
+            message = sender.read(cut.numbers, cut.payload)
         except PayloadFault as error:
             return Failure(cut.size, error.reason, str(error))
-        self._frame(cut, message)
+        self._noise(self._scan, complete=True)
+        offset, raw = self._cover(self._scan + cut.size)
+        self._events.append(frame_event(sender, cut, message, raw, offset))
         return None
 
     def _resume(self, failure: Failure, final: bool) -> bool:
@@ -359,7 +421,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         low = self._scan + (not self._shares_start)
         high = self._scan + (failure.size or 1)
         start = self._starts.find(self._data, low, high)
-        if start < 0 and not final and self._starts.undecided(self._data, low) < high:
+        end = high if start < 0 else start
+        if not final and self._starts.undecided(self._data, low) < end:
             return False
         if start == self._scan:
             self._give_up(start)
@@ -392,9 +455,4 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
 
     def _invalid(self, end: int, reason: Reason, problem: str) -> None:
         offset, raw = self._cover(end)
-        self._events.append(InvalidEvent(offset, raw, self._sender.name, reason, problem))
-
-    def _frame(self, cut: Cut, message: MessageT_co | None) -> None:
-        self._noise(self._scan, complete=True)
-        offset, raw = self._cover(self._scan + cut.size)
-        self._events.append(frame_event(self._sender, cut, message, raw, offset))
+        self._events.append(InvalidEvent(offset, raw, self._name, reason, problem))

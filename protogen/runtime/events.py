@@ -56,6 +56,11 @@ class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
         return self.codec.name
 
     @property
+    def form(self) -> str:
+        """The form of the frame; empty where the endpoint has only one."""
+        return self.codec.form
+
+    @property
     def parts(self) -> PartsT_co:
         """The frame's identity, counters and values."""
         parts = self.kept_parts
@@ -112,6 +117,11 @@ class UnknownEvent(Frozen, Generic[PartsT_co]):
         self._set(offset, raw, sender, parts, payload, codec)
 
     @property
+    def form(self) -> str:
+        """The form of the frame; empty where the endpoint has only one."""
+        return self.codec.form
+
+    @property
     def size(self) -> int:
         """Bytes on the wire."""
         return len(self.raw)
@@ -135,6 +145,8 @@ class InvalidEvent(Frozen):
     offset: int
     raw: bytes
     sender: str
+    """The endpoint whose bytes are decoded; empty where there are several."""
+    form: ClassVar[str] = ""
     reason: Reason
     problem: str
     """The reason in more words."""
@@ -185,8 +197,12 @@ def frame_event(
 
 
 def _line(event: Any, **named: str) -> dict[str, Any]:
-    place = {"offset": event.offset, "size": event.size, "event": event.kind}
-    return {**place, **named, "sender": event.sender}
+    line = {"offset": event.offset, "size": event.size, "event": event.kind, **named}
+    if event.sender:
+        line["sender"] = event.sender
+    if event.form:
+        line["form"] = event.form
+    return line
 
 
 def _parts(parts: Any, codec: SenderSpec[Any, Any]) -> dict[str, int]:

@@ -168,6 +168,8 @@ _BUILT_IN = "#/definitions/BuiltInField"
 _BUILT_IN_FIELDS = _each({"$ref": _BUILT_IN})
 
 _ROOT_RULES = (
+    _one_of("A protocol has a kind of frame, or several forms.", ("frame", "forms")),
+    _together("With forms, each has a transparency of its own.", {"transparency": ["frame"]}),
     _where(
         _with("types"),
         "A type of one's own is not called as a built-in one.",

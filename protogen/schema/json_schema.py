@@ -96,6 +96,7 @@ def _definitions() -> JsonObject:
     """Return what pydantic makes, with its noise taken away, and strict about names in mappings."""
     root = ProtocolSyntax.model_json_schema(ref_template=_DEFINITIONS + "{model}")
     definitions: JsonObject = {**root.pop("$defs"), _ROOT: root}
+    root["required"].remove("frame")  # Where there are `forms`, which the rules ask for.
     return {name: _definition(name, schema) for name, schema in definitions.items()}
 
 

@@ -65,6 +65,8 @@ class Recovery(msgspec.Struct):
             case "transparency":
                 self.data.pop("transparency", None)
                 self.doubtful.add(("frame",))
+            case "forms":
+                self._form(loc, unknown_key=unknown_key)
             case "endpoints" if not unknown_key:
                 self._endpoint(loc)
             case "link" | "source" | "reserved" | "exchanges":
@@ -147,6 +149,15 @@ class Recovery(msgspec.Struct):
             _drop(frame, loc[2:])
         else:
             frame.pop(loc[2], None)
+
+    def _form(self, loc: Loc, *, unknown_key: bool) -> None:
+        """A form of frame that is left out can't be named."""
+        self.doubtful |= {loc[:2], ("messages",)}
+        if unknown_key:
+            self._drop(loc)
+        else:
+            self._drop(loc[:2])
+            self.lost.add(loc[:2])
 
     def _endpoint(self, loc: Loc) -> None:
         if "[key]" in loc:

@@ -17,6 +17,7 @@ _EVERYWHERE = {
     Kind.TYPE: "types",
     Kind.MESSAGE: "messages",
     Kind.DECISION: "decisions",
+    Kind.FORM: "forms",
 }
 """Keys of the root that declare for the whole schema."""
 
@@ -62,7 +63,9 @@ class Scopes:
         return ((_EVERYWHERE[kind],),)
 
     def of_parts(self, place: Place) -> tuple[Place, ...]:
-        """The frame of all, or those of the senders that a place is about."""
+        """The frame of all, or those of the senders or the forms that a place is about."""
+        if keys_at(self._data, ("forms",)):
+            return tuple(("forms", form, "frame") for form in self._forms(place))
         if not self._frame_by_sender:
             return (("frame",),)
         return tuple(("frame", sender) for sender in self._senders(place))
@@ -95,6 +98,15 @@ class Scopes:
                 listed = senders if isinstance(senders, list) else [senders]
                 return [sender for sender in listed if isinstance(sender, str)]
         return list(frames)
+
+    def _forms(self, place: Place) -> list[Scalar]:
+        """Forms of the nearest mapping that says so; else all of them."""
+        forms = keys_at(self._data, ("forms",))
+        if place[0] == "forms" and place[1] in forms:
+            return [place[1]]
+        named = at(self._data, (*place[:2], "forms")) if place[0] == "messages" else None
+        listed = named if isinstance(named, list) else [named]
+        return [form for form in listed if form in forms] or list(forms)
 
     def _meanings(self, field: Place) -> Iterator[Place]:
         """Yield a field's place and those of its declared type, of that one's type, and so on."""

@@ -18,7 +18,7 @@ from protogen.schema.syntax.fields import FieldSyntax, NamedBit, NamedBits, Name
 from protogen.schema.syntax.forms import Form, keys_of
 from protogen.schema.syntax.messages import Step
 from protogen.schema.syntax.parts import Part, TransparencySyntax
-from protogen.schema.syntax.protocol import SCHEMA, Endpoint, ProtocolSyntax
+from protogen.schema.syntax.protocol import SCHEMA, Endpoint, FrameForm, ProtocolSyntax
 
 Find = Callable[..., Span]
 Steps = Sequence[str | int]
@@ -139,6 +139,7 @@ _FORMS: dict[type[BaseModel], str] = {
     TransparencySyntax: "a transparency is the name of a preset, or a mapping with `substitute`, "
     "`escape`, `encoding` or `preset`",
     Step: "a step is the name of a message, or a mapping with a `message`",
+    FrameForm: "a form of frame is a mapping with a `frame`",
     Source: "a source is the lines of the document, or a mapping",
 }
 """Forms of what may stand where one of these is."""
@@ -146,6 +147,7 @@ _FORMS: dict[type[BaseModel], str] = {
 
 _NAMES = {
     "messages": "`messages` is a mapping: each message's name, with its keys below",
+    "forms": "`forms` is a mapping: each form's name, with its `frame` below",
     "frame": "`frame` is a mapping: each part's name, with its keys behind it",
     "endpoints": "`endpoints` is a mapping: each endpoint's name, with its title behind it",
     "types": "`types` is a mapping: each type's name, with its keys behind it",

@@ -52,7 +52,7 @@ def _place(context: Context, thing: Thing) -> Loc:
         return thing.place
     kind, name, *rest = map(str, thing.place)
     if kind == "frame":
-        return ("frame", context.frame_key(name), *rest)
+        return (*context.frames[name].loc, *rest)
     if kind != "records":
         return thing.place
     if name in context.syntax.types:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from protogen.cli.exits import UsageError
-from protogen.cli.schemas import compile_schema, find_sender, open_protocol, protocol_of
+from protogen.cli.schemas import compile_schema, find_senders, open_protocol, protocol_of
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -33,46 +33,21 @@ class Codec(msgspec.Struct, frozen=True):
     @property
     def senders(self) -> tuple[str, ...]:
         """The endpoints that send something."""
-        return tuple(sender.name for sender in self.protocol.senders)
+        return self.protocol.sending
 
-    def sender_of_bytes(self, name: str | None) -> str:
-        """Return who sent the bytes: the endpoint of that name, or the only one that sends.
+    def decoder(self, sender: str | None) -> Decoder[Any, Any]:
+        """Return a new decoder of what ``sender`` sends; without one, of what all endpoints do.
 
-        Raises UsageError if that is not clear.
+        Raises UsageError where one decoder can't take the frames of all of them.
         """
-        if name is not None:
-            return find_sender(self.protocol, name).name
-        if len(self.senders) == 1:
-            return self.senders[0]
-        raise self._unclear("nothing says who sent the bytes")
-
-    def sender_of_frames(self, name: str | None, data: bytes) -> str:
-        """Return who sent these bytes: as `sender_of_bytes`, or the only one who can have.
-
-        That is one whose frames are all of the bytes, while no other's are any of them. Raises
-        UsageError if that is not clear.
-        """
-        if name is not None or len(self.senders) == 1 or not data:
-            return self.sender_of_bytes(name)
-        kinds = {sender: self._kinds(sender, data) for sender in self.senders}
-        found = [sender for sender, seen in kinds.items() if "message" in seen]
-        if len(found) == 1 and kinds[found[0]] == {"message"}:
-            return found[0]
-        both = f": they are frames of {' and of '.join(found)}" if len(found) > 1 else ""
-        raise self._unclear(f"nothing says who sent the bytes{both}")
-
-    def _kinds(self, sender: str, data: bytes) -> set[str]:
-        decoder = self.decoder(sender)
-        return {event.kind for event in (*decoder.feed(data), *decoder.flush())}
-
-    def _unclear(self, message: str) -> UsageError:
-        return UsageError(message, f"give --sender {' or '.join(self.senders)}")
-
-    def decoder(self, sender: str) -> Decoder[Any, Any]:
-        """Return a new decoder of what ``sender`` sends."""
         from protogen.runtime.decoder import Decoder
 
-        return Decoder(self.runtime.sender(sender))
+        if sender is not None:
+            find_senders(self.protocol, sender)
+        try:
+            return Decoder(self.runtime.forms(sender))
+        except ValueError as error:
+            raise UsageError(str(error), f"give --sender {' or '.join(self.senders)}") from None
 
 
 def open_codec(schema: Path) -> Codec:

@@ -14,12 +14,14 @@ import typer
 from protogen.cli.command import Command
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
 from protogen.cli.options import Quiet, SchemaFile, SenderOfBytes
+from protogen.cli.schemas import find_sender
 from protogen.cli.wire.complaints import Complaints
 from protogen.convert.formats import InputKind, OutputFormat
 
 if TYPE_CHECKING:
     from protogen.convert.inputs.sources import Source
     from protogen.convert.runs.conversion import Fleet, Job, Result
+    from protogen.model.protocol import Protocol, Sender
 
 EXAMPLE = "Example: protogen convert rover.yaml --sender board run.bin --to parquet -o tables"
 
@@ -84,8 +86,7 @@ def convert(  # noqa: PLR0913 - each option is one argument
     from protogen.convert.runs.conversion import Job
 
     codec = open_codec(schema)
-    name = codec.sender_of_bytes(sender)
-    sent = codec.protocol.sender(name)
+    sent = _sender(codec.protocol, sender)
     job = Job(codec.protocol, codec.runtime, sent, to, output, input, force)
     complaints = Complaints()
     fleet = _fleet(to, dask, workers, part_size)
@@ -95,6 +96,16 @@ def convert(  # noqa: PLR0913 - each option is one argument
             _print_result(result, output)
     complaints.report()
     return FINDINGS if any(result.done.lost_lines for result in results) else CLEAN
+
+
+def _sender(protocol: Protocol, name: str | None) -> Sender:
+    """Return who sent the capture. Raises UsageError if that is not clear."""
+    if name is not None:
+        return find_sender(protocol, name)
+    if len(protocol.senders) == 1:
+        return protocol.senders[0]
+    names = " or ".join(sender.name for sender in protocol.senders)
+    raise UsageError("nothing says who sent the bytes", f"give --sender {names}")
 
 
 LOCAL = "local"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -12,6 +12,7 @@ import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
 from protogen.cli.options import CaptureFile, HexText, SchemaFile, SenderOfBytes
+from protogen.cli.schemas import find_senders
 from protogen.cli.wire.capture import (
     STANDARD_INPUT,
     InputFormat,
@@ -26,7 +27,6 @@ from protogen.convert.inputs.hex_digits import parse_hex
 if TYPE_CHECKING:
     from protogen.cli.wire.codec import Codec
     from protogen.runtime.decoder import Decoder
-
 EXAMPLE = "Example: protogen decode schemas/matty.yaml --sender esp --hex 55020141BC"
 
 Tagged = Annotated[
@@ -68,13 +68,13 @@ def decode(  # noqa: PLR0913 - each option is one argument
 
     kind = _input_format(input, tagged=tagged, has_text=hex is not None)
     codec = open_codec(schema)
-    both_ways = kind == "tagged" and sender is None
-    senders = codec.senders if both_ways else (_sender(codec, sender, hex),)
+    if sender is not None:
+        find_senders(codec.protocol, sender)
     complaints = Complaints()
     has_invalid = False
-    show = _printer(codec, format, show_sender=both_ways)
-    with _capture(file, hex, kind, codec, senders[0], complaints.add) as pieces:
-        for events in _batches(codec, senders, pieces):
+    show = _printer(codec, format, show_sender=sender is None and len(codec.senders) > 1)
+    with _capture(file, hex, kind, codec, sender, complaints.add) as pieces:
+        for events in _batches(codec, sender, pieces):
             for event in events:
                 has_invalid = has_invalid or event.kind == "invalid"
                 show(event)
@@ -84,13 +84,6 @@ def decode(  # noqa: PLR0913 - each option is one argument
 
 
 # --- in -------------------------------------------------------------------------------------------
-
-
-def _sender(codec: Codec, name: str | None, text: str | None) -> str:
-    """Return who sent the bytes; those of a text are all there, and may tell it."""
-    if text is None:
-        return codec.sender_of_bytes(name)
-    return codec.sender_of_frames(name, parse_hex(text))
 
 
 def _input_format(given: InputFormat, *, tagged: bool, has_text: bool) -> InputFormat:
@@ -105,34 +98,41 @@ def _input_format(given: InputFormat, *, tagged: bool, has_text: bool) -> InputF
 
 @contextmanager
 def _capture(
-    file: Path, text: str | None, kind: InputFormat, codec: Codec, sender: str, complain: Complain
+    file: Path,
+    text: str | None,
+    kind: InputFormat,
+    codec: Codec,
+    sender: str | None,
+    complain: Complain,
 ) -> Iterator[Iterable[Piece]]:
     """Open what is to be decoded. It is from `sender`, unless its lines are tagged."""
+    by = sender or ""
     if text is not None and file != STANDARD_INPUT:
         raise UsageError(f"there are two captures: {file} and --hex")
     if text is not None:
-        yield [Piece(sender, parse_hex(text))]
+        yield [Piece(by, parse_hex(text))]
         return
     with opened(file) as pieces:
         match kind:
             case "raw":
-                yield raw_pieces(pieces, sender)
+                yield raw_pieces(pieces, by)
             case "hex":
-                yield hex_pieces(pieces, sender)
+                yield hex_pieces(pieces, by)
             case "tagged":
                 yield tagged_pieces(pieces, codec.senders, complain)
 
 
-def _batches(
-    codec: Codec, senders: Collection[str], pieces: Iterable[Piece]
-) -> Iterator[list[Any]]:
-    """Yield the events of each piece that is from one of the ``senders``."""
+def _batches(codec: Codec, sender: str | None, pieces: Iterable[Piece]) -> Iterator[list[Any]]:
+    """Yield the events of each piece: from one sender, or from all, each with its decoder.
+
+    A piece that names no sender may be from any.
+    """
     decoders: dict[str, Decoder[Any, Any]] = {}
     for piece in pieces:
-        if piece.sender not in senders:
+        if sender is not None and piece.sender != sender:
             continue
         if piece.sender not in decoders:
-            decoders[piece.sender] = codec.decoder(piece.sender)
+            decoders[piece.sender] = codec.decoder(piece.sender or None)
         yield decoders[piece.sender].feed(piece.data)
     for decoder in decoders.values():
         yield decoder.flush()

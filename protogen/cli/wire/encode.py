@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from protogen.cli.wire.codec import Codec
     from protogen.model.frame import Frame
     from protogen.model.messages import Message
+    from protogen.model.protocol import Sender
 
 EXAMPLE = "Example: protogen encode schemas/matty.yaml go speed=500 steer=-2.5deg"
 
@@ -53,6 +54,12 @@ def encode(
             help="Who sends it, where several can; with lines of JSON, only this sender's lines.",
         ),
     ] = None,
+    form: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME", help="The form of frame, where there are several. Default: that fits."
+        ),
+    ] = None,
 ) -> int:
     """Make a frame from values, or bytes from lines of JSON.
 
@@ -65,7 +72,7 @@ def encode(
     if message is None:
         _encode_lines(codec, sender, write)
     else:
-        write(_encode_message(codec, message, values or [], sender))
+        write(_encode_message(codec, message, values or [], sender, form))
     return CLEAN
 
 
@@ -80,7 +87,9 @@ def _write_hex(data: bytes) -> None:
 # --- one message ----------------------------------------------------------------------------------
 
 
-def _encode_message(codec: Codec, name: str, written: Iterable[str], sender: str | None) -> bytes:
+def _encode_message(
+    codec: Codec, name: str, written: Iterable[str], sender: str | None, form: str | None
+) -> bytes:
     from protogen.cli.schemas import find_message
     from protogen.cli.wire.hints import hint_at
     from protogen.cli.wire.values import raw_values, split_assignment, tree_of
@@ -88,40 +97,50 @@ def _encode_message(codec: Codec, name: str, written: Iterable[str], sender: str
     from protogen.runtime.errors import EncodeError
 
     message = find_message(codec.protocol, name)
-    by = _sender_of(codec, message, sender)
+    forms = _forms_of(codec, message, sender, form)
     given = [split_assignment(text) for text in written]
     fields = raw_values(message.plan.steps, tree_of(item for item in given if item[0][0] != "@"))
-    parts = _parts(codec.protocol.sender(by).frame, given)
+    parts = _parts([item.frame for item in forms], given)
     try:
-        spec = codec.runtime.sender(by)
-        kind = spec.named(name)
+        specs = [codec.runtime.sender(item.name) for item in forms]
+        kind = specs[0].named(name)
         assert kind is not None
-        return Encoder(spec).encode_next(kind.from_dict(fields), strict=True, **parts)
+        return Encoder(specs).encode_next(kind.from_dict(fields), strict=True, **parts)
     except EncodeError as error:
         raise UsageError(str(error), hint_at(message.plan.steps, fields, error.path)) from None
 
 
-def _sender_of(codec: Codec, message: Message, name: str | None) -> str:
-    from protogen.cli.schemas import find_sender
+def _forms_of(codec: Codec, message: Message, name: str | None, form: str | None) -> list[Sender]:
+    """Return who sends the message, in each form of frame that is asked for and carries it."""
+    from protogen.cli.schemas import check_known, find_senders
 
-    if name is not None and find_sender(codec.protocol, name).name not in message.senders:
+    found = codec.protocol.senders_of(message)
+    if name is not None:
+        found = tuple(item for item in find_senders(codec.protocol, name) if item.sends(message))
+    if not found:
         raise UsageError(f"{name} does not send `{message.name}`; {_all_of(message.senders)} does")
-    senders = [name] if name is not None else list(message.senders)
-    frames = [codec.protocol.sender(item).frame for item in senders]
-    if any(frame != frames[0] for frame in frames):
+    forms: dict[str, list[Sender]] = {}
+    for item in found:
+        forms.setdefault(item.endpoint, []).append(item)
+    frames = [[item.frame for item in own] for own in forms.values()]
+    if any(own != frames[0] for own in frames):
         text = f"`{message.name}` has several senders, and their frames differ"
-        raise UsageError(text, f"give --sender {_all_of(senders)}")
-    return senders[0]
+        raise UsageError(text, f"give --sender {_all_of(forms)}")
+    own = next(iter(forms.values()))
+    if form is not None:
+        known = [item.form for item in own if not item.is_only_form]
+        check_known("form of frame", [form], known, codec.protocol.name)
+    return [item for item in own if form in (None, item.form)]
 
 
 def _all_of(names: Iterable[str]) -> str:
     return " or ".join(names)
 
 
-def _parts(frame: Frame, given: Iterable[tuple[str, str]]) -> dict[str, int]:
+def _parts(frames: Iterable[Frame], given: Iterable[tuple[str, str]]) -> dict[str, int]:
     from protogen.problems import hint_for
 
-    names = [part.name for part in frame.caller_parts]
+    names = list(dict.fromkeys(part.name for frame in frames for part in frame.caller_parts))
     parts: dict[str, int] = {}
     for written, text in given:
         name = written.removeprefix("@")
@@ -145,18 +164,25 @@ def _number(name: str, text: str) -> int:
 
 
 def _encode_lines(codec: Codec, sender: str | None, write: Write) -> None:
-    from protogen.cli.schemas import find_sender
+    from protogen.cli.schemas import find_senders
     from protogen.cli.wire.capture import STANDARD_INPUT, opened
     from protogen.convert.inputs.text_lines import lines_of
 
-    if sender is not None:
-        find_sender(codec.protocol, sender)
+    chosen = None if sender is None else find_senders(codec.protocol, sender)
     if sys.stdin.isatty():
         raise UsageError("there is no message to encode", "name one, or pipe lines of JSON in")
     with opened(STANDARD_INPUT) as pieces:
         for number, line in _json_lines(lines_of(pieces)):
-            if sender is None or line.setdefault("sender", sender) == sender:
+            if chosen is None or _is_from(chosen, line):
                 write(_encode_line(codec, number, line))
+
+
+def _is_from(senders: Sequence[Sender], line: dict[str, Any]) -> bool:
+    """Return whether a line is from one of these; one that names no sender is from the first."""
+    if line.setdefault("sender", senders[0].endpoint) != senders[0].endpoint:
+        return False
+    form = line.get("form")
+    return form is None or any(form == item.form for item in senders)
 
 
 def _json_lines(lines: Iterable[str]) -> Iterator[tuple[int, dict[str, Any]]]:

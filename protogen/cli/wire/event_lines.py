@@ -10,14 +10,14 @@ from protogen.model.reading.readings import readings
 from protogen.runtime.values import as_dict
 
 if TYPE_CHECKING:
-    from protogen.model.protocol import Protocol
+    from protogen.model.protocol import Protocol, Sender
 
 Segment = tuple[str, str]
 """Text and its rich style."""
 
 _MOST_BYTES = 32
 """Bytes of a span without meaning that are shown."""
-_ORDER = ("offset", "size", "event", "message", "sender", "parts", "fields")
+_ORDER = ("offset", "size", "event", "message", "sender", "form", "parts", "fields")
 
 
 def json_line(event: Any) -> str:
@@ -33,12 +33,12 @@ class EventLines:
     def __init__(self, protocol: Protocol, *, show_sender: bool) -> None:
         self._plans = {message.name: message.plan for message in protocol.messages}
         self._caller_parts = {
-            sender.name: [part.name for part in sender.frame.caller_parts]
+            _key(sender): [part.name for part in sender.frame.caller_parts]
             for sender in protocol.senders
         }
         names = [*self._plans, "unknown", "invalid"]
         self._name_width = max(map(len, names))
-        self._sender_width = max(map(len, self._caller_parts)) if show_sender else 0
+        self._sender_width = max(map(len, protocol.sending)) if show_sender else 0
 
     def segments(self, event: Any) -> list[Segment]:
         """Return the line of an event, in pieces with their styles: offset, name, values."""
@@ -60,7 +60,7 @@ class EventLines:
     def _message(self, event: Any) -> Iterator[Segment]:
         name = event.message.NAME
         yield self._name(name, "bold cyan")
-        for part in self._caller_parts[event.sender]:
+        for part in self._caller_parts[event.sender, event.form]:
             yield from _value(f"@{part}", str(getattr(event.parts, part)))
         for field, text in readings(self._plans[name], event.message.to_dict()):
             yield from _value(field, text)
@@ -76,6 +76,11 @@ class EventLines:
         why = f"{event.reason}: {event.problem}" if event.problem else event.reason
         yield f" {why}", "red"
         yield f"  {_shortened(event.raw)}", ""
+
+
+def _key(sender: Sender) -> tuple[str, str]:
+    """Return endpoint and form as events name them."""
+    return sender.endpoint, "" if sender.is_only_form else sender.form
 
 
 def _value(name: str, text: str) -> Iterator[Segment]:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from protogen.cli.console import Cell
-    from protogen.model.protocol import Protocol
+    from protogen.model.protocol import Protocol, Sender
     from protogen.model.reading.annotate import Row
 
 EXAMPLE = "Example: protogen explain schemas/matty.yaml --sender esp --hex 55020141BC"
@@ -40,7 +40,7 @@ def explain(
 
     codec = open_codec(schema)
     data = parse_hex(_standard_input() if hex is None else hex)
-    decoder = codec.decoder(codec.sender_of_frames(sender, data))
+    decoder = codec.decoder(sender)
     out = console()
     if not data:
         out.print("no bytes")
@@ -63,7 +63,9 @@ def _print_event(out: Console, protocol: Protocol, event: Any) -> None:
 
 
 def _title(event: Any) -> Iterator[str]:
-    size = f"{event.size} byte{'' if event.size == 1 else 's'} from {event.sender}"
+    size = f"{event.size} byte{'' if event.size == 1 else 's'}"
+    if event.sender:
+        size = f"{size} from {event.sender}{f', {event.form}' if event.form else ''}"
     yield f"offset {event.offset}, {size}:"
     if event.kind == "message":
         yield f"message {event.message.NAME}"
@@ -75,19 +77,29 @@ def _title(event: Any) -> Iterator[str]:
 
 def _columns(protocol: Protocol, event: Any) -> tuple[list[str], list[list[Cell]]]:
     """Return heads and rows, without a column for unstuffed bytes where nothing is stuffed."""
-    rows = [cells for row in _rows(protocol, event) for cells in _lines(event.offset, row)]
-    if protocol.sender(event.sender).frame.transparency is not None:
+    sender = _sender(protocol, event)
+    rows = [cells for row in _rows(protocol, sender, event) for cells in _lines(event.offset, row)]
+    if sender.frame.transparency is not None:
         return list(_HEADS), rows
     heads = [head for head in _HEADS if head != "unstuffed"]
     return heads, [[*cells[:_UNSTUFFED], *cells[_UNSTUFFED + 1 :]] for cells in rows]
 
 
-def _rows(protocol: Protocol, event: Any) -> Sequence[Row]:
+def _sender(protocol: Protocol, event: Any) -> Sender:
+    """Return the sender of an event; of bytes that are no frame, one whose frames begin so."""
+    if event.kind != "invalid":
+        return protocol.sender(event.sender, event.form)
+    forms = protocol.forms(event.sender) if event.sender else protocol.senders
+    begun = (item for item in forms if event.raw.startswith(item.plan.start_bytes))
+    return next(begun, forms[0])
+
+
+def _rows(protocol: Protocol, sender: Sender, event: Any) -> Sequence[Row]:
     from protogen.model.reading.annotate import Row, annotate
 
     if event.kind == "invalid" and event.reason == "noise":
         return [Row(offset=0, wire=event.raw, bytes=b"", path="", type="", meaning="noise")]
-    rows = annotate(protocol, event.sender, event.raw)
+    rows = annotate(protocol, sender.name, event.raw)
     if event.kind == "invalid" and event.reason != "truncated":
         return [*rows[:-1], *map(_not_looked_at, rows[-1:])]
     return rows

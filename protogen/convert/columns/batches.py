@@ -17,7 +17,7 @@ from protogen.convert.inputs.chunks import Chunk, Clock
 from protogen.runtime.decoder import Decoder
 from protogen.runtime.framing.sender import SenderSpec
 
-_ORDER = ("offset", "size", "event", "message", "sender", "parts", "fields")
+_ORDER = ("offset", "size", "event", "message", "sender", "form", "parts", "fields")
 
 
 class Messages(msgspec.Struct, frozen=True):

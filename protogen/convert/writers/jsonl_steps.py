@@ -28,15 +28,19 @@ from protogen.native.print_steps import (
 
 def line_steps(schema: CaptureSchema) -> list[Steps]:
     """Steps for the rows of each message, then those of invalid bytes and unknown frames."""
-    sender = schema.sender
+    sender = {"sender": schema.sender, **({"form": schema.form} if schema.form else {})}
     tables = [list(_message(name, table, sender)) for name, table in schema.messages.items()]
-    return [*tables, list(_invalid(schema.invalid, sender)), list(_unknown(schema.unknown, sender))]
+    return [
+        *tables,
+        list(_invalid(schema.invalid, schema.sender)),
+        list(_unknown(schema.unknown, sender)),
+    ]
 
 
-def _message(name: str, table: TableSchema, sender: str) -> Iterator[Step]:
+def _message(name: str, table: TableSchema, sender: Mapping[str, str]) -> Iterator[Step]:
     assert table.message is not None
     places = places_of(table.columns)
-    yield from _start(places, {"event": "message", "message": name, "sender": sender})
+    yield from _start(places, {"event": "message", "message": name, **sender})
     yield from _parts(places)
     yield literal(', "fields": ')
     yield from _LineValues().members(table.message.fields, table.columns, Spot.row())
@@ -54,9 +58,9 @@ def _invalid(table: TableSchema, sender: str) -> Iterator[Step]:
     yield from _end()
 
 
-def _unknown(table: TableSchema, sender: str) -> Iterator[Step]:
+def _unknown(table: TableSchema, sender: Mapping[str, str]) -> Iterator[Step]:
     places = places_of(table.columns)
-    yield from _start(places, {"event": "unknown", "sender": sender})
+    yield from _start(places, {"event": "unknown", **sender})
     yield from _parts(places)
     yield literal(', "payload": "')
     yield hex_of(Source.PAYLOADS, places["payload_offset"], places["payload_size"])

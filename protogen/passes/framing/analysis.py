@@ -6,6 +6,7 @@ how large a frame can be. A schema whose receiver could not tell is a problem he
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 from protogen.model.frame import Cobs, Frame, PayloadPart
@@ -29,15 +30,28 @@ from protogen.passes.framing import framing_words
 from protogen.passes.framing.capacity import GREATEST_FRAME, amount, payload_range
 from protogen.passes.framing.delimiters import delimiters_of, judge_delimiters
 from protogen.passes.proofs import wire_sizes
+from protogen.passes.proofs.codewords import occurs
 from protogen.passes.proofs.undetected import undetected_errors
-from protogen.passes.proofs.wire_code import EVERY_BYTE, SEVEN_BITS, ByteSet, part_bytes, wire_bytes
+from protogen.passes.proofs.wire_code import (
+    EVERY_BYTE,
+    SEVEN_BITS,
+    ByteSet,
+    part_bytes,
+    segments,
+    wire_bytes,
+)
 
 
 def analyse_framing(context: Context, draft: Draft) -> None:
     """The framing of each sender."""
-    analyses = [_Analysis(context, draft, sender, frame) for sender, frame in draft.frames.items()]
+    analyses = [
+        _Analysis(context, draft, sender, draft.frames[sender])
+        for sender in draft.senders
+        if sender in draft.frames
+    ]
     judge_delimiters(context, [(item.sender, item.frame, item.delimiters) for item in analyses])
     for analysis in analyses:
+        analysis.others = [item for item in analyses if analysis.is_beside(item)]
         framing = analysis.framing()
         if framing is not None:
             draft.framings[analysis.sender] = framing
@@ -48,7 +62,8 @@ class _Analysis:
 
     def __init__(self, context: Context, draft: Draft, sender: str, frame: Frame) -> None:
         self._context = context
-        self._key = context.frame_key(sender)
+        self._written = context.frames[sender]
+        self._loc = self._written.loc
         self._messages = draft.sent_by(sender)
         self._too_large = any(message.name in draft.too_large for message in self._messages)
         self._overloads = draft.overloads[sender]
@@ -57,6 +72,12 @@ class _Analysis:
         self.frame = frame
         self.delimiters = delimiters_of(frame, self._payload)
         self._stated = payload_range(frame)
+        self.others: Sequence[_Analysis] = ()
+        """Other forms of the endpoint's frames."""
+
+    def is_beside(self, other: _Analysis) -> bool:
+        """True if the other is another form of the same endpoint's frames."""
+        return other is not self and other._written.endpoint == self._written.endpoint
 
     def framing(self) -> Framing | None:
         """The framing, or None where a receiver could not tell."""
@@ -88,7 +109,7 @@ class _Analysis:
             return Anywhere()
         self._context.error_at_key(
             "PG146",
-            ("frame", self._key),
+            self._loc,
             f"nothing tells a receiver where a frame of {self.sender} starts",
             "a frame needs a literal, a first byte with a `range` of its own, or at least a "
             "checksum that is always there",
@@ -105,7 +126,7 @@ class _Analysis:
         or a checksum. A set that holds all of them tells nothing.
         """
         first = self.frame.parts[0]
-        item = self._context.syntax.frame[self._key][first.name]
+        item = self._written.parts[first.name]
         if item.range is None or first.name in self.frame.stuffed:
             return None
         values = part_bytes(first, self._payload)[0]
@@ -125,7 +146,7 @@ class _Analysis:
             return True
         if not set(self.frame.identity) <= set(self.frame.head):
             text = "the identity comes behind the payload, and nothing else tells where it ends"
-            self._context.error_at_key("PG145", ("frame", self._key), text)
+            self._context.error_at_key("PG145", self._loc, text)
             return False
         before = self._context.tally.errors
         self._messages_end()
@@ -183,7 +204,7 @@ class _Analysis:
         if behind and any(message.sizes.fixed is None for message in self._messages):
             words = f"nothing tells where the payload ends and the stuffed `{transparency.first}`"
             hint = "give the frame a length, stuff the payload, too, or send it unstuffed"
-            place = ("frame", self._key, transparency.first)
+            place = (*self._loc, transparency.first)
             self._context.error_at_key("PG149", place, f"{words} begins", hint)
             return True
         rest = names[names.index(transparency.last) + 1 :]
@@ -192,7 +213,7 @@ class _Analysis:
         unclear = [name for name in rest if name not in ends]
         if unclear:
             text = f"nothing tells where the stuffed parts end and `{unclear[0]}` begins"
-            self._context.error_at_key("PG149", ("frame", self._key, unclear[0]), text)
+            self._context.error_at_key("PG149", (*self._loc, unclear[0]), text)
         return bool(unclear)
 
     # -- results ------------------------------------------------------------------------------
@@ -207,10 +228,13 @@ class _Analysis:
                 return None  # Which was said of the message.
             text = f"a frame of {self.sender} can have {amount(greatest)} bytes; "
             text = f"{text}at most 1 MiB is allowed"
-            self._context.error_at_key("PG122", ("frame", self._key), text)
+            self._context.error_at_key("PG122", self._loc, text)
             return None
         per_message = tuple(self._message(wire, message) for message in self._messages)
         synchronising, why = framing_words.synchronisation(frame, start, end)
+        holder = next((item for item in self.others if item.can_hold(start)), None)
+        if synchronising and holder is not None:
+            synchronising, why = False, framing_words.held_by(frame, holder._written.form)
         return Framing(
             start=start,
             end=end,
@@ -227,6 +251,15 @@ class _Analysis:
             undetected=undetected_errors(frame, start, end, self._messages, self._payload),
             messages=per_message,
         )
+
+    def can_hold(self, start: Start) -> bool:
+        """True if the start of another form's frame may stand in these."""
+        if isinstance(start, StartLiteral):
+            stretches = segments(self.frame, self._payload, ())
+            return occurs(start.bytes, b"", stretches, b"") is not None
+        used = (used for _, used in wire_bytes(self.frame, self._payload))
+        values = range(start.least, start.greatest + 1) if isinstance(start, StartSet) else ()
+        return not frozenset().union(*used).isdisjoint(values)
 
     def _payload_sizes(self) -> SizeSet:
         if self._stated is not None:

@@ -55,7 +55,7 @@ def judge_delimiters(context: Context, senders: Iterable[tuple[str, Frame, Delim
     """Report what is not protected and not accepted; senders of one frame are judged together."""
     alike: dict[Loc, list[Delimiter]] = defaultdict(list)
     for sender, frame, found in senders:
-        loc: Loc = ("frame", context.frame_key(sender))
+        loc = context.frames[sender].loc
         for delimiter in filter(None, (found.head, found.tail)):
             alike[(*loc, delimiter.parts[0].name)].append(delimiter)
         _needless_inside(context, frame, found, loc)

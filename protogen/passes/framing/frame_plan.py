@@ -90,7 +90,7 @@ class _Planner:
         self._unique_start = isinstance(start, StartLiteral | StartSet) and start.protected
         self._end_bytes = b"" if end is None else end.bytes
         self._unique_end = end is not None and end.protected
-        self._shares = bool(self._start_bytes) and self._start_bytes == self._end_bytes
+        self._shares = self._unique_end and self._start_bytes == self._end_bytes
         self._names = [part.name for part in frame.parts]
         self._end_literals = () if end is None else tail_literals(frame)
         self._content = frame.parts[: len(frame.parts) - len(self._end_literals)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from protogen.copying import field_names, replace
 from protogen.model.checksums import (
@@ -35,11 +35,11 @@ from protogen.passes.draft import Draft
 from protogen.passes.framing.capacity import counted_size, payload_range
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.transparencies import transparency_of
+from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width, type_hint
 from protogen.problems import hint_for
 from protogen.schema.syntax.parts import CrcParameters, SumParameters, XorParameters
 from protogen.schema.syntax.parts import Part as PartSyntax
-from protogen.schema.syntax.protocol import ALL_SENDERS
 
 PAYLOAD = "payload"
 
@@ -57,24 +57,26 @@ _COMMON_KEYS = frozenset({"doc", "source"})
 
 def resolve_frames(context: Context, draft: Draft) -> None:
     """One frame for each sender; frames that nobody sends are checked as well."""
-    written = context.syntax.frame
     for sender in draft.senders:
         frame = _frame_of(context, sender)
         if frame is not None:
             draft.frames[sender] = frame
-    known = {*context.syntax.endpoints, *(() if draft.senders else (ALL_SENDERS,))}
-    for key in dict.fromkeys((*written, *context.syntax.transparency)):
-        idle = key in known and key not in draft.senders
-        if idle and (key in written or ALL_SENDERS in written):
-            FrameBuilder(context, key).frame()
+    sent = [_places(context.frames[sender]) for sender in draft.senders if sender in context.frames]
+    for written in context.frames.values():
+        if _places(written) not in sent:
+            FrameBuilder(context, written).frame()
+
+
+def _places(written: WrittenFrame) -> tuple[Loc, Loc]:
+    """The places where a frame and its transparency are written."""
+    return written.loc, written.transparency_loc
 
 
 def _frame_of(context: Context, sender: str) -> Frame | None:
-    written = context.syntax.frame
-    if sender in written or ALL_SENDERS in written:
-        return FrameBuilder(context, sender).frame()
+    if sender in context.frames:
+        return FrameBuilder(context, context.frames[sender]).frame()
     # A key that is no endpoint is most likely this sender's, misspelled; that was reported.
-    if written.keys() <= context.syntax.endpoints.keys():
+    if context.syntax.frame.keys() <= context.syntax.endpoints.keys():
         text = f"`{sender}` sends messages but has no frame"
         context.error_at_key("PG157", ("frame",), text)
     return None
@@ -83,14 +85,13 @@ def _frame_of(context: Context, sender: str) -> Frame | None:
 class FrameBuilder:
     """Resolves the frame of one sender."""
 
-    def __init__(self, context: Context, sender: str) -> None:
+    def __init__(self, context: Context, written: WrittenFrame) -> None:
         self._context = context
-        self._sender = sender
-        key = context.frame_key(sender)
-        self._loc: Loc = ("frame", key)
-        self._syntax: Mapping[str, PartSyntax] = context.syntax.frame[key]
+        self._written = written
+        self._loc = written.loc
+        self._syntax = written.parts
         self._names = list(self._syntax)
-        self._layout = Layout(context.syntax.byte_bits, context.byte_order(sender))
+        self._layout = Layout(context.syntax.byte_bits, context.byte_order(written.endpoint))
         self._replaced = 0
         """Errors of checksums that another one stands for."""
 
@@ -101,7 +102,7 @@ class FrameBuilder:
         if PAYLOAD not in self._syntax:
             text = "the frame has no part called `payload`"
             self._context.error_at_key("PG130", self._loc, text)
-        transparency = transparency_of(self._context, self._sender, self._syntax)
+        transparency = transparency_of(self._context, self._written)
         self._one_length(parts)
         before += self._replaced
         if self._context.tally.errors > before or self._loc in self._context.doubtful:

@@ -64,6 +64,11 @@ def synchronisation(frame: Frame, start: Start, end: End | None) -> tuple[bool, 
     return False, f"the start can occur in the data; {_checked(frame)}"
 
 
+def held_by(frame: Frame, form: str) -> str:
+    """Sentence on a start that frames of another form can hold."""
+    return f"the start can occur in frames of the form `{form}`; {_checked(frame)}"
+
+
 def _helped(frame: Frame) -> str:
     return ", when the checksum has rejected what it read until then" if frame.checksums else ""
 

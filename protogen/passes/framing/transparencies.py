@@ -10,11 +10,11 @@ from protogen.model.frame import Base16, Cobs, Encoding, Escape, Substitution, T
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.part_runs import written_out
+from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.proofs.codewords import ambiguity, prefix_clash
 from protogen.passes.proofs.wire_code import code_of
 from protogen.schema.syntax.parts import EscapeSyntax, TransparencySyntax
 from protogen.schema.syntax.parts import Part as PartSyntax
-from protogen.schema.syntax.protocol import ALL_SENDERS
 
 SLIP = Substitution(table=((0xC0, b"\xdb\xdc"), (0xDB, b"\xdb\xdd")))
 """RFC 1055: END and ESC, each behind ESC with a byte of its own."""
@@ -25,14 +25,12 @@ HDLC = Escape(byte=0x7D, of=(0x7D, 0x7E), xor=0x20)
 _KINDS = ("substitute", "escape", "encoding", "preset")
 
 
-def transparency_of(
-    context: Context, sender: str, parts: Mapping[str, PartSyntax]
-) -> Transparency | None:
-    """The transparency of a sender's frame, which has these parts."""
-    written = context.syntax.transparency
-    key = sender if sender in written else ALL_SENDERS
-    item = written.get(key)
-    return None if item is None else _Reader(context, ("transparency", key), item).read(parts)
+def transparency_of(context: Context, written: WrittenFrame) -> Transparency | None:
+    """The transparency of a frame."""
+    item = written.transparency
+    if item is None:
+        return None
+    return _Reader(context, written.transparency_loc, item).read(written.parts)
 
 
 class _Reader:
@@ -122,16 +120,16 @@ def _between_literals(parts: Mapping[str, PartSyntax]) -> tuple[str, ...]:
 
 def check_codes(context: Context, draft: Draft) -> None:
     """Two inputs never give one output, and a receiver can decode at once."""
-    checked: set[str] = set()
+    checked: set[Loc] = set()
     for sender, frame in draft.frames.items():
-        key = sender if sender in context.syntax.transparency else ""
-        if frame.transparency is None or key in checked:
+        loc = context.frames[sender].transparency_loc
+        if frame.transparency is None or loc in checked:
             continue
-        checked.add(key)
+        checked.add(loc)
         code = code_of(frame.transparency.encoding)
         if code is not None:
             is_table = isinstance(frame.transparency.encoding, Substitution)
-            _check(context, code, ("transparency", key, "substitute" if is_table else "escape"))
+            _check(context, code, (*loc, "substitute" if is_table else "escape"))
 
 
 def _check(context: Context, code: Mapping[int, bytes], loc: Loc) -> None:

@@ -25,16 +25,43 @@ DATA = "data"
 def resolve_messages(context: Context, draft: Draft) -> None:
     """Fields, sizes and identity of each message whose senders all have a frame."""
     builder = FieldBuilder(context, draft.named)
+    frames = {name: _frames_of(context, draft, name) for name in context.syntax.messages}
     begun = [
-        _Resolution(context, name, syntax, {item: draft.frames[item] for item in syntax.from_})
+        _Resolution(context, name, syntax, frames[name])
         for name, syntax in context.syntax.messages.items()
-        if draft.frames.keys() >= set(syntax.from_)
+        if frames[name]
     ]
     for resolution in begun:
         resolution.resolve_fields(builder)
     draft.used_types = builder.followed
     for resolution in begun:
         resolution.add_to(draft)
+    draft.senders = tuple(sender for sender in draft.senders if draft.carried[sender])
+
+
+def _frames_of(context: Context, draft: Draft, name: str) -> dict[str, Frame]:
+    """The frames that carry a message, by sender; none where one is not known."""
+    written = context.syntax.messages[name]
+    senders = [sender for sender in draft.senders if name in draft.carried[sender]]
+    reached = {context.frames[sender].endpoint for sender in senders if sender in context.frames}
+    left_out = [endpoint for endpoint in written.from_ if endpoint not in reached]
+    if context.syntax.forms is not None:
+        _report_uncarried(context, name, [e for e in left_out if e in context.syntax.endpoints])
+    if left_out or not draft.frames.keys() >= set(senders):
+        return {}
+    return {sender: draft.frames[sender] for sender in senders}
+
+
+def _report_uncarried(context: Context, name: str, endpoints: Sequence[str]) -> None:
+    """Report each endpoint that has no form of frame for a message which it sends."""
+    forms = context.syntax.forms or {}
+    if not forms.keys() >= set(context.syntax.messages[name].forms or ()):
+        return  # Which is reported: there is no such form.
+    for endpoint in endpoints:
+        own = [item.form for item in context.frames.values() if item.endpoint == endpoint]
+        text = f"no form of frame carries `{name}` from {endpoint}"
+        hint = f"the forms of {endpoint} are {', '.join(own)}" if own else None
+        context.error_at_key("PG172", ("messages", name), text, hint)
 
 
 class _Resolution:
@@ -71,6 +98,7 @@ class _Resolution:
         self._fields = draft.named.settled(self._fields)
         identity = self._identity()
         sizes = self._sizes(draft)
+        self._leave_out(draft, sizes)
         if identity is None:
             draft.unidentified.add(self._name)
         draft.messages[self._name] = Message(
@@ -78,6 +106,7 @@ class _Resolution:
             title=syntax.title or self._name,
             summary=syntax.summary or "",
             senders=syntax.from_,
+            forms=syntax.forms or (),
             identity=identity or (),
             fields=self._fields,
             sizes=sizes,
@@ -136,8 +165,9 @@ class _Resolution:
 
     def _sizes(self, draft: Draft) -> SizeSet:
         sizes = self._stated_sizes()
-        for sender, frame in self._frames.items():
-            self._fits(sizes, sender, frame)
+        if self._sound:
+            for endpoint in self._syntax.from_:
+                self._fits(sizes, endpoint)
         sizes = self._sendable(sizes)
         if sizes.greatest > GREATEST_FRAME:
             text = f"the payload can have {amount(sizes.greatest)} bytes; a frame is at most 1 MiB"
@@ -145,6 +175,14 @@ class _Resolution:
             draft.too_large.add(self._name)
             return sizes.within(0, GREATEST_FRAME) or SizeSet.exactly(0)
         return sizes
+
+    def _leave_out(self, draft: Draft, sizes: SizeSet) -> None:
+        """Leave the message to the other forms of frame where the length of one can't say it."""
+        if self._context.syntax.forms is None:
+            return
+        for sender, stated in zip(self._frames, self._stated, strict=True):
+            if stated is not None and not stated.meets(sizes):
+                draft.carried[sender] -= {self._name}
 
     def _greatest(self) -> Loc:
         """The place of what makes the payload as long as it can be."""
@@ -175,25 +213,32 @@ class _Resolution:
         low = min(allowed.least for allowed in known)
         return sizes.within(low, max(allowed.greatest for allowed in known)) or sizes
 
-    def _fits(self, sizes: SizeSet, sender: str, frame: Frame) -> None:
-        """Check that the length part can state all sizes that the schema insists on."""
-        allowed = payload_range(frame)
-        if frame.length is None or allowed is None or not self._sound:
+    def _fits(self, sizes: SizeSet, endpoint: str) -> None:
+        """Check that a length part of an endpoint can state each size that the schema insists on.
+
+        Of several forms of frame, each size needs one.
+        """
+        written = self._context.frames
+        own = [frame for name, frame in self._frames.items() if written[name].endpoint == endpoint]
+        stated = [(frame.length, payload_range(frame)) for frame in own]
+        known = [(part, sizes) for part, sizes in stated if part is not None and sizes is not None]
+        if len(known) < len(own):
             return
-        length = f"`{frame.length.name}`"
+        largest, most = max(known, key=lambda item: item[1].greatest)
+        smallest, fewest = min(known, key=lambda item: item[1].least)
         greatest = max(greatest_stated(self._fields), sizes.least)
         least = self._least_unspecified() or least_stated(self._fields)
-        if greatest > allowed.greatest:
+        if greatest > most.greatest:
             self._context.error_at_key(
                 "PG137",
                 self._loc,
-                f"the payload can have {amount(greatest)} bytes, but {length} of {sender}'s "
-                f"frame can't say more than {allowed.greatest}",
+                f"the payload can have {amount(greatest)} bytes, but `{largest.name}` of "
+                f"{endpoint}'s frame can't say more than {most.greatest}",
                 "make the length part wider, or bound the message",
             )
-        elif least < allowed.least:
-            text = f"the payload can have {amount(least)} bytes, but {length} says at least "
-            self._context.error_at_key("PG148", self._loc, f"{text}{allowed.least}")
+        elif least < fewest.least:
+            text = f"the payload can have {amount(least)} bytes, but `{smallest.name}` says at "
+            self._context.error_at_key("PG148", self._loc, f"{text}least {fewest.least}")
 
     # -- identity -----------------------------------------------------------------------------
 

@@ -17,6 +17,7 @@ from protogen.model.messages import Contradiction, Example, Exchange, Message, S
 from protogen.model.types import Array, Field, Octets, Struct, Switch, Type, is_integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
+from protogen.passes.framing.capacity import head_literals
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.types.constants import named_raw_value
 from protogen.problems import hint_for
@@ -39,7 +40,7 @@ def attach_examples(context: Context, draft: Draft) -> None:
 
 def _content_known(context: Context) -> None:
     """Check the default of `content`: parts of some frame at least, examples or not."""
-    frames = [list(frame) for frame in context.syntax.frame.values()]
+    frames = [list(frame.parts) for frame in context.frames.values()]
     names = dict.fromkeys(name for frame in frames for name in frame)
     loc: Loc = ("content_covers",)
     for item in context.syntax.content_covers or ():
@@ -64,8 +65,11 @@ def _example(
         text = "an example has either `frame` (all bytes) or `content`"
         context.error_at_key("PG162", loc, text)
         return None
-    sender = _sender(context, message, item, loc)
-    if sender is None or sender not in draft.frames:
+    endpoint = _endpoint(context, message, item, loc)
+    if endpoint is None:
+        return None
+    sender = _sender(context, draft, message.name, endpoint, item, loc)
+    if sender is None:
         return None
     covers = None
     if item.frame is None:
@@ -91,7 +95,33 @@ def _example(
     )
 
 
-def _sender(context: Context, message: Message, item: ExampleSyntax, loc: Loc) -> str | None:
+def _sender(
+    context: Context, draft: Draft, message: str, endpoint: str, item: ExampleSyntax, loc: Loc
+) -> str | None:
+    """The endpoint in the form of the example's frame: the first that begins as it does."""
+    own = [
+        name
+        for name in draft.frames
+        if context.frames[name].endpoint == endpoint and message in draft.carried[name]
+    ]
+    if item.form is None:
+        begun = [name for name in own if _begins(draft.frames[name], item.frame)]
+        return next(iter((*begun, *own)), None)
+    chosen = next((name for name in own if context.frames[name].form == item.form), None)
+    if chosen is None and item.form in (context.syntax.forms or {}):
+        forms = ", ".join(context.frames[name].form for name in own)
+        text = f"`{item.form}` carries no `{message}` from {endpoint}"
+        context.error("PG162", (*loc, "form"), text, f"its forms of frame are {forms}")
+    return chosen
+
+
+def _begins(frame: Frame, data: bytes | None) -> bool:
+    """True if a frame can begin as these bytes do."""
+    literals = head_literals(frame)
+    return data is not None and data.startswith(b"".join(part.bytes for part in literals))
+
+
+def _endpoint(context: Context, message: Message, item: ExampleSyntax, loc: Loc) -> str | None:
     if item.sender is None:
         if len(message.senders) == 1:
             return message.senders[0]

@@ -28,6 +28,9 @@ def check_names(context: Context, draft: Draft) -> None:
             _usable(context, name, (key, name))
     for sender, frame in syntax.frame.items():
         _parts(context, frame, ("frame", sender))
+    for form, item in (syntax.forms or {}).items():
+        _usable_as_value(context, form, ("forms", form))
+        _parts(context, item.frame, ("forms", form, "frame"))
     for name, declared in syntax.types.items():
         if is_builtin(name):
             context.error_at_key("PG107", ("types", name), f"`{name}` is a built-in type")
@@ -37,8 +40,23 @@ def check_names(context: Context, draft: Draft) -> None:
             _fields(context, message.fields, ("messages", name, "fields"))
     if not syntax.messages:
         context.error("PG157", ("messages",), "the protocol has no messages")
-    sending = {sender for message in syntax.messages.values() for sender in message.from_}
-    draft.senders = tuple(name for name in syntax.endpoints if name in sending)
+    draft.carried = _carried(context)
+    draft.senders = tuple(name for name, messages in draft.carried.items() if messages)
+
+
+def _carried(context: Context) -> dict[str, frozenset[str]]:
+    """The messages that each sender's frame carries."""
+    messages = context.syntax.messages
+    if context.syntax.forms is not None:
+        frames = context.frames.items()
+        return {
+            sender: frozenset(name for name, item in messages.items() if frame.carries(item))
+            for sender, frame in frames
+        }
+    return {
+        endpoint: frozenset(name for name, item in messages.items() if endpoint in item.from_)
+        for endpoint in context.syntax.endpoints
+    }
 
 
 def _usable(context: Context, name: str, loc: Loc, *, at_value: bool = False) -> None:
@@ -50,7 +68,7 @@ def _usable(context: Context, name: str, loc: Loc, *, at_value: bool = False) ->
 
 
 def _usable_as_value(context: Context, name: str, loc: Loc) -> None:
-    """Names of values stand behind that of their enum in every language: `X_MODE_NONE`."""
+    """Names that stand behind another one in every language, as those of values: `X_MODE_NONE`."""
     if name in DIRECTIVES:
         _usable(context, name, loc)
 

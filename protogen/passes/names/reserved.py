@@ -34,11 +34,13 @@ def resolve_reserved(context: Context, draft: Draft) -> None:
 def _identity(
     context: Context, draft: Draft, loc: Loc, entry: IdentitySyntax
 ) -> ReservedIdentity | None:
-    if entry.from_ not in draft.frames:
+    own = [name for name in draft.frames if context.frames[name].endpoint == entry.from_]
+    if not own:
         return None
     reader = IdentityReader(context, loc, "the reserved identity")
-    identity = reader.read(entry.id, draft.frames[entry.from_])
-    for message in draft.sent_by(entry.from_):
+    identity = reader.read(entry.id, draft.frames[own[0]])
+    sent = {message.name: message for name in own for message in draft.sent_by(name)}
+    for message in sent.values():
         if message.identity == identity:
             text = f"the identity of `{message.name}` is reserved"
             note = (context.find(loc), "reserved here")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
 from protogen.problems.catalogue.fields import FIELD_CODES
+from protogen.problems.catalogue.forms import FORM_CODES
 from protogen.problems.catalogue.frames import FRAME_CODES
 from protogen.problems.catalogue.framing import FRAMING_CODES
 from protogen.problems.catalogue.keys_and_names import KEY_AND_NAME_CODES
@@ -14,5 +15,6 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *FIELD_CODES,
     *FRAME_CODES,
     *FRAMING_CODES,
+    *FORM_CODES,
     *MESSAGE_CODES,
 )

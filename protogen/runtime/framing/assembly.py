@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from itertools import groupby
 from typing import Any, Self
 
@@ -43,6 +44,16 @@ def encode_frame(
     if sender.frame.ambiguous_cut or sender.group(identity) is None:
         check_cut(sender, wire, payload)
     return wire
+
+
+def first_that_fits(
+    senders: Sequence[SenderSpec[Any, Any]], encode: Callable[[SenderSpec[Any, Any]], bytes]
+) -> bytes:
+    """The frame in the first form that can be made. Raises the EncodeError of the last."""
+    for sender in senders[:-1]:
+        with suppress(EncodeError):
+            return encode(sender)
+    return encode(senders[-1])
 
 
 def join_parts(

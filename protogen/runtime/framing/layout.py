@@ -77,10 +77,11 @@ class Layout:
         self.has_wire_checksum = any(part.over_wire for part in self.checksums)
         self.start = spec.start.value if isinstance(spec.start, StartLiteral) else b""
         self.end = b"" if spec.end is None else spec.end.value
-        self.shares_delimiter = bool(self.start) and self.start == self.end
+        is_unique = spec.end is not None and spec.end.protected
+        self.shares_delimiter = is_unique and self.start == self.end
         """True if the end of a frame may be the start of the next as well, as with SLIP's flag."""
         self.start_bytes = self._start_bytes()
-        """Bytes that complete a start. None where start and end are the same literal."""
+        """Bytes that complete a start. None where the same literal ends frames."""
         self.empty_frame = self._empty_frame()
         """A start and an end with nothing between them, which is never a frame."""
         self.empty_size = len(self.empty_frame)
@@ -92,12 +93,12 @@ class Layout:
         start = self.spec.start
         if isinstance(start, StartSet):
             return frozenset(range(start.least, start.greatest + 1))
-        return frozenset(self.start[-1:]) if self.start != self.end else frozenset()
+        return frozenset() if self.shares_delimiter else frozenset(self.start[-1:])
 
     def _empty_frame(self) -> bytes:
         if isinstance(self.spec.start, AfterEnd):
             return self.end
-        return self.start + self.end if self.start == self.end else b""
+        return self.start + self.end if self.shares_delimiter else b""
 
     def tail_size(self, payload: int) -> int:
         """Bytes behind a payload of that size."""

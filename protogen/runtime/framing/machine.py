@@ -37,6 +37,7 @@ class Candidate:
 
     def __init__(self, sender: SenderSpec[Any, Any], *, shares_start: bool = False) -> None:
         """With `shares_start`, the end of the frame before is also this one's start."""
+        self.sender = sender
         self._spec = sender.frame
         self._layout = sender.layout
         self._wire = bytearray()

@@ -78,6 +78,8 @@ class Prefix:
         self._mask = self._telling_bits()
         self._head_size = len(self._mask)
         is_sought = frame.end is not None and frame.end.protected
+        # An end that the data can hold is looked for only where no length tells its place.
+        self._sought = layout.end if is_sought or layout.length is None else b""
         sizes = range(len(layout.end) - 1, 0, -1) if is_sought else ()
         self._begun_ends = [layout.end[:size] for size in sizes]
         self._limits: dict[bytes, int] = {}
@@ -110,7 +112,7 @@ class Prefix:
 
     def _plain(self, codes: dict[bytes, bytes]) -> bytes:
         frame, layout = self._sender.frame, self._sender.layout
-        special = {*layout.end[:1], *b"".join(codes), *(code[0] for code in codes.values())}
+        special = {*self._sought[:1], *b"".join(codes), *(code[0] for code in codes.values())}
         if isinstance(frame.start, StartLiteral | StartSet) and frame.start.protected:
             special |= {*layout.start[:1]} or layout.start_bytes
         return bytes({*range(0x80 if frame.seven_bit else 0x100)} - special)
@@ -151,7 +153,9 @@ class Prefix:
         """
         layout = self._sender.layout
         first = len(layout.start)
-        if self._starts.find(wire, 1, len(wire)) > 0 or (layout.end and layout.end in wire[first:]):
+        if self._starts.find(wire, 1, len(wire)) > 0:
+            return None
+        if self._sought and self._sought in wire[first:]:
             return None
         held = next((len(end) for end in self._begun_ends if wire.endswith(end, first)), 0)
         own = wire[: len(wire) - held]

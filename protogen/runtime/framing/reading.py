@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from protogen.runtime.errors import DecodeError, PayloadFault
 from protogen.runtime.events import FrameEvent, frame_event
 from protogen.runtime.framing.frame import StartLiteral, StartSet
@@ -11,9 +13,26 @@ from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
 
 
 def read_frame(
+    senders: Sequence[SenderSpec[MessageT_co, PartsT_co]], data: bytes
+) -> FrameEvent[MessageT_co, PartsT_co]:
+    """The event of the frame that `data` is, in the first form that it has.
+
+    Raises DecodeError, at the byte that proves it; of several forms that of which most is there.
+    """
+    found: DecodeError | None = None
+    for sender in senders:
+        try:
+            return _read_as(sender, data)
+        except DecodeError as error:
+            if found is None or error.offset > found.offset:
+                found = error
+    assert found is not None
+    raise found
+
+
+def _read_as(
     sender: SenderSpec[MessageT_co, PartsT_co], data: bytes
 ) -> FrameEvent[MessageT_co, PartsT_co]:
-    """The event of the frame that `data` is. Raises DecodeError, at the byte that proves it."""
     if not may_start(sender.layout, data):
         raise DecodeError("noise", "no frame starts so")
     cut = _cut(sender, data)

@@ -63,9 +63,14 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         messages: tuple[type[MessageT_co], ...],
         encode_only: tuple[type[MessageT_co], ...] = (),
         cut: Cutter | None = None,
+        form: str = "",
     ) -> None:
-        """`frame` may be what makes the frame's description, when it is first needed."""
+        """`frame` may be what makes the frame's description, when it is first needed.
+
+        `form` names the form of its frames, where the endpoint has several.
+        """
         self.name = name
+        self.form = form
         self._frame = frame
         self.parts = parts
         self.messages = messages
@@ -92,8 +97,13 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
             groups[message.IDENTITY] = (*groups.get(message.IDENTITY, ()), message)
         return {key: IdentityGroup(value) for key, value in groups.items()}
 
+    @property
+    def key(self) -> str:
+        """The endpoint's name, with that of the form behind it where there are several."""
+        return f"{self.name}_{self.form}" if self.form else self.name
+
     def _compared(self) -> tuple[Any, ...]:
-        return self.name, self.frame, self.parts, self.messages, self.encode_only
+        return self.key, self.frame, self.parts, self.messages, self.encode_only
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, SenderSpec):
@@ -104,7 +114,7 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         return hash(self._compared())
 
     def __repr__(self) -> str:
-        return f"<what {self.name} sends: {', '.join(item.NAME for item in self.messages)}>"
+        return f"<what {self.key} sends: {', '.join(item.NAME for item in self.messages)}>"
 
     def group(self, identity: Identity) -> IdentityGroup[MessageT_co] | None:
         """The messages of an identity; None where it is unknown."""

@@ -20,6 +20,7 @@ from protogen.schema.syntax.fields import FieldRef
 from protogen.schema.syntax.names import (
     EndpointName,
     ExampleName,
+    FormName,
     Kind,
     PartName,
     Ref,
@@ -60,6 +61,9 @@ class Example(Syntax):
     sender: Annotated[Name, Ref(Kind.ENDPOINT)] | None = Field(
         None, description="Who sends it, where the message has several senders."
     )
+    form: FormName | None = Field(
+        None, description="The form of its frame, where several begin alike."
+    )
     values: ValuesByField | None = Field(
         None,
         description="Field values: raw numbers, enum names, lists, mappings for structs.",
@@ -75,22 +79,30 @@ class Example(Syntax):
     source: SourceRef | None = Field(None, description="Where it is printed.")
 
 
-def _listed(value: Any) -> Any:
-    listed = tuple(value) if isinstance(value, list | tuple) else (value,)
-    if not listed:
-        raise ValueError("expected an endpoint, or a list of endpoints")
-    names = [name for name in listed if isinstance(name, str)]
-    if len(set(names)) < len(names):
-        raise ValueError("an endpoint stands here twice")
-    return listed
+_Names = Annotated[list[Name], Field(min_length=1, json_schema_extra={"uniqueItems": True})]
 
 
-_Endpoints = Annotated[list[Name], Field(min_length=1, json_schema_extra={"uniqueItems": True})]
+def _one_or_several(thing: str) -> BeforeValidator:
+    """Let one name stand for a list of it; `thing` says, with its article, what has the name."""
+    word = thing.rsplit(maxsplit=1)[-1]
 
-Senders = Annotated[
-    tuple[EndpointName, ...], BeforeValidator(_listed, json_schema_input_type=Name | _Endpoints)
-]
+    def listed(value: Any) -> Any:
+        found = tuple(value) if isinstance(value, list | tuple) else (value,)
+        if not found:
+            raise ValueError(f"expected {thing}, or a list of {word}s")
+        names = [name for name in found if isinstance(name, str)]
+        if len(set(names)) < len(names):
+            raise ValueError(f"{thing} stands here twice")
+        return found
+
+    return BeforeValidator(listed, json_schema_input_type=Name | _Names)
+
+
+Senders = Annotated[tuple[EndpointName, ...], _one_or_several("an endpoint")]
 """One endpoint or several."""
+
+Forms = Annotated[tuple[FormName, ...], _one_or_several("a form")]
+"""One form of frame or several."""
 
 
 def _to_identity(value: Any) -> Any:
@@ -119,6 +131,9 @@ class MessageSyntax(Syntax):
         description="Identity: a number or character, or one for each identity part.",
     )
     from_: Senders = Field(alias="from", description="The endpoint that sends it, or a list.")
+    forms: Forms | None = Field(
+        None, description="The forms of frame that carry it, where not all of its sender's do."
+    )
     title: Text | None = Field(None, description="Name of the message in the document.")
     summary: Text | None = Field(None, description="One line that says what the message is.")
     doc: Text | None = Field(None, description="What a reader should know.")

@@ -24,6 +24,7 @@ class Kind(Enum):
     VALUE = "value"
     MESSAGE = "message"
     EXAMPLE = "example"
+    FORM = "form"
     DECISION = "decision"
 
 
@@ -65,6 +66,9 @@ TypeName = Annotated[Text, written_as(TypeForm), Ref(Kind.TYPE, missing="PG104")
 
 FieldName = Annotated[Name, Ref(Kind.FIELD)]
 """A field beside this one, or around it."""
+
+FormName = Annotated[Name, Ref(Kind.FORM, missing="PG170")]
+"""A form of frame."""
 
 ExampleName = Annotated[Name, Ref(Kind.EXAMPLE, of="message", missing="PG164")]
 """An example of the message that the key beside it names."""

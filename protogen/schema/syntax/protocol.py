@@ -22,7 +22,13 @@ from protogen.schema.syntax.base import (
 )
 from protogen.schema.syntax.fields import FieldRef
 from protogen.schema.syntax.forms import Form, keys_of, models_inside
-from protogen.schema.syntax.messages import Exchange, Identity, MessageSyntax, Overload
+from protogen.schema.syntax.messages import (
+    Exchange,
+    Identity,
+    MessageSyntax,
+    Overload,
+    Senders,
+)
 from protogen.schema.syntax.names import (
     BySender,
     EndpointName,
@@ -111,6 +117,29 @@ Frame = Annotated[dict[Name, Part], Field(max_length=64)]
 
 _FrameForm = Annotated[Frame, Field(json_schema_extra={"required": ["payload"]})]
 
+
+class FrameForm(Syntax):
+    """One of several forms of frame that are on one line."""
+
+    from_: Senders | None = Field(
+        None, alias="from", description="The endpoints that send it; without it all of them."
+    )
+    title: Text | None = Field(None, description="Title for people.")
+    doc: Text | None = Field(None, description="What a reader should know.")
+    source: SourceRef | None = Field(None, description="Where it is written down.")
+    frame: Annotated[dict[Name, Part], Field(max_length=64), written_as(_FrameForm)] = Field(
+        description="The parts of a frame in wire order."
+    )
+    transparency: TransparencyRef | None = Field(
+        None, description="What keeps delimiters out of the frame."
+    )
+    behind: Annotated[Name, Ref(Kind.DECISION, missing="PG143")] | None = Field(
+        None,
+        description="The decision that accepts that bytes can be a frame of this form and of one "
+        "above, which then wins.",
+    )
+
+
 ALL_SENDERS = ""
 """Key of what is written once for every sender."""
 
@@ -174,6 +203,11 @@ class ProtocolSyntax(Syntax):
     ] = Field(
         description="The parts of a frame in wire order; one frame for all, or one per sender."
     )
+    forms: Annotated[dict[Name, FrameForm], Field(min_length=1, max_length=16)] | None = Field(
+        None,
+        description="Several forms of frame on one line, instead of `frame`: an encoder takes the "
+        "first that fits, a decoder all of them.",
+    )
     transparency: Annotated[
         dict[SenderKey, TransparencyRef],
         written_as(TransparencyRef | dict[Name, TransparencyRef]),
@@ -211,6 +245,8 @@ class ProtocolSyntax(Syntax):
     def _split_by_sender(cls, data: Any) -> Any:
         if not isinstance(data, dict):
             return data
+        if data.get("forms") is not None:
+            data = {"frame": {}, **data}
         shared = (
             key for key in _MARKS if data.get(key) is not None and not is_by_sender(data, key)
         )

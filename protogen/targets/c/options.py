@@ -7,7 +7,7 @@ from typing import Literal, get_args
 import msgspec
 
 from protogen.model.messages import Message
-from protogen.model.protocol import Protocol
+from protogen.model.protocol import Protocol, Sender
 
 Style = Literal["split", "single"]
 Events = Literal["all", "messages"]
@@ -25,15 +25,20 @@ class COptions(msgspec.Struct, frozen=True, kw_only=True):
     only: tuple[str, ...] | None = None
     """The messages to print."""
     senders: tuple[str, ...] | None = None
-    """The endpoints whose messages are printed."""
+    """The endpoints, or single forms of them, whose messages are printed."""
     stubs: bool = False
     """True to make a source with an empty body for each handler, where there is none."""
 
     def chosen(self, protocol: Protocol) -> tuple[Message, ...]:
         """The messages to print, in the schema's order."""
-        return tuple(message for message in protocol.messages if self._is_chosen(message))
+        taken = [sender for sender in protocol.senders if self.takes(sender)]
+        return tuple(
+            message
+            for message in protocol.messages
+            if (self.only is None or message.name in self.only)
+            and any(sender.sends(message) for sender in taken)
+        )
 
-    def _is_chosen(self, message: Message) -> bool:
-        if self.only is not None and message.name not in self.only:
-            return False
-        return self.senders is None or not set(self.senders).isdisjoint(message.senders)
+    def takes(self, sender: Sender) -> bool:
+        """True if a sender's messages may be printed: its endpoint, or this form, is chosen."""
+        return self.senders is None or not {sender.name, sender.endpoint}.isdisjoint(self.senders)

@@ -61,7 +61,7 @@ def _all_names(protocol: Protocol) -> Names:
             names.claim_tag(named_type(struct.name), struct.name)
             claim_fields(names, struct.name, struct.fields)
     for message in protocol.messages:
-        claim_all(names, message, [s for s in protocol.senders if s.name in message.senders])
+        claim_all(names, message, protocol.senders_of(message))
     hidden = names.others.things | dict(foreign_words())
     for name, thing in _members(protocol):
         names.members.enter(name, thing, hidden)
@@ -99,7 +99,7 @@ def _claim_own(names: Names) -> None:
 
 
 def _claim_sender(names: Names, sender: Sender) -> None:
-    thing = endpoint(sender.name)
+    thing = endpoint(sender.endpoint)
     for word in _TAGS_OF_A_SENDER.split():
         names.claim_tag(thing, sender.name, word)
     for word in _TYPES_OF_A_SENDER.split():

@@ -19,6 +19,8 @@ from protogen.targets.python.wrapping import docstring, method, one_of, remark, 
 
 _INDENT = 4
 _ENGINE = 'engine: _rt.Engine = "fast"'
+_ANY_SENDER = "Sender | None = None"
+"""Type and default of an argument that may be left out: any endpoint may have sent it."""
 
 
 class PartsClass(msgspec.Struct, frozen=True):
@@ -29,23 +31,31 @@ class PartsClass(msgspec.Struct, frozen=True):
     made: Constructor
 
 
+class EndpointView(msgspec.Struct, frozen=True):
+    """An endpoint that sends."""
+
+    name: str
+    union: str
+    """Name of the type of its messages."""
+    union_text: str
+    parts: str
+    """Type of the parts of its frames."""
+    decode_head: str
+    """Of the overload of `decode`."""
+
+
 class SenderView(msgspec.Struct, frozen=True):
-    """An endpoint as a sender."""
+    """An endpoint as a sender, in one form of its frames."""
 
     name: str
     title: str
     upper: str
-    union: str
-    """Name of the type of its messages."""
-    union_text: str
     parts: str
     frame: str
     """Name of the function that describes it."""
     frame_text: str
     """The declaration that it gives; empty where another sender has the same frame."""
     spec_text: str
-    decode_head: str
-    """Of the overload of `decode`."""
     messages: tuple[RecordClass, ...]
     """Messages that no sender before it sends."""
 
@@ -63,6 +73,9 @@ class Module(msgspec.Struct, frozen=True):
     structs: tuple[RecordClass, ...]
     parts: tuple[PartsClass, ...]
     senders: tuple[SenderView, ...]
+    endpoints: tuple[EndpointView, ...]
+    has_forms: bool
+    """True if an endpoint sends several forms of frame."""
     any_message: str
     any_parts: str
     literal: str
@@ -84,7 +97,8 @@ def view(protocol: Protocol) -> Module:
     """The module of a protocol."""
     parts = _parts_classes(protocol)
     senders = _senders(protocol, parts)
-    any_message = one_of(sender.union for sender in senders)
+    endpoints = _endpoints(protocol, parts)
+    any_message = one_of(endpoint.union for endpoint in endpoints)
     any_parts = one_of(sender.parts for sender in senders)
     arguments = _arguments(protocol)
     structs = tuple(map(classes.struct_class, classes_of(protocol)))
@@ -101,18 +115,20 @@ def view(protocol: Protocol) -> Module:
         structs=structs,
         parts=tuple(dict.fromkeys(parts.values())),
         senders=senders,
+        endpoints=endpoints,
+        has_forms=len(endpoints) < len(senders),
         any_message=any_message,
         any_parts=any_parts,
-        literal=f"_typing.Literal[{', '.join(text(sender.name) for sender in senders)}]",
+        literal=f"_typing.Literal[{', '.join(text(item.name) for item in endpoints)}]",
         protocol_text=_protocol_text(protocol, senders, any_message, any_parts),
         arguments=arguments,
         arguments_doc=_arguments_doc(protocol),
         counts=any(_counters(sender) for sender in protocol.senders),
         formats=_formats(senders),
         registry=_registry(protocol),
-        decoder_heads=_decoder_heads(senders, any_message, any_parts),
-        decode_stub=_decode_head("Sender", any_message, after=5),
-        decode_head=_decode_head("Sender", any_message, after=1),
+        decoder_heads=_decoder_heads(endpoints, any_message, any_parts),
+        decode_stub=_decode_head(_ANY_SENDER, any_message, after=5),
+        decode_head=_decode_head(_ANY_SENDER, any_message, after=1),
     )
 
 
@@ -198,7 +214,6 @@ def _arguments_doc(protocol: Protocol) -> str:
 def _senders(protocol: Protocol, parts: dict[str, PartsClass]) -> tuple[SenderView, ...]:
     views: list[SenderView] = []
     frame_names: dict[str, str] = {}
-    titles = {endpoint.name: endpoint.title for endpoint in protocol.endpoints}
     printed: set[str] = set()
     for sender in protocol.senders:
         frame_text = _frame(sender)
@@ -206,22 +221,15 @@ def _senders(protocol: Protocol, parts: dict[str, PartsClass]) -> tuple[SenderVi
         frame = frame_names.setdefault(frame_text, frame_name(sender.name))
         new = [message for message in sender.messages if message.name not in printed]
         printed.update(message.name for message in new)
-        messages = union_name(sender.name)
-        union_text = one_of(class_name(message.name) for message in sender.messages)
         views.append(
             SenderView(
                 name=sender.name,
-                title=titles[sender.name],
+                title=_title(sender),
                 upper=sender.name.upper(),
-                union=messages,
-                union_text=union(f"{messages} = ", union_text, 0),
                 parts=parts[sender.name].name,
                 frame=frame,
                 frame_text="" if known else frame_text,
-                spec_text=_sender_spec(sender, frame, parts[sender.name].name, messages),
-                decode_head=_decode_head(
-                    f"_typing.Literal[{text(sender.name)}]", messages, after=5
-                ),
+                spec_text=_sender_spec(sender, frame, parts[sender.name].name),
                 messages=tuple(
                     classes.message_class(message, _identity_words(sender, message))
                     for message in new
@@ -231,13 +239,38 @@ def _senders(protocol: Protocol, parts: dict[str, PartsClass]) -> tuple[SenderVi
     return tuple(views)
 
 
-def _decoder_heads(senders: tuple[SenderView, ...], message: str, parts: str) -> tuple[str, ...]:
+def _title(sender: Sender) -> str:
+    """Name of a sender in comments."""
+    return sender.endpoint if sender.is_only_form else f"{sender.endpoint}, {sender.form}"
+
+
+def _endpoints(protocol: Protocol, parts: dict[str, PartsClass]) -> tuple[EndpointView, ...]:
+    views: list[EndpointView] = []
+    for name in protocol.sending:
+        forms = protocol.forms(name)
+        sent = {message.name: None for sender in forms for message in sender.messages}
+        messages = union_name(name)
+        views.append(
+            EndpointView(
+                name=name,
+                union=messages,
+                union_text=union(f"{messages} = ", one_of(map(class_name, sent)), 0),
+                parts=one_of(parts[sender.name].name for sender in forms),
+                decode_head=_decode_head(f"_typing.Literal[{text(name)}]", messages, after=5),
+            )
+        )
+    return tuple(views)
+
+
+def _decoder_heads(
+    endpoints: tuple[EndpointView, ...], message: str, parts: str
+) -> tuple[str, ...]:
     """The heads of `Decoder.__init__`: overloads for each endpoint and for any, or the only one."""
-    if len(senders) == 1:
-        return (_decoder_head(message, parts, "Sender", ") -> None:"),)
-    heads = [(s.union, s.parts, f'_typing.Literal["{s.name}"]') for s in senders]
+    if len(endpoints) == 1:
+        return (_decoder_head(message, parts, _ANY_SENDER, ") -> None:"),)
+    heads = [(e.union, e.parts, f'_typing.Literal["{e.name}"]') for e in endpoints]
     return tuple(
-        _decoder_head(*head, ") -> None: ...") for head in [*heads, (message, parts, "Sender")]
+        _decoder_head(*head, ") -> None: ...") for head in [*heads, (message, parts, _ANY_SENDER)]
     )
 
 
@@ -288,17 +321,19 @@ def _unless(expression: str, default: str) -> str | None:
     return None if expression == default else expression
 
 
-def _sender_spec(sender: Sender, frame: str, parts: str, union: str) -> str:
-    name = f"{sender.name.upper()}_SENDER: _rt.SenderSpec[{union}, {parts}] = "
+def _sender_spec(sender: Sender, frame: str, parts: str) -> str:
+    messages = union_name(sender.endpoint)
+    name = f"{sender.name.upper()}_SENDER: _rt.SenderSpec[{messages}, {parts}] = "
     shown = {m.name: class_name(m.name) for m in sender.received}
     encode_only = [class_name(m.name) for m in sender.messages if m.name not in shown]
     expression = call(
         "_rt.SenderSpec",
-        text(sender.name),
+        text(sender.endpoint),
         frame,
         parts,
         messages=tuple_of(shown.values()),
         encode_only=tuple_of(encode_only) if encode_only else None,
+        form=None if sender.is_only_form else text(sender.form),
     )
     return name + wrapped(expression, len(name), 0, after=0)
 

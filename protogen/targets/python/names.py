@@ -54,11 +54,12 @@ def _table(own: str, used: Thing) -> NameTable:
 def _module(protocol: Protocol) -> NameTable:
     table = _table(_OWN, OWN)
     for sender in protocol.senders:
-        thing = endpoint(sender.name)
+        thing = endpoint(sender.endpoint)
         for word in (f"{sender.name.upper()}_SENDER", f"{sender.name.upper()}_FORMAT"):
             table.add(word, thing)
-        for word in (union_name(sender.name), parts_name(sender.name), frame_name(sender.name)):
+        for word in (union_name(sender.endpoint), parts_name(sender.name)):
             table.add(word, thing)
+        table.add(frame_name(sender.name), thing)
     types: tuple[Enum | Flags | Struct, ...] = (*protocol.enums, *protocol.flags, *protocol.structs)
     for item in types:
         table.add(class_name(item.name), named_type(item.name))
@@ -73,7 +74,8 @@ def _arguments(protocol: Protocol) -> NameTable:
     for sender in protocol.senders:
         for item in sender.frame.caller_parts:
             given.setdefault(item.name, part(sender.name, item.name))
-    table = _table(_ARGUMENTS, _USED)
+    has_forms = any(not sender.is_only_form for sender in protocol.senders)
+    table = _table(f"{_ARGUMENTS} form" if has_forms else _ARGUMENTS, _USED)
     for name, thing in given.items():
         table.add(name, thing)
     return table

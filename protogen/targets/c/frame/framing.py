@@ -145,13 +145,12 @@ def _message_frames(
         for decoder in decoders
     }
     for message in protocol.messages:
-        own = {frames[name].decoder.name: name for name in message.senders if name in frames}
+        names = [sender.name for sender in protocol.senders_of(message) if sender.name in frames]
+        own = {frames[name].decoder.name: name for name in names}
         for frame_name, name in own.items() if message.name in views else ():
             suffix = from_sender(frame_name) if len(own) > 1 else ""
             yield of_sender[name].view(message, views[message.name], suffix)
 
 
 def _is_chosen(sender: Sender, views: dict[str, MessageView], options: COptions) -> bool:
-    if options.senders is not None and sender.name not in options.senders:
-        return False
-    return any(message.name in views for message in sender.messages)
+    return options.takes(sender) and any(item.name in views for item in sender.messages)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from protogen.model.frame import IdentityPart
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
@@ -22,7 +24,7 @@ def claim_message(names: Names, item: Message) -> dict[str, str]:
     return called
 
 
-def claim_all(names: Names, item: Message, senders: list[Sender]) -> None:
+def claim_all(names: Names, item: Message, senders: Sequence[Sender]) -> None:
     """Every name that comes of a message, whatever is chosen to be printed."""
     thing = naming.message(item.name)
     others = [from_sender(sender.name) for sender in senders] if len(senders) > 1 else []

@@ -125,7 +125,7 @@ class MessagePrinter(msgspec.Struct, frozen=True):
 
     def senders_of(self, item: Message) -> list[Sender]:
         """Those of the message's senders that are printed."""
-        return [sender for sender in self.protocol.senders if sender.name in item.senders]
+        return list(self.protocol.senders_of(item))
 
 
 class _Codec:

@@ -13,9 +13,9 @@ from protogen.targets.markdown.frames.parts import (
     transparency_table,
     transparency_text,
 )
-from protogen.targets.markdown.pages.context import by_frame
+from protogen.targets.markdown.pages.context import by_frame, sender_code
 from protogen.targets.markdown.text.table import View
-from protogen.targets.markdown.text.words import capital, code, listed, plural, sentence
+from protogen.targets.markdown.text.words import capital, listed, plural, sentence
 
 Sentences = tuple[str, ...]
 
@@ -49,13 +49,13 @@ def _view(senders: Sequence[Sender], protocol: Protocol) -> View:
 def _titles(senders: Sequence[Sender], protocol: Protocol) -> str:
     if len(senders) == 1:
         return sender_title(senders[0], protocol)
-    return listed([code(sender.name) for sender in senders])
+    return listed([sender_code(sender) for sender in senders])
 
 
 def sender_title(sender: Sender, protocol: Protocol) -> str:
     """Return a sender's name and what it is."""
     titles = {endpoint.name: endpoint.title for endpoint in protocol.endpoints}
-    return f"{code(sender.name)}, {markdown(titles[sender.name])}"
+    return f"{sender_code(sender)}, {markdown(titles[sender.endpoint])}"
 
 
 def _shared_properties(senders: Sequence[Sender]) -> tuple[tuple[str, str], ...]:
@@ -72,7 +72,7 @@ def _merged(senders: Sequence[Sender], texts: Sequence[Sentences]) -> str:
     for sender, own in zip(senders, texts, strict=True):
         rest = [text for text in own if text not in common]
         if rest:
-            common.append(f"From {code(sender.name)}: {' '.join(rest)}")
+            common.append(f"From {sender_code(sender)}: {' '.join(rest)}")
     return " ".join(common)
 
 

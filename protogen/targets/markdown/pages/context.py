@@ -11,6 +11,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import NumberType
 from protogen.targets.markdown.fields.paths import named_fields
+from protogen.targets.markdown.text.words import code
 
 
 class Context(msgspec.Struct, frozen=True):
@@ -47,6 +48,12 @@ def _users(messages: Iterable[Message]) -> dict[str, list[NumberType]]:
             if integer and named:
                 users.setdefault(named.name, []).append(integer)
     return users
+
+
+def sender_code(sender: Sender) -> str:
+    """Return a sender's name, with the form of its frames where its endpoint has several."""
+    name = code(sender.endpoint)
+    return name if sender.is_only_form else f"{name} ({code(sender.form)})"
 
 
 def by_frame(senders: Iterable[Sender]) -> list[list[Sender]]:

@@ -11,7 +11,7 @@ from protogen.model.sizes import SizeSet
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.frames.framing import sender_title
 from protogen.targets.markdown.frames.layout import has_further_codes, is_stuffed, wire_scale
-from protogen.targets.markdown.pages.context import Context
+from protogen.targets.markdown.pages.context import Context, sender_code
 from protogen.targets.markdown.pages.message import identity_text, overload_text
 from protogen.targets.markdown.text.anchors import message_link
 from protogen.targets.markdown.text.table import View, table
@@ -22,7 +22,7 @@ def ordered(protocol: Protocol) -> Iterator[Message]:
     """Yield each message once: by its first sender, then by identity, as the indexes list them."""
     for sender in protocol.senders:
         for message in _by_identity(sender):
-            if message.senders[0] == sender.name:
+            if protocol.senders_of(message)[0] is sender:
                 yield message
 
 
@@ -55,10 +55,10 @@ def _row(message: Message, sender: Sender, context: Context) -> tuple[str, ...]:
 
 def counting(protocol: Protocol) -> tuple[str, ...]:
     """Say what the byte numbers of the messages count."""
-    texts = {_counting(sender): sender.name for sender in protocol.senders}
+    texts = {_counting(sender): sender_code(sender) for sender in protocol.senders}
     if len(texts) == 1:
         return tuple(texts)
-    return tuple(f"From {code(name)}: {text}" for text, name in texts.items())
+    return tuple(f"From {name}: {text}" for text, name in texts.items())
 
 
 def _counting(sender: Sender) -> str:
@@ -82,4 +82,4 @@ def overloads(protocol: Protocol) -> Iterator[str]:
     """Yield a line for each identity that several messages share."""
     for sender in protocol.senders:
         for overload in sender.overloads:
-            yield f"From {code(sender.name)}: {overload_text(overload)}"
+            yield f"From {sender_code(sender)}: {overload_text(overload)}"

@@ -17,12 +17,12 @@ from protogen.targets.markdown.fields.rows import message_table
 from protogen.targets.markdown.fields.values import Anchors
 from protogen.targets.markdown.frames.packet import message_diagram
 from protogen.targets.markdown.frames.parts import identity_value
-from protogen.targets.markdown.pages.context import Context, by_frame
+from protogen.targets.markdown.pages.context import Context, by_frame, sender_code
 from protogen.targets.markdown.pages.example import example_view
 from protogen.targets.markdown.text.anchors import decision_link, message_anchor, message_link
 from protogen.targets.markdown.text.origin import about_line, place, prose
 from protogen.targets.markdown.text.table import View
-from protogen.targets.markdown.text.words import code, listed, plural, rate, sentence
+from protogen.targets.markdown.text.words import listed, plural, rate, sentence
 
 
 def identity_text(frame: Frame, message: Message) -> str:
@@ -33,7 +33,7 @@ def identity_text(frame: Frame, message: Message) -> str:
 
 def message_view(context: Context, message: Message) -> View:
     """Return the section of a message."""
-    senders = [context.protocol.sender(name) for name in message.senders]
+    senders = context.protocol.senders_of(message)
     anchors = Anchors(message_anchor(message.name), context.shared)
     identity = identity_text(senders[0].frame, message)
     return {
@@ -64,8 +64,9 @@ def _summary(message: Message) -> str:
 
 def _facts(context: Context, message: Message) -> Iterator[str]:
     groups: dict[MessageFraming, list[str]] = {}
-    for name in message.senders:
-        groups.setdefault(context.framings[name, message.name], []).append(code(name))
+    for sender in context.protocol.senders_of(message):
+        framing = context.framings[sender.name, message.name]
+        groups.setdefault(framing, []).append(sender_code(sender))
     for framing, names in groups.items():
         yield f"From {listed(names)}"
         sizes = SizeSet.between(framing.least, framing.greatest)
@@ -118,7 +119,7 @@ def _layouts(senders: Iterable[Sender], message: Message, anchors: Anchors) -> I
     groups = by_frame(senders)
     for group in groups:
         frame = group[0].frame
-        names = [code(sender.name) for sender in group]
+        names = [sender_code(sender) for sender in group]
         yield {
             "caption": f"From {listed(names)}:" if len(groups) > 1 else "",
             "table": message_table(frame, message, anchors),

@@ -42,7 +42,7 @@ def _facts(protocol: Protocol) -> Iterator[tuple[str, str]]:
     """Yield labels and texts; a text can be empty."""
     yield "Extends", markdown(", ".join(protocol.files[1:]))
     yield "Document", _document(protocol)
-    yield "Senders", listed([code(sender.name) for sender in protocol.senders])
+    yield "Senders", listed([code(name) for name in protocol.sending])
     yield "Messages", str(len(protocol.messages))
 
 

@@ -31,7 +31,7 @@ def _step(index: int, step: Step, protocol: Protocol) -> tuple[str, ...]:
     message = protocol.message(step.message)
     examples = {example.name: example for example in message.examples}
     example = examples.get(step.example) if step.example else None
-    sender = example.sender if example else message.senders[0]
+    sender = protocol.sender(example.sender).endpoint if example else message.senders[0]
     shown = data = ""
     if example:
         shown = f"[{example.name}](#{example_anchor(message.name, example.name)})"
@@ -75,7 +75,7 @@ def reserved(protocol: Protocol) -> Table | None:
 
 
 def _reserved_identity(protocol: Protocol, item: ReservedIdentity) -> tuple[str, ...]:
-    parts = protocol.sender(item.sender).frame.identity
+    parts = protocol.forms(item.sender)[0].frame.identity
     named = (f"{part.name} 0x{value:02X}" for part, value in zip(parts, item.identity, strict=True))
     what = sentence(markdown(item.doc)) if item.doc else ""
     return f"identity, from {code(item.sender)}", code(", ".join(named)), what

@@ -61,7 +61,7 @@ def encoder(
     """
     lines = Lines(constants)
     if len(frames) == 1:
-        name = text(frames[0].sender.name)
+        name = text(frames[0].sender.endpoint)
         is_other = f"(sender is not None and sender != {name})"
         lines.refuse_if(f"module is not _ENCODERS or {is_other}")
         if is_of_one_size(message) and _goes_together(frames[0]):
@@ -72,12 +72,31 @@ def encoder(
     if len(frames) == 1:
         return _Framer(frames[0], of_caller, lines, message).body()
     values = [*map(str, message.identity), *encoder_arguments(of_caller)]
-    for frame in frames:
-        call = f"_frame_{frame.sender.name}({', '.join(['payload', *values])})"
-        with lines.block(f"if sender == {text(frame.sender.name)}:"):
-            lines.add(f"return {call}")
+    endpoints = dict.fromkeys(frame.sender.endpoint for frame in frames)
+    for endpoint in endpoints:
+        own = [frame for frame in frames if frame.sender.endpoint == endpoint]
+        is_meant = f"sender == {text(endpoint)}"
+        if len(endpoints) == 1:
+            is_meant = f"sender is None or {is_meant}"
+        with lines.block(f"if {is_meant}:"):
+            _first_that_fits(message, own, values, lines)
     lines.add("raise _fast.NeedsReference")
     return lines.text
+
+
+def _first_that_fits(
+    message: Message, frames: Sequence[EngineFrame], values: Sequence[str], lines: Lines
+) -> None:
+    """Return the frame of the first form whose length can say the payload's size."""
+    for frame in frames:
+        made = f"return _frame_{frame.sender.name}({', '.join(['payload', *values])})"
+        stated, sizes = frame.plan.payload, message.sizes
+        if frame is frames[-1] or frame.plan.length is None or stated.holds(sizes):
+            lines.add(made)
+            return
+        if stated.meets(sizes):
+            with lines.block(f"if {stated.least} <= len(payload) <= {stated.greatest}:"):
+                lines.add(made)
 
 
 def encoder_arguments(of_caller: tuple[str, ...]) -> list[str]:

@@ -42,6 +42,8 @@ class EngineSender(msgspec.Struct, frozen=True):
     head: Function | None
     kinds: str
     frame: Function | None
+    decodes: str
+    """Name of the endpoint whose frames are read one by one; empty where it has other forms."""
     shared: str
     """The delimiter that both ends and starts frames; empty where none does."""
 
@@ -184,9 +186,10 @@ def _arguments(*given: str, **named: str | None) -> str:
 
 
 def _writers(protocol: Protocol, of_caller: tuple[str, ...], codes: bool) -> str:
-    """The arguments of `add_writers`."""
+    """The arguments of `add_writers`: of one form of frame it is known where the payload lies."""
+    alone = [sender for sender in protocol.senders if sender.is_only_form]
     return _arguments(
-        tuple_of(f"{sender.name.upper()}_SENDER" for sender in protocol.senders),
+        tuple_of(f"{sender.name.upper()}_SENDER" for sender in alone),
         "_ENCODERS",
         tuple_of(map(text, of_caller)),
         *(["_CODES"] if codes else []),
@@ -203,7 +206,7 @@ def _encoder(
     message: Message, frames: list[EngineFrame], of_caller: tuple[str, ...], constants: Constants
 ) -> Function | None:
     """The function that makes a message's frames; None where only the reference does."""
-    own = [frame for frame in frames if frame.sender.name in message.senders]
+    own = [frame for frame in frames if frame.sender.sends(message)]
     if not all(frame.can_frame for frame in own):
         return None
     given = "".join(f", {name}: int | None" for name in framing.encoder_arguments(of_caller))
@@ -258,5 +261,6 @@ def _sender(frame: EngineFrame, of_caller: tuple[str, ...], constants: Constants
         head,
         kinds,
         made,
+        frame.sender.endpoint if frame.sender.is_only_form else "",
         literal(frame.plan.end_bytes) if frame.plan.shares_delimiter else "",
     )

@@ -1,0 +1,103 @@
+"""Check that the forms of frame on one line go together, and that a receiver tells them apart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+
+from protogen.model.frame import LengthPart, LiteralPart, PayloadPart
+from protogen.model.framing import AfterEnd, Framing, StartLiteral, StartSet
+from protogen.passes.context import Context
+from protogen.passes.draft import Draft
+from protogen.passes.proofs.wire_code import EVERY_BYTE, ByteSet, part_bytes
+
+_HELD = LiteralPart | LengthPart
+"""Parts of which a receiver takes no other values than the schema allows."""
+
+
+def check_forms(context: Context, draft: Draft) -> None:
+    """The forms of each endpoint, in pairs."""
+    if context.syntax.forms is None:
+        return
+    _alone(context)
+    needed: set[str] = set()
+    for endpoint in context.syntax.endpoints:
+        own = [name for name in draft.framings if context.frames[name].endpoint == endpoint]
+        if len(own) > 1 and _go_together(context, draft, own):
+            needed |= _told_apart(context, draft, own)
+    for name, form in context.syntax.forms.items():
+        if form.behind is not None and name not in needed and draft.framings:
+            text = f"frames of `{name}` begin like those of no form above, so there is nothing"
+            place = ("forms", name, "behind")
+            context.error("PG144", place, f"{text} to accept", "remove `behind`")
+
+
+def _alone(context: Context) -> None:
+    """With forms, frames and transparencies stand in these."""
+    for key, word in (("frame", "frames"), ("transparency", "transparencies")):
+        if any(getattr(context.syntax, key).values()):
+            text = f"a schema with `forms` has its {word} there"
+            context.error_at_key("PG171", (key,), text, f"move `{key}` into a form")
+
+
+def _go_together(context: Context, draft: Draft, names: Sequence[str]) -> bool:
+    """True if one search finds the starts of all forms."""
+    first = draft.framings[names[0]]
+    for name in names[1:]:
+        framing = draft.framings[name]
+        if _kind_of_start(framing) != _kind_of_start(first):
+            text = f"frames of `{context.frames[name].form}` are found in another way than those"
+            context.error_at_key(
+                "PG174",
+                context.frames[name].loc[:-1],
+                f"{text} of `{context.frames[names[0]].form}`",
+                "let each form begin with a literal, or with a first byte of a range of its own",
+            )
+            return False
+    return True
+
+
+def _kind_of_start(framing: Framing) -> object:
+    """What has to be the same in all forms."""
+    start, end = framing.start, framing.end
+    if isinstance(start, StartLiteral | StartSet):
+        unique = b"" if end is None or not end.protected else end.bytes
+        is_shared = isinstance(start, StartLiteral) and start.bytes == unique
+        return start if is_shared else StartLiteral
+    return end if isinstance(start, AfterEnd) else type(start)
+
+
+def _told_apart(context: Context, draft: Draft, names: Sequence[str]) -> set[str]:
+    """The forms that need a decision; one that has none is reported."""
+    needed: set[str] = set()
+    for above, below in combinations(names, 2):
+        if _are_distinct(draft, above, below):
+            continue
+        form, other = context.frames[below].form, context.frames[above].form
+        needed.add(form)
+        if context.frames[below].behind is None:
+            context.error_at_key(
+                "PG173",
+                ("forms", form),
+                f"nothing at its beginning tells a frame of `{form}` from one of `{other}`",
+                f"accept that `{other}` wins: `behind:` and a decision's name",
+            )
+    return needed
+
+
+def _are_distinct(draft: Draft, one: str, other: str) -> bool:
+    """True if some byte in front of stuffing and payload is never the same in both frames."""
+    pairs = zip(_beginning(draft, one), _beginning(draft, other), strict=False)
+    return any(first.isdisjoint(second) for first, second in pairs)
+
+
+def _beginning(draft: Draft, sender: str) -> Iterator[ByteSet]:
+    """Values of each byte in front of stuffing and payload."""
+    frame, start = draft.frames[sender], draft.framings[sender].start
+    for part in frame.parts:
+        if isinstance(part, PayloadPart) or part.name in frame.stuffed:
+            return
+        if isinstance(part, _HELD) or (isinstance(start, StartSet) and part is frame.parts[0]):
+            yield from part_bytes(part, EVERY_BYTE)
+        else:
+            yield from (EVERY_BYTE,) * part.size

@@ -1,0 +1,59 @@
+"""What the compiler works out about several forms of frame."""
+
+from __future__ import annotations
+
+from passes_support import HEAD, protocol_of
+
+FORMS = """\
+forms:
+  first:
+    frame:
+      start:   {literal: 0x3A}
+      kind:    {type: uint8, id: true}
+      payload: {}
+      end:     {literal: 0x0A}
+    transparency: {encoding: base16-upper}
+  second:
+    frame:
+      start:   {literal: SECOND}
+      length:  {type: uint8, counts: payload}
+      kind:    {type: uint8, id: true}
+      payload: {}
+    transparency: {escape: {byte: 0x7D, of: [0x7D, SECOND], transform: {xor: 0x20}}}
+messages:
+  go: {id: 1, from: robot, fields: {speed: uint8}}
+"""
+
+
+class TestSynchronisation:
+    def test_a_start_that_another_form_can_hold_may_be_a_false_one(self) -> None:
+        first, second = protocol_of(HEAD + FORMS.replace("SECOND", "0x7E")).senders
+        assert not first.framing.self_synchronising, "3A may stand in a payload of the second form"
+        assert "frames of the form `second`" in first.framing.why_synchronising
+        assert second.framing.self_synchronising, "7E is no digit"
+
+    def test_the_start_of_the_second_may_be_one_that_the_first_can_hold(self) -> None:
+        _, second = protocol_of(HEAD + FORMS.replace("SECOND", "0x46")).senders
+        assert not second.framing.self_synchronising, "46 is the digit F"
+
+
+class TestMessages:
+    def test_a_form_whose_length_can_not_say_a_size_does_not_carry_the_message(self) -> None:
+        text = FORMS.replace("SECOND", "0x7E").replace(
+            "counts: payload}", "counts: payload, range: [2, 9]}"
+        )
+        first, second, *others = protocol_of(
+            HEAD + text + "  note: {id: 2, from: robot, fields: {a: uint32}}\n"
+        ).senders
+        assert [message.name for message in first.messages] == ["go", "note"]
+        assert [message.name for message in second.messages] == ["note"]
+        assert others == []
+
+    def test_forms_of_different_endpoints_are_frames_of_their_own(self) -> None:
+        text = FORMS.replace("SECOND", "0x7E")
+        text = text.replace("  first:", "  first:\n    from: host").replace(
+            "  second:", "  second:\n    from: robot"
+        )
+        protocol = protocol_of(HEAD + text + "  stop: {id: 2, from: host}\n")
+        assert [sender.name for sender in protocol.senders] == ["host", "robot"]
+        assert all(sender.is_only_form for sender in protocol.senders)
