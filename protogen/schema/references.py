@@ -11,7 +11,7 @@ from typing import Any
 
 import msgspec
 
-from protogen.schema.scopes import Place, Scopes, keys_at
+from protogen.schema.scopes import Place, Scopes, declares
 from protogen.schema.syntax.forms import Form
 from protogen.schema.syntax.names import BySender, FieldPath, FieldValues, Kind, Mark, Ref
 from protogen.schema.syntax.protocol import SCHEMA, is_by_sender
@@ -42,7 +42,7 @@ class Reference(msgspec.Struct, frozen=True):
 
     def declarations(self, data: Any) -> list[Place]:
         """Places of what it names: one, or a part for each sender that has one."""
-        found = [scope for scope in self.scopes if self.name in keys_at(data, scope)]
+        found = [scope for scope in self.scopes if declares(data, scope, self.name)]
         nearest = found if self.kind is Kind.PART else found[:1]
         return [(*scope, self.name) for scope in nearest]
 
@@ -69,8 +69,6 @@ class _Walk:
 
     def inside(self, value: Any, form: Form, place: Place) -> Iterator[Reference]:
         """Yield the references in a value of this form."""
-        if not form:
-            return
         for mark in form.marks:
             yield from self._marked(mark, value, place)
         if isinstance(value, dict):
@@ -84,11 +82,13 @@ class _Walk:
             yield from self.inside(value, form.items, place)
 
     def _mapping(self, mapping: dict[Scalar, Any], form: Form, place: Place) -> Iterator[Reference]:
+        marks = form.names.marks if form.names else ()
         for key, value in mapping.items():
-            inner = (*place, key)
-            for mark in form.names.marks if form.names else ():
-                yield from self._named(mark, key, Spot(inner, at_key=True))
-            yield from self.inside(value, form_under(self._data, form, key), inner)
+            for mark in marks:
+                yield from self._named(mark, key, Spot((*place, key), at_key=True))
+            inner = form_under(self._data, form, key)
+            if inner.refers:
+                yield from self.inside(value, inner, (*place, key))
 
     def _marked(self, mark: Mark, value: Any, place: Place) -> Iterator[Reference]:
         if isinstance(mark, FieldValues):

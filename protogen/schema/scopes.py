@@ -39,6 +39,12 @@ def keys_at(data: Any, place: Place) -> tuple[Scalar, ...]:
     return tuple(found) if isinstance(found, dict) else ()
 
 
+def declares(data: Any, place: Place, name: Scalar) -> bool:
+    """True if the mapping at a place has such a key."""
+    found = at(data, place)
+    return isinstance(found, dict) and name in found
+
+
 class Scopes:
     """Scopes of one schema's data; those of a name come nearest first."""
 
@@ -83,7 +89,7 @@ class Scopes:
         """Values of the field that chooses between the cases of another one."""
         chosen = self._name((*field, switch))
         for fields in _of_fields((*field, switch)):
-            if chosen in keys_at(self._data, fields):
+            if declares(self._data, fields, chosen):
                 return self.inside_field((*fields, chosen), "values")
         return ()
 

@@ -20,7 +20,9 @@ _BYTES = ("hex", "text")
 
 def check_numbers(context: Context, _: Draft) -> None:
     """Warn of decimal numbers that begin with a zero."""
-    for loc, written in _leading_zeros(context.data, SCHEMA, ()):
+    for loc, written in _leading_zeros(context.data, ()):
+        if _is_text(context.data, loc):
+            continue
         octal = written.lstrip("+-0") or "0"
         others, hint = "a text", f"write {int(written)}"
         if set(octal) <= set("01234567"):
@@ -29,23 +31,27 @@ def check_numbers(context: Context, _: Draft) -> None:
         context.warning("PG124", loc, text, hint)
 
 
-def _leading_zeros(data: Any, form: Form, loc: Loc) -> Iterator[tuple[Loc, str]]:
-    """The numbers that are written so, with their places; a text may have any zeros."""
-    if isinstance(data, dict):
-        for key, item in data.items():
-            inner = form_under(data, form, key)
-            if inner or key not in _BYTES:
-                yield from _leading_zeros(item, inner, (*loc, key))
-    elif isinstance(data, list):
-        for index, item in enumerate(data):
-            yield from _leading_zeros(item, form.inside(index), (*loc, index))
-    elif isinstance(data, int) and not _is_text(form):
-        written = getattr(data, "text", "")
-        if _LEADING_ZERO.fullmatch(written):
-            yield loc, written
+def _leading_zeros(data: Any, loc: Loc) -> Iterator[tuple[Loc, str]]:
+    """The integers that are written so, with their places."""
+    if isinstance(data, dict | list):
+        for key, item in data.items() if isinstance(data, dict) else enumerate(data):
+            if not isinstance(item, str):
+                yield from _leading_zeros(item, (*loc, key))
+    elif isinstance(data, int) and _LEADING_ZERO.fullmatch(written := getattr(data, "text", "")):
+        yield loc, written
 
 
-def _is_text(form: Form) -> bool:
-    """True if a bare scalar is taken as it is written."""
+def _is_text(data: Any, loc: Loc) -> bool:
+    """True if what stands at a place is taken as it is written, with any zeros."""
+    form = SCHEMA
+    for key in loc:
+        here, data = data, data[key]
+        form = form_under(here, form, key) if isinstance(here, dict) else form.inside(key)
+        if key in _BYTES and not form:
+            return True
+    return _is_text_here(form)
+
+
+def _is_text_here(form: Form) -> bool:
     keys = [keys_of(model)[form.short] for model in form.models if form.short is not None]
-    return form.text or any(map(_is_text, keys))
+    return form.text or any(map(_is_text_here, keys))

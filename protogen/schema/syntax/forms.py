@@ -28,6 +28,15 @@ class Form(msgspec.Struct):
     """Keys of a mapping of names to `items`."""
     items: Form | None = None
     """Values of a mapping from names, or items of a list."""
+    _refers: bool | None = None
+
+    @property
+    def refers(self) -> bool:
+        """True if what stands here, or inside of it, may refer to a name. Worked out once."""
+        if self._refers is None:
+            inside = (form for model in models_inside(self) for form in keys_of(model).values())
+            self._refers = any(map(_is_marked, (self, *inside)))
+        return self._refers
 
     def inside(self, step: object) -> Form:
         """Form of what stands under a key or an index; empty if nothing is known of it."""
@@ -52,6 +61,12 @@ def keys_of(model: type[BaseModel]) -> Mapping[object, Form]:
         info.alias or name: _form(info.annotation, info.metadata)
         for name, info in model.model_fields.items()
     }
+
+
+def _is_marked(form: Form) -> bool:
+    """True if a name is told by the annotation itself, not by a class that it leads to."""
+    inner = (form.names, form.items)
+    return bool(form.marks) or any(_is_marked(item) for item in inner if item is not None)
 
 
 def models_inside(form: Form) -> set[type[BaseModel]]:

@@ -9,16 +9,15 @@ inside of a text between brackets needs quotes, for one.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import msgspec
 import yaml
 
 from protogen.problems import Problems, Span
-from protogen.problems.sources import Position
 from protogen.schema.text.nodes import Node, ScalarNode
-from protogen.schema.text.open_nodes import OpenList, OpenMapping
+from protogen.schema.text.open_nodes import OpenCollection, OpenList, OpenMapping
 from protogen.schema.text.places import Places, position_of
 from protogen.schema.text.scalars import resolve
 
@@ -61,8 +60,7 @@ def compose(
     """
     composer = _Composer(text, file, problems)
     try:
-        for event in _events(text, loader):
-            composer.take(event)
+        composer.take(_events(text, loader))
     except _GiveUpError:
         return None
     except yaml.MarkedYAMLError as error:
@@ -88,8 +86,8 @@ class _Anchored(msgspec.Struct, frozen=True):
 def _events(text: str, loader: Loader) -> Iterator[Any]:
     parser = loader(text)
     try:
-        while parser.check_event():
-            yield parser.get_event()
+        while (event := parser.get_event()) is not None:  # None is behind the stream's end.
+            yield event
     except (ValueError, OverflowError) as error:
         # The parser in Python takes any number for the code of a character.
         problem = "found the escape of a character that does not exist"
@@ -104,7 +102,7 @@ class _Composer:
     def __init__(self, text: str, file: str, problems: Problems) -> None:
         self._places = Places(text, file)
         self._problems = problems
-        self._open: list[OpenList] = []
+        self._open: list[OpenCollection] = []
         self._anchors: dict[str, _Anchored | None] = {}
         self._count = 0
         self._root: Node | None = None
@@ -118,11 +116,13 @@ class _Composer:
             yaml.SequenceEndEvent: self._end,
         }
 
-    def take(self, event: Any) -> None:
-        """Take the next event of the parser."""
-        handler = self._handlers.get(type(event))
-        if handler is not None:
-            handler(event)
+    def take(self, events: Iterable[Any]) -> None:
+        """Take the events of the parser."""
+        handlers = self._handlers
+        for event in events:
+            handler = handlers.get(type(event))
+            if handler is not None:
+                handler(event)
 
     def finish(self) -> Node | None:
         """Return the root of the document, or None if there is no document or an empty one."""
@@ -138,15 +138,19 @@ class _Composer:
             raise self._give_up("PG008", span, "a second document begins here")
 
     def _scalar(self, event: Any) -> None:
-        self._check_tag(event)
-        plain = not event.style
-        value = resolve(event.value) if plain else event.value
-        node = ScalarNode(value, event.value, plain, self._scalar_span(event))
-        if not plain and _SURROGATE.search(event.value):
+        if event.tag is not None:
+            self._report_tag(event)
+        text, plain = event.value, not event.style
+        written_out = text or not plain
+        span = self._places.scalar(event) if written_out else self._empty_span(event)
+        node = ScalarNode(resolve(text) if plain else text, text, plain, span)
+        if not plain and not text.isascii() and _SURROGATE.search(text):
             message = "the text holds half of a surrogate pair, which is no character"
-            raise self._give_up("PG004", node.span, message)
-        self._add(1, node.span)
-        self._finish_node(event.anchor, node, 1, 0)
+            raise self._give_up("PG004", span, message)
+        self._add(1, span)
+        if event.anchor is not None:
+            self._anchors[event.anchor] = _Anchored(node, 1, 0)
+        self._place(node, 0, span)
 
     def _alias(self, event: Any) -> None:
         name = event.anchor
@@ -162,7 +166,8 @@ class _Composer:
         self._place(anchored.node, anchored.height, span)
 
     def _start(self, event: Any) -> None:
-        self._check_tag(event)
+        if event.tag is not None:
+            self._report_tag(event)
         begin = self._places.begin(event)
         span = self._places.at(begin, 1)
         self._add(1, span)
@@ -178,12 +183,10 @@ class _Composer:
         done = self._open.pop()
         end = position_of(event.end_mark) if done.event.flow_style else done.end
         node = done.close(self._places.span(done.begin, end))
-        self._finish_node(done.event.anchor, node, self._count - done.counted, done.height)
-
-    def _finish_node(self, anchor: str | None, node: Node, count: int, height: int) -> None:
-        if anchor is not None:
-            self._anchors[anchor] = _Anchored(node, count, height)
-        self._place(node, height, node.span)
+        if done.event.anchor is not None:
+            count = self._count - done.counted
+            self._anchors[done.event.anchor] = _Anchored(node, count, done.height)
+        self._place(node, done.height, node.span)
 
     def _place(self, node: Node, height: int, span: Span) -> None:
         if self._open:
@@ -191,10 +194,9 @@ class _Composer:
         else:
             self._root = node
 
-    def _check_tag(self, event: Any) -> None:
-        if event.tag is not None:
-            tag, span = self._places.tag(event)
-            self._problems.add("PG011", span, f"the tag `{tag}` is not allowed")
+    def _report_tag(self, event: Any) -> None:
+        tag, span = self._places.tag(event)
+        self._problems.add("PG011", span, f"the tag `{tag}` is not allowed")
 
     def _check_depth(self, height: int, span: Span) -> None:
         if len(self._open) + height > GREATEST_DEPTH:
@@ -210,16 +212,11 @@ class _Composer:
         self._problems.add(code, span, message, hint)
         return _GiveUpError()
 
-    def _scalar_span(self, event: Any) -> Span:
-        if event.style or event.value:
-            return self._places.scalar(event)
-        return self._places.at(self._empty_place(event), 0)
-
-    def _empty_place(self, event: Any) -> Position:
+    def _empty_span(self, event: Any) -> Span:
         """Return the place of a value that was left out: right behind its key."""
-        if self._open and isinstance(self._open[-1], OpenMapping):
-            return self._open[-1].end
-        return position_of(event.end_mark)
+        around = self._open[-1] if self._open else None
+        end = around.end if isinstance(around, OpenMapping) else position_of(event.end_mark)
+        return self._places.at(end, 0)
 
 
 def _mark_hint(error: yaml.MarkedYAMLError, text: str) -> str | None:

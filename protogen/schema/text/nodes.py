@@ -33,7 +33,7 @@ class _Inside:
         return found
 
 
-class ScalarNode(_Inside, msgspec.Struct, frozen=True):
+class ScalarNode(_Inside, msgspec.Struct, frozen=True, gc=False):
     """A single value; ``text`` is what was written, ``plain`` whether without quotes."""
 
     value: Scalar
@@ -136,12 +136,16 @@ def find(root: Node, loc: Loc, *, key: bool = False) -> Span:
 
 def _straight(node: Node, loc: Loc) -> tuple[Item | None, Node] | None:
     """Return the last key and its value where every component is a key of the one before."""
-    item = None
+    item: Item | None = None
     for step in loc:
-        child = node.child(step)
+        if isinstance(node, MappingNode):
+            item = node.item(step)
+            child = None if item is None else item[1]
+        else:
+            item, child = None, node.child(step)
         if child is None:
             return None
-        item, node = node.item(step) if isinstance(node, MappingNode) else None, child
+        node = child
     return item, node
 
 

@@ -10,8 +10,10 @@ from protogen.schema.text.nodes import Item, MappingNode, Node, ScalarNode, Sequ
 from protogen.schema.text.scalars import Scalar
 
 
-class OpenList:
-    """A list."""
+class OpenCollection:
+    """A list or a mapping."""
+
+    __slots__ = ("_last", "begin", "counted", "event", "height")
 
     def __init__(self, event: Any, begin: Position, counted: int) -> None:
         self.event = event
@@ -21,7 +23,6 @@ class OpenList:
         self._last: Span | None = None
         """Span of the last thing inside."""
         self.height = 1
-        self._elements: list[Node] = []
 
     @property
     def end(self) -> Position:
@@ -31,6 +32,24 @@ class OpenList:
 
     def put(self, node: Node, height: int, span: Span) -> None:
         """Add a node that is complete, ``height`` collections high, which stands at ``span``."""
+        raise NotImplementedError
+
+    def close(self, span: Span) -> Node:
+        """Return the complete node."""
+        raise NotImplementedError
+
+
+class OpenList(OpenCollection):
+    """A list."""
+
+    __slots__ = ("_elements",)
+
+    def __init__(self, event: Any, begin: Position, counted: int) -> None:
+        super().__init__(event, begin, counted)
+        self._elements: list[Node] = []
+
+    def put(self, node: Node, height: int, span: Span) -> None:
+        """Add an element."""
         self._last = span
         if height >= self.height:
             self.height = height + 1
@@ -41,8 +60,10 @@ class OpenList:
         return SequenceNode(tuple(self._elements), span)
 
 
-class OpenMapping(OpenList):
+class OpenMapping(OpenCollection):
     """A mapping. Its keys are names and integers, each once; others are left out."""
+
+    __slots__ = ("_items", "_key", "_keys", "_problems", "_wants_value")
 
     def __init__(self, event: Any, begin: Position, counted: int, problems: Problems) -> None:
         super().__init__(event, begin, counted)
@@ -50,14 +71,18 @@ class OpenMapping(OpenList):
         self._keys: dict[Scalar, ScalarNode] = {}
         self._items: list[Item] = []
         self._key: ScalarNode | None = None
+        self._wants_value = False
 
     def put(self, node: Node, height: int, span: Span) -> None:
         """Add a key or its value, which come by turns."""
-        super().put(node, height, span)
-        if len(self._elements) % 2:
+        self._last = span
+        if height >= self.height:
+            self.height = height + 1
+        if not self._wants_value:
             self._key = self._accepted(node)
         elif self._key is not None:
             self._items.append((self._key, node))
+        self._wants_value = not self._wants_value
 
     def close(self, span: Span) -> Node:
         """Return the complete node."""
