@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import msgspec
 
 from protogen.model.checksums import ChecksumSpec
@@ -12,7 +14,7 @@ PartType = Integer
 """Type of a part that is a number: an integer of whole bytes, in wire order."""
 
 
-class Part(msgspec.Struct, frozen=True, kw_only=True):
+class Part(msgspec.Struct, frozen=True, kw_only=True, cache_hash=True):
     """One item of a frame."""
 
     name: str
@@ -151,7 +153,7 @@ class Transparency(msgspec.Struct, frozen=True, kw_only=True):
     about: About = NOTHING
 
 
-class Frame(msgspec.Struct, frozen=True, kw_only=True):
+class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=True):
     """Parts in wire order, exactly one of which is the payload."""
 
     parts: tuple[Part, ...]
@@ -164,17 +166,17 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True):
                 return part
         raise KeyError(name)
 
-    @property
+    @cached_property
     def payload(self) -> PayloadPart:
         """The payload."""
         return next(part for part in self.parts if isinstance(part, PayloadPart))
 
-    @property
+    @cached_property
     def head(self) -> tuple[Part, ...]:
         """The parts in front of the payload."""
         return self.parts[: self.parts.index(self.payload)]
 
-    @property
+    @cached_property
     def tail(self) -> tuple[Part, ...]:
         """The parts behind the payload, the end literal included."""
         return self.parts[self.parts.index(self.payload) + 1 :]
@@ -184,7 +186,7 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True):
         """Encoding of the stuffed parts; None where nothing is stuffed."""
         return None if self.transparency is None else self.transparency.encoding
 
-    @property
+    @cached_property
     def stuffed(self) -> frozenset[str]:
         """Names of the parts under transparency."""
         if self.transparency is None:
@@ -202,22 +204,22 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True):
         """
         return int(isinstance(self.encoding, Cobs))
 
-    @property
+    @cached_property
     def identity(self) -> tuple[IdentityPart, ...]:
         """The identity parts in wire order."""
         return tuple(part for part in self.parts if isinstance(part, IdentityPart))
 
-    @property
+    @cached_property
     def length(self) -> LengthPart | None:
         """The length part, if there is one."""
         return next((part for part in self.parts if isinstance(part, LengthPart)), None)
 
-    @property
+    @cached_property
     def checksums(self) -> tuple[ChecksumPart, ...]:
         """The checksum parts in wire order."""
         return tuple(part for part in self.parts if isinstance(part, ChecksumPart))
 
-    @property
+    @cached_property
     def caller_parts(self) -> tuple[CounterPart | ValuePart, ...]:
         """The parts whose values come from the caller."""
         return tuple(part for part in self.parts if isinstance(part, CounterPart | ValuePart))

@@ -258,13 +258,13 @@ def _checks(steps: Iterable[Step]) -> frozenset[Check]:
 
 
 def _number_checks(type_: Integer | Float) -> frozenset[Check]:
-    found = set(_seven_bit(type_))
+    found = [Check.SEVEN_BIT] if type_.byte_bits == 7 else []
     if type_.bits < type_.byte_bits * type_.size:
-        found.add(Check.PADDING)
+        found.append(Check.PADDING)
     if type_.role == "bool":
-        found.add(Check.BOOLEAN)
+        found.append(Check.BOOLEAN)
     if type_.is_closed:
-        found.add(Check.CLOSED)
+        found.append(Check.CLOSED)
     return frozenset(found)
 
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from dataclasses import field as dataclass_field
 from fractions import Fraction
+from functools import cached_property
 from typing import ClassVar, Literal, TypeGuard
 
 import msgspec
@@ -28,6 +29,10 @@ MachineKind = Literal["bool", "int", "uint", "float"]
 Constant = int | float | str | bytes | tuple[int, ...]
 """A raw value: a number, a text, bytes, or the numbers of an array."""
 
+UNSCALED = Fraction(1)
+NO_OFFSET = Fraction(0)
+"""Scale and offset of a field whose physical value is the raw value."""
+
 _NO_NAMES: frozenset[str] = frozenset()
 
 
@@ -41,8 +46,11 @@ def counting_bits(greatest: int) -> int:
     return storage_bits(max(1, greatest.bit_length()))
 
 
-class _Number(msgspec.Struct, frozen=True, kw_only=True):
-    """A number of `bits` bits in `size` wire bytes of `byte_bits` bits each."""
+class _Number(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=True):
+    """A number of `bits` bits in `size` wire bytes of `byte_bits` bits each.
+
+    A protocol has few of them, whose facts are asked for wherever a field is of such a type.
+    """
 
     bits: int
     byte_bits: Literal[7, 8] = 8
@@ -57,23 +65,23 @@ class _Number(msgspec.Struct, frozen=True, kw_only=True):
         """The unsigned integer in the same bytes."""
         return Integer(bits=self.bits, byte_bits=self.byte_bits, byte_order=self.byte_order)
 
-    @property
+    @cached_property
     def width(self) -> int:
         """Bits of the smallest machine number that holds the value."""
         return storage_bits(self.bits)
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Wire bytes."""
         return -(-self.bits // self.byte_bits)
 
-    @property
+    @cached_property
     def sizes(self) -> SizeSet:
         """Wire bytes, as a set."""
         return SizeSet.exactly(self.size)
 
 
-class Integer(_Number, frozen=True, kw_only=True):
+class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     """An integer. Bits above its own are zero; signed ones are two's complement in these bits."""
 
     signed: bool = False
@@ -82,7 +90,7 @@ class Integer(_Number, frozen=True, kw_only=True):
     flags: Flags | None = None
     bit_fields: tuple[BitField, ...] = ()
 
-    @property
+    @cached_property
     def name(self) -> str:
         """The name in the schema language, such as `sint14` or `char`."""
         kind = "sint" if self.signed else "uint"
@@ -100,7 +108,7 @@ class Integer(_Number, frozen=True, kw_only=True):
             return "bool"
         return "int" if self.signed else "uint"
 
-    @property
+    @cached_property
     def machine_bounds(self) -> tuple[int, int]:
         """The least and the greatest value of the machine integer that holds the value."""
         greatest = (1 << (self.width - self.signed)) - 1
@@ -111,7 +119,7 @@ class Integer(_Number, frozen=True, kw_only=True):
         """True if its values or its bits have names of their own type."""
         return self.enum is not None or self.flags is not None
 
-    @property
+    @cached_property
     def named_types(self) -> tuple[Enum | Flags, ...]:
         """The enums and flags that have names of their own."""
         found = (self.enum, self.flags, *(field.enum for field in self.bit_fields))
@@ -126,12 +134,12 @@ class Integer(_Number, frozen=True, kw_only=True):
         """True if only the values of a closed enum are valid."""
         return self.enum is not None and self.enum.closed
 
-    @property
+    @cached_property
     def least(self) -> int:
         """The least raw value that the bits can hold."""
         return -(1 << (self.bits - 1)) if self.signed else 0
 
-    @property
+    @cached_property
     def greatest(self) -> int:
         """The greatest raw value that the bits can hold."""
         return (1 << (self.bits - 1 if self.signed else self.bits)) - 1
@@ -141,7 +149,7 @@ class Integer(_Number, frozen=True, kw_only=True):
         return self.least <= value <= self.greatest
 
 
-class Float(_Number, frozen=True, kw_only=True):
+class Float(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     """IEEE 754 binary32 or binary64."""
 
     bits: Literal[32, 64]
@@ -421,8 +429,8 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     greatest: Fraction | None = None
     ranged: bool = False
     """True if the schema states the range."""
-    scale: Fraction = Fraction(1)
-    offset: Fraction = Fraction(0)
+    scale: Fraction = UNSCALED
+    offset: Fraction = NO_OFFSET
     unit: str | None = None
     special: tuple[NamedValue, ...] = ()
     unknown: bool = False
@@ -433,6 +441,8 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def scaled(self) -> bool:
         """True if the physical value differs from the raw value."""
+        if self.scale is UNSCALED and self.offset is NO_OFFSET:  # As nearly all.
+            return False
         return self.scale != 1 or self.offset != 0
 
     @property
@@ -451,8 +461,10 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def integer(self) -> Integer | None:
         """The integer that the field holds, or of which it is an array."""
-        element = self.element
-        return element if isinstance(element, Integer) else None
+        type_ = self.type
+        while isinstance(type_, Array):
+            type_ = type_.element
+        return type_ if isinstance(type_, Integer) else None
 
     @property
     def is_stored(self) -> bool:

@@ -4,10 +4,21 @@ from __future__ import annotations
 
 import sys
 from fractions import Fraction
+from functools import lru_cache
 
 from protogen.model.meanings import NamedValue
 from protogen.model.reading.readings import decimal
-from protogen.model.types import Array, Constant, Field, Float, NumberType, Type, is_integer
+from protogen.model.types import (
+    NO_OFFSET,
+    UNSCALED,
+    Array,
+    Constant,
+    Field,
+    Float,
+    NumberType,
+    Type,
+    is_integer,
+)
 from protogen.passes.context import Context, about
 from protogen.passes.types.constants import read_constant
 from protogen.passes.types.declared import Effective
@@ -37,13 +48,19 @@ def attach(context: Context, name: str, type_: Type, item: Effective) -> Field:
         greatest=greatest,
         ranged=syntax.range is not None,
         scale=check.scale(),
-        offset=syntax.offset if syntax.offset is not None else Fraction(0),
+        offset=syntax.offset if syntax.offset is not None else NO_OFFSET,
         unit=syntax.unit,
         special=check.special(),
         unknown=syntax.unknown,
         renamed_from=syntax.renamed_from,
         about=about(syntax.doc, syntax.source, context.find_key(item.chain[0][1])),
     )
+
+
+@lru_cache(maxsize=256)
+def _whole(number: int) -> Fraction:
+    """The number as a fraction, made once for all types that have it as a bound."""
+    return Fraction(number)
 
 
 class _Check:
@@ -88,7 +105,7 @@ class _Check:
                 self._error("PG114", "range", text)
                 return None, None
             return self._ordered(*written)
-        least, greatest = Fraction(type_.least), Fraction(type_.greatest)
+        least, greatest = _whole(type_.least), _whole(type_.greatest)
         if written is None:
             return least, greatest
         low, high = self._ordered(*written)
@@ -102,7 +119,7 @@ class _Check:
 
     def _raw_range(self, low: Fraction, high: Fraction) -> str | None:
         """What to write if the bounds are physical values."""
-        scale, offset = self._item.scale or Fraction(1), self._item.offset or Fraction(0)
+        scale, offset = self._item.scale or UNSCALED, self._item.offset or NO_OFFSET
         raw = [(end - offset) / scale for end in (low, high)]
         if raw == [low, high] or any(end.denominator != 1 for end in raw):
             return None
@@ -118,15 +135,15 @@ class _Check:
     def scale(self) -> Fraction:
         """The scale; zero would lose every value."""
         if self._item.scale is None and self._item.offset is None:
-            return Fraction(1)
-        scale = self._item.scale if self._item.scale is not None else Fraction(1)
+            return UNSCALED
+        scale = self._item.scale if self._item.scale is not None else UNSCALED
         if scale == 0:
             self._error("PG123", "scale", "a scale of zero makes every value the same")
-            return Fraction(1)
-        for key, offset in (("scale", Fraction(0)), ("offset", self._item.offset)):
+            return UNSCALED
+        for key, offset in (("scale", NO_OFFSET), ("offset", self._item.offset)):
             if offset is not None and not self._is_readable(scale, offset):
                 self._error("PG123", key, f"`{key}` makes physical values that no float64 holds")
-                return Fraction(1)
+                return UNSCALED
         return scale
 
     def _is_readable(self, scale: Fraction, offset: Fraction) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Literal
 
 import msgspec
@@ -93,11 +94,12 @@ def is_builtin(name: str) -> bool:
     return name in PLAIN_NAMES or integer_width(name) is not None
 
 
+@lru_cache(maxsize=1024)
 def integer(name: str, layout: Layout) -> Integer | None:
     """The integer type that a built-in name stands for, or None if it is no integer.
 
-    The byte order of a number of one byte is `little`; of others the layout's, `little` where the
-    layout has none (the caller reports that).
+    Fields of one type share it. The byte order of a number of one byte is `little`; of others the
+    layout's, `little` where the layout has none (the caller reports that).
     """
     width = integer_width(name)
     if width is not None and has_width(name):
@@ -113,6 +115,7 @@ def integer(name: str, layout: Layout) -> Integer | None:
     return None
 
 
+@lru_cache(maxsize=64)
 def float_type(name: str, layout: Layout) -> Float | None:
     """The float type that a built-in name stands for, or None if it is no float."""
     if name not in ("float32", "float64"):
