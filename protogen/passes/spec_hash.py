@@ -7,11 +7,12 @@ hash to know whether they speak the same protocol.
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Callable
 from fractions import Fraction
 from functools import cache
-from typing import Any
+from json import JSONEncoder
+from operator import attrgetter
+from typing import Any, NamedTuple
 
 from protogen.copying import defaults_of
 from protogen.model.meanings import Enum, Flags
@@ -40,17 +41,15 @@ def spec_hash(protocol: Protocol) -> str:
     """SHA-256 in hex of everything that changes bytes or what they mean."""
     listed: list[Enum | Flags | Struct] = [*protocol.enums, *protocol.flags, *protocol.structs]
     listed.sort(key=lambda item: item.name)
-    return _sha256([_whole(protocol), *map(_whole, listed)], _named)
+    return _sha256(_BY_NAME.encode([_whole(protocol), *map(_whole, listed)]))
 
 
 def message_hash(message: Message) -> str:
     """SHA-256 in hex of a message: its identity, its layout and what its values mean."""
-    return _sha256(message, _plain)
+    return _sha256(_IN_FULL.encode(message))
 
 
-def _sha256(value: Any, plain: Callable[[Any], Any]) -> str:
-    """The hash of a value as JSON; `plain` turns into such what JSON does not have."""
-    text = json.dumps(value, separators=(",", ":"), ensure_ascii=True, default=plain)
+def _sha256(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -60,20 +59,38 @@ def _whole(value: Any) -> dict[str, Any]:
     What holds its default is left out as well: a field that comes with a later version of the
     compiler changes no hash of a schema that does not use it.
     """
-    kind: Any = type(value)
-    found: dict[str, Any] = {"kind": kind.__name__}
-    for name, default in _kept(kind):
-        item = getattr(value, name)
-        if item is not default and item != default:
-            found[name] = item
-    return found
+    of: Any = type(value)
+    kind = _kind(of)
+    stated = {
+        name: item
+        for name, default, item in zip(kind.fields, kind.defaults, kind.values(value), strict=True)
+        if item is not default and (default is None or item != default)
+    }
+    return {"kind": kind.name, **stated}
+
+
+class _Kind(NamedTuple):
+    """The fields of a data class that count."""
+
+    name: str
+    fields: tuple[str, ...]
+    defaults: tuple[Any, ...]
+    values: Callable[[Any], tuple[Any, ...]]
+    """The values of the fields, in their order."""
 
 
 @cache
-def _kept(kind: Any) -> tuple[tuple[str, Any], ...]:
-    """The fields that count, each with its default."""
+def _kind(kind: Any) -> _Kind:
     left_out = _LEFT_OUT | _LISTED if kind is Protocol else _LEFT_OUT
-    return tuple(sorted(item for item in defaults_of(kind).items() if item[0] not in left_out))
+    kept = {name: default for name, default in defaults_of(kind).items() if name not in left_out}
+    fields = tuple(sorted(kept))
+    return _Kind(kind.__name__, fields, tuple(map(kept.get, fields)), _getter(fields))
+
+
+def _getter(fields: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
+    if len(fields) > 1:
+        return attrgetter(*fields)
+    return lambda value: tuple(getattr(value, name) for name in fields)
 
 
 def _named(value: Any) -> Any:
@@ -83,6 +100,17 @@ def _named(value: Any) -> Any:
 
 def _plain(value: Any) -> Any:
     """What JSON does not have: fractions, bytes, and data classes."""
-    if isinstance(value, Fraction):
+    kind = type(value)
+    if kind is Fraction:  # Not `isinstance`, which takes long for a class of `numbers`.
         return str(value)
-    return value.hex() if isinstance(value, bytes) else _whole(value)
+    return value.hex() if kind is bytes else _whole(value)
+
+
+def _encoder(plain: Callable[[Any], Any]) -> JSONEncoder:
+    """An encoder of the model, which has no cycles; `plain` turns into JSON what is none."""
+    return JSONEncoder(separators=(",", ":"), check_circular=False, default=plain)
+
+
+_IN_FULL = _encoder(_plain)
+_BY_NAME = _encoder(_named)
+"""Encoders in which named types stand as they are, and in which their names stand for them."""
