@@ -11,13 +11,20 @@ Place = tuple[str | int, ...]
 
 
 class Thing(msgspec.Struct, frozen=True):
-    """What a name stands for.
+    """What a name stands for."""
 
-    What is not of the schema has no place; `what` says of its name what it is.
-    """
-
-    what: str
+    kind: str
+    """Kind of thing, such as `field`; for a name that is not of the schema, what it is."""
     place: Place = ()
+    """Place in the schema, if the name is of it."""
+
+    @property
+    def what(self) -> str:
+        """Kind and name, such as "field `gyro.int_x`". Made only where a problem is reported."""
+        if len(self.place) < len(("kind", "name")):
+            return self.kind
+        names = self.place[-1:] if self.place[0] == "frame" else self.place[1::2]
+        return f"{self.kind} `{'.'.join(map(str, names))}`"
 
 
 OWN = Thing("generated code uses itself")
@@ -62,35 +69,34 @@ class NameTable:
 
 def message(name: str) -> Thing:
     """A message."""
-    return Thing(f"message `{name}`", ("records", name))
+    return Thing("message", ("records", name))
 
 
 def named_type(name: str) -> Thing:
     """An enum, flags or a struct, declared or written in a field."""
-    return Thing(f"type `{name}`", ("records", name))
+    return Thing("type", ("records", name))
 
 
 def endpoint(name: str) -> Thing:
     """A side of the link."""
-    return Thing(f"endpoint `{name}`", ("endpoints", name))
+    return Thing("endpoint", ("endpoints", name))
 
 
 def part(sender: str, name: str) -> Thing:
     """A part of a frame."""
-    return Thing(f"part `{name}`", ("frame", sender, name))
+    return Thing("part", ("frame", sender, name))
 
 
 def value(type_: str, name: str) -> Thing:
     """A value of an enum."""
-    return Thing(f"value `{type_}.{name}`", ("records", type_, "values", name))
+    return Thing("value", ("records", type_, "values", name))
 
 
 def flag(type_: str, name: str) -> Thing:
     """A flag of a set."""
-    return Thing(f"flag `{type_}.{name}`", ("records", type_, "flags", name))
+    return Thing("flag", ("records", type_, "flags", name))
 
 
 def inside(record: str, kind: str, field: str, *rest: str) -> Thing:
     """A field of a record, or something of it: `special value`, `state`, `special`, `none`."""
-    path = ".".join((record, field, *rest[1:]))
-    return Thing(f"{kind} `{path}`", ("records", record, "fields", field, *rest))
+    return Thing(kind, ("records", record, "fields", field, *rest))

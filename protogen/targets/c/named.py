@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from functools import lru_cache
 
 import msgspec
 
@@ -91,10 +92,11 @@ class BitsView(msgspec.Struct, frozen=True):
 
 def bits_views(record: str, field: Field, names: Names) -> tuple[BitsView, ...]:
     """The runs of bits of a field's integer."""
-    if field.integer is None:
+    integer = field.integer
+    if integer is None or not integer.bit_fields:
         return ()
-    kind = unsigned_type(field.integer.bits)
-    return tuple(_bits(record, field, kind, item, names) for item in field.integer.bit_fields)
+    kind = unsigned_type(integer.bits)
+    return tuple(_bits(record, field, kind, item, names) for item in integer.bit_fields)
 
 
 def _bits(record: str, field: Field, kind: str, item: BitField, names: Names) -> BitsView:
@@ -133,19 +135,20 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
     def macro(word: str, value: str, doc: tuple[str, ...] = (), thing: Thing = own) -> Macro:
         return Macro(names.claim_macro(thing, record, field.name, word), value, doc)
 
-    if field.scale != 1:
+    if field.scaled and field.scale != 1:
         yield from _fraction(macro, "scale", field.scale)
-    if field.offset != 0:
+    if field.scaled and field.offset != 0:
         yield from _fraction(macro, "offset", field.offset)
     if field.unit:
         yield macro("unit", string(field.unit))
-    if field.integer is not None:
+    integer = field.integer
+    if integer is not None:
         for item in field.special:
             thing = inside(record, "special value", field.name, "special", item.name)
-            value = constant(item.value, field.integer)
+            value = constant(item.value, integer)
             yield macro(item.name, value, _remark(item.about), thing)
         if isinstance(field.default, int):
-            yield macro("default", constant(int(field.default), field.integer))
+            yield macro("default", constant(int(field.default), integer))
     elif isinstance(field.element, Float) and isinstance(field.default, int | float):
         suffix = "f" if field.element.bits == 32 else ""
         yield macro("default", repr(float(field.default)) + suffix)
@@ -157,8 +160,12 @@ def _fraction(macro: object, word: str, value: Fraction) -> Iterable[Macro]:
     yield macro(f"{word}_den", number(value.denominator))
 
 
+@lru_cache(maxsize=1024)
 def string(text: str) -> str:
-    """A string literal; what is not ASCII is written as the bytes of UTF-8, in octal digits."""
+    """A string literal; what is not ASCII is written as the bytes of UTF-8, in octal digits.
+
+    A protocol has few of them, such as units, for many fields.
+    """
     return '"' + "".join(_character(byte) for byte in one_line(text).encode("utf-8")) + '"'
 
 
