@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 from math import prod
 
 from protogen.capture.schema import (
@@ -192,6 +193,7 @@ def _shape(step: AnyStep, outer: Sequence[str]) -> Shape:
             raise AssertionError("an array is a dimension, and a constant has no column")
 
 
+@lru_cache(maxsize=1024)
 def _number(type_: NumberType) -> Number:
     if type_.kind == "bool":
         return Number("?", 1)

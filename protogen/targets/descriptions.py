@@ -5,10 +5,12 @@ Each language makes its comments or docstrings of them.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from protogen.model.messages import Message
 from protogen.model.origin import About, Source
 from protogen.model.protocol import Link, Protocol
-from protogen.model.types import Array, Field
+from protogen.model.types import Array, Field, Integer
 from protogen.targets.escape import paragraphs
 
 
@@ -17,6 +19,7 @@ def sentence(text: str) -> str:
     return text if text.endswith((".", "!", "?", ":")) else f"{text}."
 
 
+@lru_cache(4096)
 def words(name: str) -> str:
     """A name as words."""
     return name.replace("_", " ").capitalize()
@@ -69,6 +72,18 @@ def step_of(item: Field) -> str:
 def extent_of(item: Field) -> list[str]:
     """Number of elements of an array."""
     return [f"{item.type.extent.counts} elements"] if isinstance(item.type, Array) else []
+
+
+def range_of(item: Field) -> str:
+    """Raw values that an encoder allows, such as `0..255`."""
+    if item.ranged or item.integer is None:
+        return f"{item.least}..{item.greatest}"
+    return _range_of_bits(item.integer)
+
+
+@lru_cache(maxsize=1024)
+def _range_of_bits(type_: Integer) -> str:
+    return f"{type_.least}..{type_.greatest}"
 
 
 def specials_of(item: Field) -> list[str]:

@@ -3,11 +3,15 @@
 Whatever the text holds, the result stays where it was put: in its table cell, paragraph, comment
 or docstring. Characters that can't be seen (controls, bidirectional overrides) are written as
 escapes, so that nobody reads other text than a compiler does.
+
+In a protocol the same names and docs stand in many places, so that what was made of a text is kept
+for a while.
 """
 
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 _MARKED = re.compile(r"[\\`*\[\]|~$]")
 """Marks that Markdown obeys inside a line; each is safe behind a backslash."""
@@ -25,6 +29,8 @@ _OBEYED = re.compile(r"[\\`*\[\]|~$_#&<>]")
 """Characters of which at least one is in every text that Markdown could obey."""
 _END_OF_COMMENT = re.compile(r"\*(?=/)|/(?=\*)")
 _TRIGRAPH = re.compile(r"\?(?=\?)")
+_KEPT = 4096
+"""Texts of which is remembered what was made of them, for each language."""
 _BLANK_LINE = re.compile(r"\n[^\S\n]*\n\s*")
 
 
@@ -35,11 +41,13 @@ def visible(text: str) -> str:
     return "".join(_shown(character) for character in text)
 
 
+@lru_cache(_KEPT)
 def one_line(text: str) -> str:
     """Put the text in one line, with single spaces between its words."""
     return visible(" ".join(text.split()))
 
 
+@lru_cache(_KEPT)
 def paragraphs(text: str) -> tuple[str, ...]:
     """Return the paragraphs of the text, each in one line; blank lines part them."""
     if text.isprintable():
@@ -49,6 +57,7 @@ def paragraphs(text: str) -> tuple[str, ...]:
     return tuple(one_line(part) for part in _BLANK_LINE.split(lines) if part.strip())
 
 
+@lru_cache(_KEPT)
 def markdown(text: str) -> str:
     """Return a line that reads as the text in a paragraph, a heading or a table cell.
 
@@ -79,12 +88,14 @@ def python_comment(text: str) -> str:
     return one_line(text)
 
 
+@lru_cache(_KEPT)
 def python_docstring(text: str) -> str:
     """Return lines for the inside of triple double quotes, read back as the visible text."""
     lines = "\n".join(visible(line.expandtabs().rstrip()) for line in text.splitlines())
     return _QUOTE.sub(r"\"", lines.replace("\\", "\\\\"))
 
 
+@lru_cache(_KEPT)
 def c_comment(text: str) -> str:
     """Return one line for the inside of ``/* */`` or behind ``//``, however it is wrapped."""
     line = one_line(text).replace("\\", "&#92;")

@@ -28,7 +28,7 @@ def of_field(item: Field) -> list[str]:
     facts = [descriptions.step_of(item)]
     is_number = item.integer is not None or (isinstance(item.element, Float) and item.ranged)
     if is_number and not descriptions.names_values(item):
-        facts.append(f"{item.least}..{item.greatest}")
+        facts.append(descriptions.range_of(item))
     facts += descriptions.extent_of(item) + descriptions.specials_of(item)
     return descriptions.of_field(item, facts)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 
 WIDTH = 100
 INDENT = 4
@@ -27,7 +28,8 @@ class Lines:
     def add(self, *lines: str) -> None:
         """Add lines at the current depth; those of the preprocessor have no indent."""
         indent = " " * (INDENT * self._depth)
-        self._lines += [line if line.startswith("#") else indent + line for line in lines]
+        for line in lines:
+            self._lines.append(line if line.startswith("#") else indent + line)
 
     def put_first(self, *lines: str) -> None:
         """Put lines in front of all others."""
@@ -90,7 +92,12 @@ class Lines:
 
 def mentions(text: str, name: str) -> bool:
     """True if a text of C uses a variable."""
-    return re.search(rf"(?<![\w.>]){name}\b", text) is not None
+    return _use_of(name).search(text) is not None
+
+
+@lru_cache(maxsize=256)
+def _use_of(name: str) -> re.Pattern[str]:
+    return re.compile(rf"(?<![\w.>]){name}\b")
 
 
 def function(head: str, arguments: tuple[str, ...], body: Lines) -> str:
@@ -100,6 +107,9 @@ def function(head: str, arguments: tuple[str, ...], body: Lines) -> str:
 
 def prototype(head: str, arguments: tuple[str, ...], end: str = ";") -> str:
     """A function's head; where it is too long, its arguments go on below each other."""
+    whole = f"{head}({', '.join(arguments) or 'void'}){end}"
+    if len(whole) <= WIDTH:
+        return whole
     items = [f"{argument}," for argument in arguments[:-1]]
     items.append(f"{arguments[-1] if arguments else 'void'}){end}")
     margin = len(head) + 1

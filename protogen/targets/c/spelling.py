@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import ChainMap
+from functools import cache, lru_cache
 
 from protogen.model.names import free_name
 from protogen.model.types import Float, NumberType, counting_bits, storage_bits
@@ -78,11 +79,13 @@ def handler_name(message: str) -> str:
 # --- types --------------------------------------------------------------------------------------
 
 
+@cache
 def unsigned_type(bits: int) -> str:
     """The smallest unsigned type of so many bits."""
     return f"uint{storage_bits(bits)}_t"
 
 
+@lru_cache(maxsize=1024)
 def integer_type(type_: NumberType) -> str:
     """The type of a member that holds such integers."""
     if type_.role == "bool":
@@ -95,6 +98,7 @@ def counting_type(greatest: int) -> str:
     return f"uint{counting_bits(greatest)}_t"
 
 
+@lru_cache(maxsize=1024)
 def layout_name(type_: NumberType) -> str:
     """The name of a layout on the wire: `u14le`, `s32be`, `f32le`, `u7`."""
     order = "" if type_.size == 1 else f"{type_.byte_order[0]}e"

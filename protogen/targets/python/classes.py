@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 
 import msgspec
 
@@ -151,6 +152,7 @@ def slots_of(names: Iterable[str]) -> str:
     return wrapped(tuple_of(map(text, ordered)), _INDENT + len("__slots__ = "), _INDENT, after=0)
 
 
+@lru_cache(4096)
 def _natural(name: str) -> list[tuple[int, str]]:
     """A key that sorts `servo2` before `servo10`."""
     return [(int(part), "") if part.isdigit() else (0, part) for part in re.split("([0-9]+)", name)]

@@ -29,7 +29,7 @@ def field(item: Field) -> list[str]:
     """Docstring of a field, with its unit and bounds."""
     facts = [descriptions.step_of(item)]
     if item.integer is not None and not descriptions.names_values(item):
-        facts.append(f"{item.least}..{item.greatest}")
+        facts.append(descriptions.range_of(item))
     facts += descriptions.extent_of(item) + descriptions.specials_of(item)
     if item.const is not None:
         facts.append("constant")

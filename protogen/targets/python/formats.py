@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 from protogen.model.protocol import Protocol
 from protogen.model.types import (
@@ -71,6 +72,7 @@ def type_format(type_: Type) -> str:
             return _switch(type_)
 
 
+@lru_cache(1024)
 def _integer(type_: Integer) -> str:
     if type_.role == "bool":
         return "_c.Flag01"

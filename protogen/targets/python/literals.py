@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
+from functools import lru_cache
 
 
 def number(value: Fraction | int) -> str:
@@ -17,7 +18,7 @@ def number(value: Fraction | int) -> str:
 def octets(value: bytes) -> str:
     """Bytes, as hex digits where they are no printable text."""
     if value.isascii() and value.decode("ascii").isprintable():
-        return "b" + _quoted(value.decode("ascii"))
+        return "b" + text(value.decode("ascii"))
     return f'bytes.fromhex("{value.hex(" ").upper()}")' if value else 'b""'
 
 
@@ -26,12 +27,9 @@ def octets_in_class(value: bytes) -> str:
     return 'b"' + "".join(f"\\x{byte:02x}" for byte in value) + '"'
 
 
+@lru_cache(4096)
 def text(value: str) -> str:
     """A string in double quotes."""
-    return _quoted(value)
-
-
-def _quoted(value: str) -> str:
     escaped = value.encode("unicode_escape").decode("ascii")
     return '"' + escaped.replace('"', '\\"') + '"'
 

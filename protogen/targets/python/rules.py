@@ -95,10 +95,14 @@ def _special(field: Field | None) -> str | None:
 
 
 def _physical(field: Field) -> dict[str, str | None]:
+    """What turns raw values into physical ones, and their unit."""
+    unit = {"unit": text(field.unit) if field.unit else None}
+    if not field.scaled:
+        return unit
     return {
         "scale": _fraction(field.scale) if field.scale != 1 else None,
         "offset": _fraction(field.offset) if field.offset != 0 else None,
-        "unit": text(field.unit) if field.unit else None,
+        **unit,
     }
 
 

@@ -6,7 +6,10 @@ a class name can't hide anything.
 
 from __future__ import annotations
 
+from functools import lru_cache
 
+
+@lru_cache(4096)
 def class_name(name: str) -> str:
     """`move_manual` is `MoveManual`."""
     return "".join(word[:1].upper() + word[1:] for word in name.split("_"))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import msgspec
 
 from protogen.model.messages import Message
@@ -12,7 +14,7 @@ from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.spelling import hexadecimal
 
 
-class MessageFrame(msgspec.Struct, frozen=True):
+class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     """The functions for one message, from senders of one frame."""
 
     message: Message
@@ -41,19 +43,19 @@ class MessageFrame(msgspec.Struct, frozen=True):
         """The function that hands over byte after byte."""
         return f"{self.view.prefix}_send{self.suffix}"
 
-    @property
+    @cached_property
     def upper(self) -> str:
         """Prefix of its macros."""
         return f"{self.view.upper}{self.suffix.upper()}"
 
     # --- the payload ------------------------------------------------------------------------------
 
-    @property
+    @cached_property
     def validate(self) -> str:
         """The function that refuses values; empty where none is out of range."""
         return self.view.validate if self.view.validates else ""
 
-    @property
+    @cached_property
     def no_frame_has(self) -> str:
         """The condition of a payload that no frame can carry; empty if there is none."""
         found = [f"payload < {self.least_payload}U"] if self.least_payload else []
@@ -76,7 +78,7 @@ class MessageFrame(msgspec.Struct, frozen=True):
             for part, value in zip(self.decoder.plan.identity, self.message.identity, strict=True)
         )
 
-    @property
+    @cached_property
     def passed(self) -> str:
         """The identity and the caller's parts, as arguments behind others."""
         names = (*self.identity, *(item.name for item in self.frame.arguments))
@@ -95,7 +97,7 @@ class MessageFrame(msgspec.Struct, frozen=True):
         plan = self.decoder.plan
         return plan.cut_ambiguous and plan.may_look_idle(self.message)
 
-    @property
+    @cached_property
     def refusals(self) -> str:
         """The condition that a decoder would cut the frame elsewhere; empty if it never does."""
         prefix = self.frame.decoder.prefix
@@ -103,7 +105,7 @@ class MessageFrame(msgspec.Struct, frozen=True):
         found += [f"{prefix}_looks_idle(frame, wire)"] if self.needs_idle_check else []
         return " || ".join(found)
 
-    @property
+    @cached_property
     def sends(self) -> bool:
         """True if the frame can be handed over byte by byte."""
         return self.frame.plan.streams and not self.refusals

@@ -161,13 +161,13 @@ class Helpers:
         if isinstance(type_, Float):
             bits = f"{self.load(type_.unsigned)}(at)"
             result = self.float_type(type_)
-            body = [f"return {self._reinterpret(type_, from_bits=True)}({bits});"]
+            body: Iterable[str] = [f"return {self._reinterpret(type_, from_bits=True)}({bits});"]
         elif type_.signed:
             raw = f"{self.load(type_.unsigned)}(at)" if type_.size > 1 else "at[0]"
             result, body = integer_type(type_), [f"return {sign_extended(type_, raw)};"]
         else:
             type_ = widened(type_)
-            result, body = integer_type(type_), joined(type_, "at")
+            result, body = integer_type(type_), _joined(type_)
         return self._helper(f"load_{layout_name(type_)}", result, (_AT,), body)
 
     def loads_runs(self, type_: NumberType) -> bool:
@@ -298,6 +298,10 @@ class Helpers:
 
 
 # --- bodies: printed where a helper is asked for the first time -----------------------------------
+
+
+def _joined(type_: NumberType) -> Iterator[str]:
+    yield from joined(type_, "at")
 
 
 def _stored(type_: NumberType) -> Iterator[str]:

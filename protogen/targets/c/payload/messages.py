@@ -286,7 +286,7 @@ def _unused(lines: Lines, arguments: tuple[str, ...]) -> Iterator[str]:
     """The parameters that need not be used and are not."""
     text = "\n".join(lines.lines)
     each = ", ".join(arguments).split(", ")
-    parameters = {argument.replace("*", " ").split()[-1] for argument in each}
+    parameters = {argument.rpartition(" ")[2].lstrip("*") for argument in each}
     for name in _PARAMETERS:
         if name in parameters and not mentions(text, name):
             yield name

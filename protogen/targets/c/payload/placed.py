@@ -65,6 +65,9 @@ class PlacedWalk(Walk):
             self.settle()
 
     def _sum(self, start: str) -> str:
+        if not self._index and not self._pending:  # As in all that has no arrays.
+            offset = str(self._offset or "")
+            return f"{start} + {offset}" if start and offset else start or offset
         terms = [start, str(self._offset or ""), self._index, self._pending]
         return " + ".join(term for term in terms if term)
 

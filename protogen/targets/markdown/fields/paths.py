@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 import msgspec
 
-from protogen.model.payload_plan import AnyStep, ChooseStep, RecordStep, RepeatStep
+from protogen.model.payload_plan import AnyStep, ChooseStep, NumberStep, RecordStep, RepeatStep
 from protogen.model.types import Field
 
 
@@ -40,6 +40,14 @@ def named_fields(steps: Iterable[AnyStep], path: Path = ROOT) -> Iterator[tuple[
         inner = path.field(step.name)
         yield inner, step.field
         yield from _inside(step, inner)
+
+
+def fields_inside(steps: Iterable[AnyStep]) -> Iterator[Field]:
+    """Yield the same fields without their paths."""
+    for step in steps:
+        yield step.field
+        if not isinstance(step, NumberStep):
+            yield from (field for _, field in _inside(step, ROOT))
 
 
 def _inside(step: AnyStep, path: Path) -> Iterator[tuple[Path, Field]]:

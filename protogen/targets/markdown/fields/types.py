@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -36,6 +38,7 @@ def type_text(step: AnyStep) -> str:
             return "struct"
 
 
+@lru_cache(maxsize=1024)
 def number_text(kind: NumberType) -> str:
     """Print a number's type with its byte order."""
     return f"{code(kind.name)} {_ORDERS[kind.byte_order]}" if kind.size > 1 else code(kind.name)

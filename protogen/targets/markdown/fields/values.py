@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import lru_cache
 
 import msgspec
 
 from protogen.model.meanings import Enum, Flags, NamedBit, NamedValue
-from protogen.model.origin import About
-from protogen.model.types import Constant, Field, NumberType
+from protogen.model.origin import NOTHING, About
+from protogen.model.types import Constant, Field, Integer, NumberType
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.fields.paths import Path
 from protogen.targets.markdown.text.words import (
@@ -114,6 +115,8 @@ def _named_text(field: Field, path: Path, anchors: Anchors) -> str:
 
 def values_text(values: Sequence[NamedValue], anchor: str, noun: str = "value") -> str:
     """List named values if they are few; link to their table where that tells more."""
+    if not values:
+        return ""
     names = [f"{code(short_number(item.value))} {item.name}" for item in values]
     return _linked(names, values, noun, anchor)
 
@@ -132,8 +135,17 @@ def _bounds_text(field: Field) -> str:
     is_plain = integer is not None and integer.role in ("char", "bool")
     if not field.ranged and (named or field.const is not None or is_plain):
         return ""
-    raw = bounds(field.least, field.greatest)
+    if integer is not None and not field.ranged:
+        raw = _own_bounds(integer)
+    else:
+        raw = bounds(field.least, field.greatest)
     return f"{raw} ({_physical_bounds(field)})" if field.scaled else raw
+
+
+@lru_cache(maxsize=256)
+def _own_bounds(type_: Integer) -> str:
+    """Print what the bits of an integer can hold."""
+    return bounds(Fraction(type_.least), Fraction(type_.greatest))
 
 
 def _physical_bounds(field: Field) -> str:
@@ -168,7 +180,11 @@ def _formula(field: Field) -> str:
 
 def tells_more(items: Named) -> bool:
     """True if a table has more to show than a list in a cell."""
-    return len(items) > _FEW or any(item.about != About() for item in items)
+    return len(items) > _FEW or any(_is_explained(item.about) for item in items)
+
+
+def _is_explained(about: About) -> bool:
+    return about is not NOTHING and about != NOTHING
 
 
 def value_meaning(value: int, field: Field, type_: NumberType) -> str:

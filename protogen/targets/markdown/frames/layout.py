@@ -7,6 +7,7 @@ insert bytes, positions are those of the unstuffed frame.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import accumulate
 
 import msgspec
@@ -52,7 +53,7 @@ class Place(msgspec.Struct, frozen=True):
 
     def plus(self, size: int) -> Place:
         """Return the place so many bytes further on."""
-        return replace(self, offset=self.offset + size)
+        return Place(self.offset + size, self.base, self.strides)
 
     def text(self, size: int | None, start: int = 0, scale: int = 1) -> str:
         """Print which bytes these are, with the payload from `start` on, scaled."""
@@ -63,7 +64,7 @@ class Place(msgspec.Struct, frozen=True):
         return self._bytes(size * scale, start, scale)
 
     def _bytes(self, size: int, start: int, scale: int) -> str:
-        strides = self._strides(scale)
+        strides = self._strides(scale) if self.strides else ""
         if not self.base:
             return span(start + self.offset * scale, size) + strides
         return self.base + (f" + {span(self.offset, size)}" if self.offset else "") + strides
@@ -120,6 +121,7 @@ def _from_last(distance: int) -> str:
     return "last" if distance == 0 else f"last - {distance}"
 
 
+@lru_cache(maxsize=1024)
 def slots(frame: Frame, payload: SizeSet) -> tuple[Slot, ...]:
     """Return where each part lies in frames with such a payload; absent parts are left out."""
     sized = [(part, part_sizes(part, payload)) for part in _parts_on_wire(frame)]
@@ -162,6 +164,7 @@ def part_sizes(part: Part, payload: SizeSet) -> SizeSet:
     return _NOTHING if payload.greatest == 0 else sizes | _NOTHING
 
 
+@lru_cache(maxsize=1024)
 def length_values(frame: Frame, part: LengthPart, payload: SizeSet) -> SizeSet:
     """Return what the length part can hold in front of such a payload."""
     counted = (part_sizes(frame.part(name), payload) for name in part.counts)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
@@ -49,6 +50,7 @@ def _frame_row(frame: Frame, slot: Slot) -> tuple[str, ...]:
     return (slot.place, size, part_type(part), name, part_value(part), meaning(part))
 
 
+@lru_cache(maxsize=256)
 def part_type(part: Part) -> str:
     """Return a part's type; empty for bytes."""
     return number_text(part.type) if isinstance(part, NumberPart | ChecksumPart) else ""
@@ -100,6 +102,7 @@ def meaning(part: Part) -> str:
     return about_line(part.about, *_roles(part))
 
 
+@lru_cache(maxsize=256)
 def role(part: Part) -> str:
     """Say in a word what a part is."""
     return next(word for kind, word in _ROLE_WORDS if isinstance(part, kind))

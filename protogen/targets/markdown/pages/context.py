@@ -10,7 +10,7 @@ from protogen.model.framing import MessageFraming
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import NumberType
-from protogen.targets.markdown.fields.paths import named_fields
+from protogen.targets.markdown.fields.paths import fields_inside
 from protogen.targets.markdown.text.words import code
 
 
@@ -42,7 +42,7 @@ def _users(messages: Iterable[Message]) -> dict[str, list[NumberType]]:
     """The integers of the fields that use each enum and flags, by its name."""
     users: dict[str, list[NumberType]] = {}
     for message in messages:
-        for _, field in named_fields(message.plan.steps):
+        for field in fields_inside(message.plan.steps):
             integer = field.integer
             named = integer and (integer.enum or integer.flags)
             if integer and named:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from protogen.model.protocol import Protocol
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.fields.paths import named_fields
+from protogen.targets.markdown.fields.paths import fields_inside
 from protogen.targets.markdown.text.anchors import example_anchor
 from protogen.targets.markdown.text.table import View
 from protogen.targets.markdown.text.words import code, listed, sentence
@@ -49,7 +49,7 @@ def _facts(protocol: Protocol) -> Iterator[tuple[str, str]]:
 def _counts(protocol: Protocol) -> Iterator[tuple[str, str]]:
     """Yield labels and texts; a text can be empty."""
     specified = [message for message in protocol.messages if not message.unspecified]
-    named = [field for message in specified for _, field in named_fields(message.plan.steps)]
+    named = [field for message in specified for field in fields_inside(message.plan.steps)]
     examples = sum(len(message.examples) for message in protocol.messages)
     contradictions = [*_contradictions(protocol)]
     unspecified = len(protocol.messages) - len(specified)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from protogen.model.messages import Exchange, Message, Step
 from protogen.model.protocol import Decision, Protocol, ReservedIdentity
 from protogen.targets.escape import markdown
-from protogen.targets.markdown.fields.paths import named_fields
+from protogen.targets.markdown.fields.paths import fields_inside, named_fields
 from protogen.targets.markdown.text.anchors import example_anchor, message_link
 from protogen.targets.markdown.text.origin import about_line, place
 from protogen.targets.markdown.text.table import Table, View, table
@@ -91,6 +91,8 @@ def _unknown_rows(message: Message) -> Iterator[tuple[str, ...]]:
     if message.unspecified:
         known = f"{plural(message.sizes, 'byte')} of payload"
         yield message_link(message.name), "all", known, place(message.about.source)
+        return
+    if not any(field.unknown for field in fields_inside(message.plan.steps)):
         return
     for path, field in named_fields(message.plan.steps):
         if field.unknown:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import lru_cache
 
 from protogen.model.sizes import SizeSet
 
@@ -72,6 +73,7 @@ def _power(value: int) -> str:
     return str(value)
 
 
+@lru_cache(maxsize=1024)
 def size_text(sizes: SizeSet) -> str:
     """Print the possible sizes: ``8``, ``0 to 255``, ``8 to 59 in steps of 3``."""
     return f"{_ends(sizes)}{_steps(sizes)}"

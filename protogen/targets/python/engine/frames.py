@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 from protogen.model.frame import (
     ChecksumPart,
     LiteralPart,
@@ -37,8 +39,10 @@ class EngineFrame:
         """Bytes of the largest payload that a message has, whatever frames allow."""
         self.gives_content = False
         """True if readers are given the whole content of a frame, and not its payload alone."""
+        self._covered: dict[tuple[str, str, int], str] = {}
+        """Expressions of what checksums cover: those of all messages are the same."""
 
-    @property
+    @cached_property
     def skipped(self) -> int:
         """Bytes at the start of a frame that are not in the content.
 
@@ -51,7 +55,7 @@ class EngineFrame:
 
     # --- what can be cut --------------------------------------------------------------------------
 
-    @property
+    @cached_property
     def can_frame(self) -> bool:
         """True if there is a function that makes frames; else the reference does it alone."""
         return (
@@ -184,13 +188,16 @@ class EngineFrame:
 
         The content's last `missing` bytes are not there yet.
         """
-        pieces = [
-            octets_in_class(run)
-            if isinstance(run, bytes)
-            else self.slice_of(content, *(_moved(bound, missing) for bound in run))
-            for run in self.covered_runs(part)
-        ]
-        return " + ".join(pieces) or 'b""'
+        key = part.name, content, missing
+        if key not in self._covered:
+            pieces = [
+                octets_in_class(run)
+                if isinstance(run, bytes)
+                else self.slice_of(content, *(_moved(bound, missing) for bound in run))
+                for run in self.covered_runs(part)
+            ]
+            self._covered[key] = " + ".join(pieces) or 'b""'
+        return self._covered[key]
 
     def covered_runs(self, part: ChecksumPart) -> tuple[tuple[int, int] | bytes, ...]:
         """Bytes that a checksum covers, or where they begin and end in the content.
@@ -211,7 +218,7 @@ class EngineFrame:
                 runs.append((first, end))
         return tuple(runs)
 
-    @property
+    @cached_property
     def front(self) -> bytes:
         """Literals in front of the content."""
         literals = [part.bytes for part in self.head if isinstance(part, LiteralPart)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 from protogen.model.payload_plan import (
     AnyStep,
@@ -14,7 +15,7 @@ from protogen.model.payload_plan import (
     without_constant,
 )
 from protogen.model.sizes import SizeSet
-from protogen.model.types import NumberType, Struct
+from protogen.model.types import Float, NumberType, Struct
 
 UNSIGNED = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
@@ -24,40 +25,43 @@ def code_of(step: AnyStep) -> str | None:
 
     A number that `struct` does not know is so many bytes, to be converted.
     """
-    match without_constant(step):
-        case IntegerStep() as number:
-            return _integer(number)
-        case FloatStep(type=type_):
-            known = "f" if type_.bits == 32 else "d"
-            return known if type_.byte_bits == 8 else f"{type_.size}s"
-        case BytesStep(count=count) if count.is_fixed:
-            return f"{count.known}s"
+    value = without_constant(step)
+    if isinstance(value, NumberStep):
+        return _number_code(value.type)
+    if isinstance(value, BytesStep) and value.count.is_fixed:
+        return f"{value.count.known}s"
     return None
 
 
-def _integer(step: IntegerStep) -> str:
-    type_ = step.type
-    if type_.byte_bits == 7 and type_.size > 2:
+@lru_cache(maxsize=1024)
+def _number_code(type_: NumberType) -> str:
+    """The code of a number, worked out once for all fields of a type."""
+    if isinstance(type_, Float):
+        known: str | None = "f" if type_.bits == 32 else "d"
+        is_known = type_.byte_bits == 8
+    else:
+        known = UNSIGNED.get(type_.size)
+        is_known = type_.byte_bits == 8 or type_.size <= 2
+    if known is None or not is_known:
         return f"{type_.size}s"
-    code = UNSIGNED.get(type_.size)
-    if code is None:
-        return f"{type_.size}s"
-    return code.lower() if type_.signed and is_native(step) else code
+    return known.lower() if type_.signed and _is_native(type_) else known
 
 
 def is_native(step: IntegerStep) -> bool:
     """True if `struct` itself reads and writes the value."""
-    type_ = step.type
+    return _is_native(step.type)
+
+
+def _is_native(type_: NumberType) -> bool:
     return type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64) and type_.role != "bool"
 
 
 def order_of(step: AnyStep) -> str:
     """`<` or `>`; empty where the order of bytes does not matter to `struct`."""
-    code, number = code_of(step), without_constant(step)
-    if code is None or code.endswith("s"):
+    value = without_constant(step)
+    if not isinstance(value, NumberStep) or _number_code(value.type).endswith("s"):
         return ""
-    assert isinstance(number, NumberStep)
-    return byte_order(number.type)
+    return byte_order(value.type)
 
 
 def byte_order(type_: NumberType) -> str:
@@ -69,8 +73,10 @@ def byte_order(type_: NumberType) -> str:
 
 def common_order(steps: Sequence[AnyStep]) -> str | None:
     """The order of bytes that one `struct` has for all steps; None where it can't read them."""
+    if not steps or any(code_of(step) is None for step in steps):
+        return None
     orders = {order_of(step) for step in steps} - {""}
-    if not steps or len(orders) > 1 or any(code_of(step) is None for step in steps):
+    if len(orders) > 1:
         return None
     return orders.pop() if orders else ""
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from protogen.model.types import NumberType
-from protogen.targets.python.wrapping import wrapped
+from protogen.targets.python.wrapping import WIDTH, wrapped
 
 _INDENT = "    "
 
@@ -65,6 +65,8 @@ class Lines:
 
     def _broken(self, line: str) -> str:
         """A statement whose expression is broken at commas where it does not fit."""
+        if len(_INDENT) * (self._depth + 1) + len(line) <= WIDTH:
+            return line
         for word in ("return ", " = "):
             start, found, expression = line.partition(word)
             if found and " for " not in expression:

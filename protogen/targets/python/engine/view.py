@@ -118,7 +118,7 @@ _USES = {
 
 def _names(protocol: Protocol, used: str, *, tables: bool, codes: bool) -> tuple[str, ...]:
     """Names that the text uses of the other module, sorted as imports are."""
-    words = set(_WORD.findall(used))
+    words = set(_CLASS.findall(used))
     types = {item.name for item in protocol.enums}
     types |= {item.name for item in protocol.flags}
     types |= {item.name for item in protocol.structs}
@@ -130,7 +130,8 @@ def _names(protocol: Protocol, used: str, *, tables: bool, codes: bool) -> tuple
     return tuple(sorted(kept))
 
 
-_WORD = re.compile(r"\w+")
+_CLASS = re.compile(r"\b[A-Z]\w*")
+"""Words that may be names of classes."""
 
 
 def _around(frames: list[EngineFrame]) -> tuple[int, int] | None:
