@@ -15,6 +15,7 @@ tested = mkdir -p $(CACHE) && { $(BIN)/python -m pytest -n auto --dist worksteal
 # What is made from schemas and from the compiler itself, and is checked in.
 generate: $(INSTALLED)
 	@$(BIN)/python -m protogen.problems.docs docs/problems.md
+	@$(BIN)/python -m protogen.library.page docs/reference/library.md README.md
 	@$(BIN)/protogen schema-json --output schemas/protogen.schema.json
 	@$(BIN)/protogen generate --quiet
 

@@ -34,11 +34,13 @@ def metadata_of(wheel: zipfile.ZipFile) -> Message:
 
 
 class TestWheel:
-    def test_holds_every_module_every_template_and_the_marker_of_types(
+    def test_holds_every_module_every_template_the_library_and_the_marker_of_types(
         self, wheel: zipfile.ZipFile, project_root: Path
     ) -> None:
         package = project_root / "protogen"
-        needed = [*package.rglob("*.py"), *package.rglob("*.j2"), package / "py.typed"]
+        library = [*package.glob("library/*.yaml"), *package.glob("library/*.toml")]
+        modules = [*package.rglob("*.py"), *package.rglob("*.j2"), package / "py.typed"]
+        needed = [*modules, *library]
         names = {path.relative_to(project_root).as_posix() for path in needed}
         assert any(name.endswith(".j2") for name in names)
         assert names <= set(wheel.namelist())

@@ -12,7 +12,7 @@ import typer
 
 from protogen.cli.exits import CLEAN, UsageError
 from protogen.cli.generation.plan import SCHEMAS
-from protogen.starter.framings import Framing, starter_schema
+from protogen.starter.framings import Framing, extending_schema, starter_schema
 
 EXAMPLE = "Example: protogen init motor --framing cobs"
 NAME = "my_protocol"
@@ -29,6 +29,10 @@ def init(
         Framing | None,
         typer.Option(help=f"How a receiver finds a frame. Default: {Framing.COBS.value}"),
     ] = None,
+    base: Annotated[
+        str | None,
+        typer.Option("--from", metavar="library:NAME", help="A schema of the library to extend."),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="FILE", help="The new file. Default: NAME.yaml"),
@@ -36,15 +40,22 @@ def init(
 ) -> int:
     """Write a small schema to begin with.
 
-    It compiles as it is, and its comments say what is what. Beside it goes the JSON Schema with
-    which editors complete and explain. On a terminal, asks for what was not given. A file that is
-    there already is never overwritten.
+    It compiles as it is, and its comments say what is what. With `--from` it extends a schema of
+    the library, such as `library:ubx`, and states only what your device does differently. Beside it
+    goes the JSON Schema with which editors complete and explain. On a terminal, asks for what was
+    not given. A file that is there already is never overwritten.
     """
     asks = sys.stdin.isatty() and sys.stdout.isatty()
-    chosen_name = _checked(name or (_ask_name() if asks else NAME))
-    chosen_framing = framing or (_ask_framing() if asks else Framing.COBS)
+    known = _library_name(base)
+    if known is not None and framing is not None:
+        raise UsageError("--from and --framing exclude each other", "the base has its own frame")
+    chosen_name = _checked(name or (_ask_name() if asks else f"my_{known}" if known else NAME))
     file = output or Path(chosen_name + _SUFFIX)
-    _write_schema(file, chosen_name, chosen_framing)
+    if known is None:
+        chosen_framing = framing or (_ask_framing() if asks else Framing.COBS)
+        _write_schema(file, starter_schema(chosen_name, chosen_framing, str(file)))
+    else:
+        _write_schema(file, extending_schema(chosen_name, known, str(file)))
     _write_json_schema(file.parent)
     typer.echo(f"next: protogen check {file}")
     _tell_of_project(file)
@@ -108,8 +119,21 @@ def _checked(name: str) -> str:
     return name
 
 
-def _write_schema(file: Path, name: str, framing: Framing) -> None:
-    text = starter_schema(name, framing, str(file))
+def _library_name(written: str | None) -> str | None:
+    """Return the name of a schema of the library. Raises UsageError if there is none."""
+    from protogen.library import PREFIX, library_file, library_names
+    from protogen.problems import hint_for
+
+    if written is None:
+        return None
+    name = written.removeprefix(PREFIX)
+    if library_file(name) is None:
+        hint = hint_for(name, library_names()) or f"there are {', '.join(library_names())}"
+        raise UsageError(f"the library has no schema `{name}`", hint)
+    return name
+
+
+def _write_schema(file: Path, text: str) -> None:
     try:
         with file.open("x", encoding="utf-8", newline="") as stream:
             stream.write(text)

@@ -87,6 +87,14 @@ class Framing(StrEnum):
         return SEVEN_BITS if self is Framing.SEVEN_BIT else WHOLE_BYTES
 
 
+def extending_schema(name: str, base: str, file: str) -> str:
+    """Return a schema that extends one of the library; `file` is how its comments call it."""
+    from protogen.targets.printing import environment
+
+    template = environment("protogen.starter").get_template("extending.yaml.j2")
+    return template.render(name=name, base=base, file=file)
+
+
 def starter_schema(name: str, framing: Framing, file: str) -> str:
     """Return a schema that compiles as it is; `file` is how its comments call it."""
     from protogen.targets.printing import environment

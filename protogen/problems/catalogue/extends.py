@@ -52,7 +52,8 @@ protocol: base
         "unreadable-base",
         "The schema that is extended can't be read",
         """\
-`extends` is a path from the folder of the file that it stands in.
+`extends` is a path from the folder of the file that it stands in, or `library:` and the name of a
+schema that is installed with protogen.
 """,
         """\
 # file: dialect.yaml

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import msgspec
 
-from protogen.problems import Problems, SourceMap, Span
+from protogen.library import FOLDER, PREFIX, library_file, library_names
+from protogen.problems import Problems, SourceMap, Span, hint_for
 from protogen.schema.dialects.by_sender import spread_shared
 from protogen.schema.dialects.merge import merge
 from protogen.schema.dialects.project_folder import project_folder
@@ -90,17 +91,33 @@ def _path(named: Node, problems: Problems) -> ScalarNode | None:
 
 
 def _locate(file: str, named: ScalarNode, folder: Path, problems: Problems) -> str | None:
-    """Return the real path of the base that ``file`` names, if it is in the project."""
+    """Return the real path of the base that ``file`` names, if it is in the project.
+
+    Schemas of the library are in every project.
+    """
+    if named.text.startswith(PREFIX):
+        return _in_library(named, problems)
     try:
         place = os.path.realpath(Path(file).parent / named.text)
     except ValueError as error:
         problems.add("PG022", named.span, f"the base can't be read: {error}")
         return None
-    if not Path(place).is_relative_to(folder):
+    if not any(map(Path(place).is_relative_to, (folder, FOLDER))):
         hint = f"the project is the folder `{folder.name}`"
         problems.add("PG021", named.span, "the base is outside of the project", hint)
         return None
     return place
+
+
+def _in_library(named: ScalarNode, problems: Problems) -> str | None:
+    name = named.text.removeprefix(PREFIX)
+    found = library_file(name)
+    if found is None:
+        names = library_names()
+        hint = hint_for(name, names) or f"there are {', '.join(names)}"
+        problems.add("PG022", named.span, f"the library has no schema `{name}`", hint)
+        return None
+    return str(found)
 
 
 def _read_base(
@@ -114,7 +131,8 @@ def _read_base(
     except OSError as error:
         problems.add("PG022", named.span, f"the base can't be read: {reason(error)}")
         return None
-    label = os.path.normpath(Path(file).parent / named.text)
+    is_path = not named.text.startswith(PREFIX)
+    label = os.path.normpath(Path(file).parent / named.text) if is_path else place
     base = decode_document(data, label, problems, sources)
     if base is not None and not isinstance(base.root, MappingNode):
         problems.add("PG022", named.span, "the base is no schema: it holds no mapping")

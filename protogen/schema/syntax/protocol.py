@@ -177,7 +177,8 @@ class ProtocolSyntax(Syntax):
 
     protocol: Name = Field(description="Name of the protocol: modules and files are called so.")
     extends: Text | None = Field(
-        None, description="The schema that this one changes; relative to this file."
+        None,
+        description="The schema that this one changes: its path from this file, or library:NAME.",
     )
     title: Text | None = Field(None, description="Title for people.")
     doc: Text | None = Field(None, description="What a reader should know first.")

@@ -1,0 +1,118 @@
+"""A schema of the library beside an implementation of its protocol that nobody here wrote."""
+
+from __future__ import annotations
+
+import warnings
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from functools import cache
+from importlib import import_module
+from random import Random
+from types import ModuleType
+from typing import Protocol
+
+from compiled import module_at, protocol_of
+from tooling import require_module
+
+from protogen.fuzzing.python_engine import PythonEngine
+from protogen.fuzzing.samples import Values
+from protogen.fuzzing.trips import Case, cases
+from protogen.library import FOLDER
+
+FRAMES = 500
+"""Frames that are compared each way, at least."""
+ERRORS = 0.01
+"""Share of bytes that are damaged where recovery is compared."""
+
+
+class Peer(Protocol):
+    """What an independent implementation does. Values are those of JSON lines."""
+
+    def frame(self, case: Case) -> bytes:
+        """Encode a whole frame."""
+
+    def values(self, case: Case, frame: bytes) -> Values:
+        """Decode a frame of the message of a case."""
+
+    def found(self, endpoint: str, data: bytes) -> Iterable[bytes]:
+        """Yield the frames that it finds in a stream, in order."""
+
+
+def peer_module(name: str) -> ModuleType:
+    """A module of a peer, whose warnings are its own. Without it, the test is skipped."""
+    require_module(name.partition(".")[0])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return import_module(name)
+
+
+def encoded(name: str, case: Case) -> bytes:
+    """The frame of a case, in the first form that it fits."""
+    codec = module_at(FOLDER / f"{name}.yaml").PROTOCOL
+    spec = codec.sender(case.sender)
+    kinds = {kind.NAME: kind for kind in (*spec.messages, *spec.encode_only)}
+    return codec.encode(kinds[case.message].from_dict(case.values), spec.name, **case.parts)
+
+
+@cache
+def engine_of(name: str) -> PythonEngine:
+    """The codec that is generated from a schema of the library."""
+    return PythonEngine(module_at(FOLDER / f"{name}.yaml").PROTOCOL)
+
+
+def cases_of(name: str, messages: Iterable[str] | None = None, seed: int = 1) -> list[Case]:
+    """Values of some messages, or of all: boundaries and random ones, `FRAMES` at least."""
+    protocol = protocol_of(FOLDER / f"{name}.yaml")
+    wanted = {message.name for message in protocol.messages} if messages is None else set(messages)
+    assert wanted <= {message.name for message in protocol.messages}
+    count = FRAMES // len(wanted) + 1
+    drawn = [case for message in sorted(wanted) for case in cases(protocol, count, seed, message)]
+    assert len(drawn) >= FRAMES
+    return drawn
+
+
+def endpoint_of(name: str, case: Case) -> str:
+    """The endpoint that sends a case, in whatever form of frame."""
+    return protocol_of(FOLDER / f"{name}.yaml").sender(case.sender).endpoint
+
+
+def compare_frames(name: str, peer: Peer, drawn: Iterable[Case]) -> None:
+    """Each makes the frames that the other makes, and reads in them what the other put in."""
+    engine = engine_of(name)
+    for case in drawn:
+        ours = encoded(name, case)
+        theirs = peer.frame(case)
+        assert ours == theirs, case
+        (event,) = engine.events(case.sender, [theirs])
+        assert (event.message, event.values) == (case.message, case.values)
+        assert peer.values(case, ours) == case.values, case
+
+
+def compare_recovery(name: str, endpoint: str, peer: Peer, drawn: Iterable[Case]) -> None:
+    """Of a stream with damaged bytes, no frame is lost that the peer finds."""
+    engine = engine_of(name)
+    dice = Random(name)
+    drawn = [case for case in drawn if endpoint_of(name, case) == endpoint]
+    frames = [encoded(name, case) for case in drawn]
+    dice.shuffle(frames)
+    data = damaged(b"".join(frames), dice)
+    sent = Counter(frames)
+    ours = Counter(found(engine, drawn[0].sender, data)) & sent
+    theirs = Counter(peer.found(endpoint, data)) & sent
+    assert theirs <= ours, [frame.hex(" ") for frame in theirs - ours]
+    assert len(frames) / 10 < ours.total() < len(frames)
+    assert theirs
+
+
+def damaged(data: bytes, dice: Random) -> bytes:
+    """The data with another byte in the place of each hundredth, on average."""
+    return bytes(byte ^ dice.randrange(1, 256) if dice.random() < ERRORS else byte for byte in data)
+
+
+def found(engine: PythonEngine, sender: str, data: bytes) -> Iterator[bytes]:
+    """Yield the frames of known messages that we find in a stream, in all forms of the endpoint."""
+    at = 0
+    for event in engine.events(sender, [data]):
+        if event.kind == "message":
+            yield data[at : at + event.size]
+        at += event.size

@@ -1,0 +1,108 @@
+"""The library: its schemas compile, are extended and installed."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from cli_support import run
+from compiled import ROOT
+from tooling import require_compiler
+
+from protogen.compiler import compile_file
+from protogen.library import FOLDER, library_file, library_names, page
+from protogen.library.page import Proof, proof_of, render_page, with_table
+
+EVERY_SCHEMA = pytest.mark.parametrize("name", library_names())
+
+
+@EVERY_SCHEMA
+def test_a_schema_of_the_library_has_no_problems(name: str) -> None:
+    file = library_file(name)
+    assert file is not None
+    compilation = compile_file(file, examples=True)
+    assert [str(problem) for problem in compilation.problems] == []
+
+
+@EVERY_SCHEMA
+def test_a_schema_of_the_library_says_where_its_facts_are_from(name: str) -> None:
+    file = library_file(name)
+    assert file is not None
+    protocol = compile_file(file).protocol
+    assert protocol is not None
+    assert protocol.name == name
+    assert protocol.source is not None
+    assert any(message.examples for message in protocol.messages)
+
+
+@EVERY_SCHEMA
+def test_a_project_extends_it_from_any_folder(name: str, tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    result = run("init", "mine", "--from", f"library:{name}", "--output", str(file))
+    assert result.exit_code == 0, result.stderr
+    compilation = compile_file(file)
+    assert [str(problem) for problem in compilation.problems] == []
+    assert compilation.protocol is not None
+    assert compilation.protocol.name == "mine"
+
+
+def test_a_schema_that_is_not_there_is_a_problem_with_its_place(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text("protocol: mine\nextends: library:vsec\n")
+    (problem,) = compile_file(file).problems
+    assert (problem.code, problem.hint) == ("PG022", "did you mean `vesc`?")
+    assert problem.span is not None
+    assert problem.span.line == 2
+    result = run("init", "--from", "library:vsec")
+    assert result.exit_code == 2
+    assert "the library has no schema `vsec`" in result.stderr
+    assert "did you mean `vesc`?" in result.stderr
+
+
+def test_a_base_and_a_framing_exclude_each_other() -> None:
+    result = run("init", "--from", "library:vesc", "--framing", "cobs")
+    assert result.exit_code == 2
+    assert "--from and --framing exclude each other" in result.stderr
+
+
+def test_the_folder_of_schemas_shows_the_library() -> None:
+    assert (ROOT / "schemas" / "library").resolve() == FOLDER
+
+
+@EVERY_SCHEMA
+def test_it_is_laid_out_as_fmt_does(name: str) -> None:
+    result = run("fmt", "--check", str(library_file(name)))
+    assert result.exit_code == 0, result.stdout
+
+
+@EVERY_SCHEMA
+def test_all_engines_take_every_message_there_and_back(name: str) -> None:
+    require_compiler("cc")
+    result = run("fuzz", str(library_file(name)), "--examples", "10", "--seed", "1")
+    assert result.exit_code == 0, result.stdout
+    assert len(re.findall("all came back", result.stdout)) == 3
+
+
+@EVERY_SCHEMA
+def test_it_is_compared_with_a_peer(name: str) -> None:
+    test = (ROOT / "tests" / f"test_library_{name}.py").read_text("utf-8")
+    package = proof_of(name).peer.partition(" ")[0]
+    assert f'"{package.replace("-", "_")}' in test
+    assert {"compare_frames", "compare_recovery"} <= set(re.findall(r"\w+", test))
+
+
+def test_the_page_and_the_table_of_the_readme_are_current() -> None:
+    page = (ROOT / "docs" / "reference" / "library.md").read_text("utf-8")
+    assert page == render_page(), "run `make generate`"
+    readme = (ROOT / "README.md").read_text("utf-8")
+    assert readme == with_table(readme), "run `make generate`"
+    assert all(f"| `{name}` |" in readme for name in library_names())
+
+
+def test_what_is_not_said_makes_a_schema_one_that_is_said_in_part(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(page, "proof_of", lambda _: Proof("peer 1", "All.", ["Running status."]))
+    assert "| peer 1 | in part |" in page.with_table("<!-- library -->\n<!-- end of library -->")
+    assert "Not said:\n\n* Running status." in page.render_page()
