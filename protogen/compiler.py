@@ -11,7 +11,6 @@ from protogen.passes.context import Context
 from protogen.passes.resolve import resolve
 from protogen.problems import Problem, Problems, Severity, SourceMap
 from protogen.schema.load import load_syntax
-from protogen.targets.emitted import check_emitted_names
 
 
 class Compilation(msgspec.Struct, frozen=True):
@@ -66,6 +65,4 @@ def _protocol(
         spoilt=loaded.spoilt,
     )
     protocol = resolve(context)
-    if protocol is not None:
-        check_emitted_names(context, protocol)
     return None if context.failed else protocol

@@ -8,7 +8,7 @@ a frame first.
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
@@ -19,9 +19,11 @@ from protogen.model.frame import Frame, LiteralPart
 from protogen.model.messages import Example, Message
 from protogen.model.protocol import Protocol
 from protogen.problems import Problems
+from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.events import InvalidEvent, MessageEvent, UnknownEvent
 from protogen.runtime.framing.assembly import join_parts
+from protogen.runtime.values import as_dict
 from protogen.schema.syntax.octets import to_octets
 
 _GREATEST_SHOWN = 512
@@ -44,7 +46,7 @@ class _Reading(msgspec.Struct, frozen=True):
     fails: str
     """The reason, `unknown`, or nothing where it is a message."""
     message: Any = None
-    parts: Any = None
+    parts: Mapping[str, int] = {}
 
 
 class _Verification:
@@ -94,7 +96,7 @@ class _Verification:
         values, parts = self._example.values or {}, self._numbers()
         if self._reading.message is not None and self._received_as == self._reading.message.NAME:
             values = {**self._reading.message.to_dict(), **values}
-            parts |= {name: getattr(self._reading.parts, name) for name in self._chosen}
+            parts |= {name: self._reading.parts[name] for name in self._chosen}
         stated = self._example.parts
         parts = {name: stated.get(name, parts[name]) for name in self._chosen}
         try:
@@ -148,9 +150,9 @@ class _Verification:
             return _Reading(f"it is {len(events)} frames")
         event = events[0]
         if isinstance(event, UnknownEvent):
-            return _Reading("unknown", parts=event.parts)
+            return _Reading("unknown", parts=as_dict(event.parts))
         assert isinstance(event, MessageEvent)
-        return _Reading("", event.message, event.parts)
+        return _Reading("", event.message, as_dict(event.parts))
 
     # -- meaning ------------------------------------------------------------------------------
 
@@ -165,13 +167,13 @@ class _Verification:
 
     def _parts_hold(self, reading: _Reading) -> None:
         for name, value in self._example.parts.items():
-            found = getattr(reading.parts, name)
+            found = reading.parts[name]
             if found != value:
                 self._report("PG160", f"`{name}` is {found}, not {value}")
 
     def _encodes(self, reading: _Reading, wire: bytes) -> None:
         """The values, encoded, are the example's bytes."""
-        parts = {name: getattr(reading.parts, name) for name in self._chosen}
+        parts = {name: reading.parts[name] for name in self._chosen}
         try:
             message = self._class.from_payload(reading.message.to_payload(strict=False))
             made = self._encoded(message, parts, strict=False)
@@ -185,7 +187,7 @@ class _Verification:
         sender = self._sender
         form = sender.form or None
         made: bytes = self._module.PROTOCOL.encode(
-            message, sender.name, strict=strict, form=form, **parts
+            message, sender.name, strict=strict, form=form, **arguments(parts)
         )
         return made
 

@@ -15,8 +15,8 @@ from tooling import require_tool
 
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
-from protogen.targets.c.emit import texts
-from protogen.targets.c.module import Module, view
+from protogen.targets.c.emit import texts, unit_of
+from protogen.targets.c.module import Module
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.protocol_names import is_stateless, writer_parameter
@@ -83,7 +83,7 @@ def shim_of(protocol: Protocol, module: Module) -> str:
     for message in module.messages:
         given = {
             "name": module.name,
-            "prefix": message.prefix,
+            "prefix": message.name,
             "struct": message.struct,
             "put": message.put,
             "check": message.check,
@@ -117,7 +117,7 @@ class CLibrary:
 
     def __init__(self, protocol: Protocol, flags: Sequence[str] = ("-O1",)) -> None:
         self.protocol = protocol
-        self.module = view(protocol, COptions())
+        self.module = unit_of(protocol, COptions()).module
         self._folder = TemporaryDirectory(prefix="protogen-c-")
         folder = Path(self._folder.name)
         write_sources(protocol, folder, payloads_only=True)
@@ -147,9 +147,9 @@ class _Codec:
         self.structure = structure_of(message.fields)
         self._encode = getattr(library, view.encode)
         self._decode = getattr(library, view.decode)
-        self._put = getattr(library, f"shim_{view.prefix}_put")
+        self._put = getattr(library, f"shim_{view.name}_put")
         self._put.restype = ctypes.c_size_t
-        self._check = getattr(library, f"shim_{view.prefix}_check") if view.checks else None
+        self._check = getattr(library, f"shim_{view.name}_check") if view.checks else None
 
     def record(self, values: Values) -> Any:
         """The struct that has these values. Raises Unfit."""

@@ -18,6 +18,7 @@ from protogen.fuzzing.samples import boundary_rounds, samples
 from protogen.model.frame import NumberPart
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
+from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.frame import LiteralPart, StartSet
 
@@ -212,7 +213,7 @@ def _frames_of(path: Path, sender: Sender, message: Message) -> Iterator[bytes]:
     for values, parts in islice(usual, min(12, boundary_rounds(message, sender.frame)) + 4):
         record = module.MESSAGES[message.name].from_dict(values)
         try:
-            yield module.encode(record, sender.name, **parts)
+            yield module.encode(record, sender.name, **arguments(parts))
         except EncodeError:
             # Its own end stands in it, and nothing would tell a decoder so.
             assert sender.framing.cut_ambiguous

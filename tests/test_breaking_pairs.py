@@ -30,6 +30,7 @@ from protogen.evolution.findings import Gate, findings
 from protogen.fuzzing.samples import boundary_rounds, samples
 from protogen.live.codec import module_of
 from protogen.model.protocol import Protocol
+from protogen.runtime.attributes import arguments
 
 Data = dict[str, Any]
 Edit = Callable[[Data], Any]
@@ -382,7 +383,7 @@ def frames(module: ModuleType, protocol: Protocol) -> Iterator[bytes]:
         count = boundary_rounds(message, sender.frame) + 20
         for values, parts in islice(samples(message, sender.frame, Random(1)), count):
             made = module.MESSAGES[message.name].from_dict(values)
-            yield module.encode(made, **parts)
+            yield module.encode(made, **arguments(parts))
 
 
 class Read(NamedTuple):

@@ -12,9 +12,11 @@ from test_c_codecs import FLAGS, MACHINES, SAMPLERS, Case, run
 from tooling import require_compiler, require_tool
 
 from protogen.model.types import Array, Field, Fill, Fixed, Struct
-from protogen.targets.c.module import view
+from protogen.targets.c.emit import unit_of
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.accessors import is_readable
+from protogen.targets.c.protocol_names import names_of
+from protogen.targets.c.spelling import Names
 
 ELEMENTS = ROOT / "tests" / "c_schemas" / "elements.yaml"
 PATHS = [
@@ -78,14 +80,15 @@ def program(path: Path) -> str:
     made = protocol_of(path)
     parts = [f'#include "{made.name}.h"\n#include <string.h>\n']
     calls: list[str] = []
-    for item in view(made, COptions()).messages:
+    for item in unit_of(made, COptions()).module.messages:
         case = Case(path, made.message(item.name))
         fields = case.message.fields
         printed = "\n".join(item.accessors)
-        readable = [field for field in fields if f" {item.prefix}_{field.name}_at(" in printed]
+        prefix = item.struct.removeprefix("struct ")
+        readable = [field for field in fields if f" {prefix}_{field.name}_at(" in printed]
         if not readable:
             continue
-        loops = "".join(loop(item.prefix, made.name, fields, field) for field in readable)
+        loops = "".join(loop(prefix, names_of(made), fields, field) for field in readable)
         given = {"name": item.name, "struct": item.struct, "decode": item.decode, "loops": loops}
         parts.append(CHECK.format(ok=f"{made.name.upper()}_OK", **given))
         for payload in case.payloads():
@@ -96,18 +99,18 @@ def program(path: Path) -> str:
     return "".join([*parts, MAIN.format(calls="\n".join(calls))])
 
 
-def loop(prefix: str, protocol: str, fields: tuple[Field, ...], field: Field) -> str:
+def loop(prefix: str, names: Names, fields: tuple[Field, ...], field: Field) -> str:
     """The comparison of all elements of a field."""
     assert isinstance(field.type, Array)
-    name = f"{prefix}_{field.name}_at"
-    type_ = f"__typeof__(((struct {prefix} *)0)->{field.name}[0])"
+    name, member = f"{prefix}_{field.name}_at", names.member(field.name)
+    type_ = f"__typeof__(((struct {prefix} *)0)->{member}[0])"
     read = f"found = {name}(payload, i);"
     if isinstance(field.type.element, Struct):
         read = f"{name}(payload, i, &found);"
-    return LOOP.format(count=count_of(fields, field), type=type_, read=read, field=field.name)
+    return LOOP.format(count=count_of(fields, field, names), type=type_, read=read, field=member)
 
 
-def count_of(fields: tuple[Field, ...], field: Field) -> str:
+def count_of(fields: tuple[Field, ...], field: Field, names: Names) -> str:
     """The number of a field's elements, in C."""
     assert isinstance(field.type, Array)
     extent = field.type.extent
@@ -116,12 +119,14 @@ def count_of(fields: tuple[Field, ...], field: Field) -> str:
     if isinstance(extent, Fill):
         return f"message.{count_name(fields, field)}"
     counter = next(item for item in fields if item.name == extent.field)
-    return f"message.{counter.name}" if counter.const is None else f"{counter.const}u"
+    return f"message.{names.member(counter.name)}" if counter.const is None else f"{counter.const}u"
 
 
 def test_there_is_one_for_each_array_of_elements_of_one_size_at_a_known_place() -> None:
     made = protocol_of(ELEMENTS)
-    printed = {item.name: "\n".join(item.accessors) for item in view(made, COptions()).messages}
+    printed = {
+        item.name: "\n".join(item.accessors) for item in unit_of(made, COptions()).module.messages
+    }
     for text in (
         "static inline float elements_floats_singles_at(const uint8_t *payload, size_t index) {",
         "static inline elements_float64 elements_floats_doubles_at(",

@@ -14,8 +14,7 @@ from hypothesis import settings
 
 from protogen.fuzzing.c_calls import Step
 from protogen.model.protocol import Protocol
-from protogen.targets.c.frame.framing import framing_view
-from protogen.targets.c.module import view
+from protogen.targets.c.emit import unit_of
 from protogen.targets.c.options import COptions
 
 MACROS = {"none": "_FAST_FEED=0", "portable": "_FAST_FEED=1", "sse2": "_SSE2=1"}
@@ -24,8 +23,7 @@ SEEDS = range(max(6, settings().max_examples // 8))
 
 def takes_whole(protocol: Protocol) -> bool:
     """True if the C of a protocol has a fast way."""
-    module = view(protocol, COptions())
-    return framing_view(protocol, module.messages, module.sinks, COptions()).takes_whole
+    return unit_of(protocol, COptions()).framing.takes_whole
 
 
 PATHS = [path for path in (*DOCUMENTS, *DIALECTS, *FRAMINGS) if takes_whole(protocol_of(path))]

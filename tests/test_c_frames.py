@@ -18,6 +18,7 @@ from protogen.fuzzing.c_calls import OK, RANGE, SPACE, VALUE, Encoded
 from protogen.fuzzing.c_values import Unfit
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
 from protogen.model.protocol import Protocol
+from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
@@ -52,7 +53,7 @@ def frame_of(path: Path, sender: str, message: str, values: Values, parts: Value
     record = module.MESSAGES[message].from_dict(values)
     record.to_payload()
     try:
-        frame: bytes = module.encode(record, sender, **parts)
+        frame: bytes = module.encode(record, sender, **arguments(parts))
     except EncodeError:
         # The payload is fine, so what is wrong is that the end stands in it.
         assert protocol_of(path).sender(sender).framing.cut_ambiguous

@@ -27,6 +27,7 @@ from protogen.fuzzing.trips import same
 from protogen.live.codec import module_of
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
+from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.frame import LiteralPart
 from protogen.targets.c.options import COptions
@@ -137,7 +138,7 @@ def check_frame(
 ) -> bytes | None:
     """The frame that both make, in a buffer and byte by byte."""
     record = module.MESSAGES[message.name].from_dict(values)
-    frame = made(lambda: module.encode(record, sender.name, **parts))
+    frame = made(lambda: module.encode(record, sender.name, **arguments(parts)))
     encoded = process.do(process.calls.frame(sender.name, message.name, values, parts))
     assert encoded.intact
     if frame is None:

@@ -121,7 +121,6 @@ class TestChoices:
             ("My-Thing", "did you mean `my_thing`?"),
             ("2fast", "did you mean `fast`?"),
             ("__", "no lower snake case name"),
-            ("union", "`union` is a reserved word of C"),
             ("a" * 65, "no lower snake case name"),
         ],
     )

@@ -31,6 +31,7 @@ from hypothesis import strategies as st
 
 from protogen.runtime import bulk_cut, fast
 from protogen.runtime import decoder as runtime_decoder
+from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import ByteError, DecodeError, EncodeError
 from protogen.runtime.framing.assembly import encode_frame
 from protogen.runtime.framing.machine import Candidate, Cut, verdict_on
@@ -540,7 +541,7 @@ def test_messages_are_sent_without_the_reference(
     sent = [(event.message, event.numbers) for event in decoded(path, sender)]
     names = [part.name for part in spec.layout.values]
     due = [
-        module.encode(message, sender, **dict(zip_values(spec, numbers, names)))
+        module.encode(message, sender, **arguments(dict(zip_values(spec, numbers, names))))
         for message, numbers in sent
     ]
 
@@ -549,7 +550,7 @@ def test_messages_are_sent_without_the_reference(
 
     monkeypatch.setattr(module.PROTOCOL, "encode", refuse)
     for (message, numbers), frame in zip(sent, due, strict=True):
-        parts = dict(zip_values(spec, numbers, names))
+        parts = arguments(dict(zip_values(spec, numbers, names)))
         assert module.encode(message, sender, **parts) == frame
 
 

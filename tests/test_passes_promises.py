@@ -15,6 +15,7 @@ from protogen.fuzzing.samples import samples
 from protogen.live.codec import module_of
 from protogen.model.framing import StartLiteral, StartSet
 from protogen.model.protocol import Protocol, Sender
+from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.events import MessageEvent
 
@@ -41,7 +42,7 @@ def frames_of(module: ModuleType, sender: Sender, each: int = EACH) -> Frames:
         for values, parts in islice(samples(message, sender.frame, random), each):
             given = module.MESSAGES[message.name].from_dict(values)
             try:
-                wire = module.PROTOCOL.encode(given, sender.name, strict=False, **parts)
+                wire = module.PROTOCOL.encode(given, sender.name, strict=False, **arguments(parts))
             except EncodeError:  # A decoder would cut it elsewhere.
                 continue
             made.append((message.name, wire))

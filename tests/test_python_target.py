@@ -17,7 +17,7 @@ from protogen.model.names import unit_suffix
 from protogen.runtime.errors import DecodeError, EncodeError
 from protogen.targets.markdown.emit import emit as emit_markdown
 from protogen.targets.python.emit import emit as emit_python
-from protogen.targets.python.names import tables_of
+from protogen.targets.python.names import names_of
 from protogen.targets.python.spelling import class_name
 from protogen.targets.python.wrapping import docstring, remark, wrapped
 
@@ -240,13 +240,14 @@ class TestNames:
     def test_every_name_of_a_module_is_in_the_table(self, path: Path) -> None:
         protocol = protocol_of(path)
         generated = module_of(protocol)
-        tables = tables_of(protocol)
-        assert {*_public(generated)} - {"annotations"} <= next(tables).things.keys()
+        names = names_of(protocol)
+        assert {*_public(generated)} - {"annotations"} <= names.module.things.keys()
         for record in (*protocol.structs, *protocol.messages):
-            attributes = _public(getattr(generated, class_name(record.name), None))
-            assert {*filter(str.islower, attributes)} <= next(tables).things.keys()
-        (arguments,) = tables
-        assert inspect.signature(generated.encode).parameters.keys() <= arguments.things.keys()
+            attributes = _public(getattr(generated, names.classes[record.name], None))
+            table = names.records[record.name].table
+            assert {*filter(str.islower, attributes)} <= table.things.keys()
+        parameters = inspect.signature(generated.encode).parameters
+        assert parameters.keys() <= names.arguments.things.keys()
 
     def test_messages_may_be_called_like_what_a_module_does_not_use(self, tmp_path: Path) -> None:
         names = ["not_implemented", "warning", "encode", "protocol", "messages", "write", "on_it"]

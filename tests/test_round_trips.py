@@ -28,6 +28,7 @@ from protogen.fuzzing.samples import boundary_rounds, samples
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.passes.framing.capacity import payload_range
+from protogen.runtime.attributes import arguments, attribute
 from protogen.runtime.errors import DecodeError, EncodeError
 from protogen.runtime.values import as_dict
 
@@ -123,7 +124,7 @@ def check_frame(case: Case, record: Any, payload: bytes, values: Values, parts: 
     if not case.sender.is_only_form and stated is not None and len(payload) not in stated:
         return  # Another form of frame carries it.
     try:
-        frame = case.module.encode(record, case.sender.name, **parts)
+        frame = case.module.encode(record, case.sender.name, **arguments(parts))
     except EncodeError as error:
         # Its own end stands in the frame, and a decoder would cut it there.
         assert case.sender.framing.cut_ambiguous, error
@@ -219,8 +220,11 @@ def check_payload(case: Case, payload: bytes, parts: Mapping[str, int] | None = 
         assert event.kind == "invalid" or len(payload) not in case.message.sizes
         return
     assert event.payload == payload
-    given = {part.name: getattr(event.parts, part.name) for part in case.sender.frame.caller_parts}
-    again = case.module.encode(event.message, case.sender.name, False, **given)
+    given = {
+        part.name: getattr(event.parts, attribute(part.name))
+        for part in case.sender.frame.caller_parts
+    }
+    again = case.module.encode(event.message, case.sender.name, False, **arguments(given))
     assert again == frame or has_nan(event.message.to_dict())
     line = event.as_json()
     encode_line = case.module.PROTOCOL.encode_line
@@ -262,7 +266,7 @@ def test_a_frame_format_can_be_embedded_and_agrees_with_encode(case: Case) -> No
     for values, parts in islice(boundaries(case), 8):
         record = case.record.from_dict(values)
         try:
-            frame = case.module.encode(record, case.sender.name, **parts)
+            frame = case.module.encode(record, case.sender.name, **arguments(parts))
         except EncodeError:
             assert case.sender.framing.cut_ambiguous
             continue
@@ -276,7 +280,7 @@ def test_a_frame_format_can_be_embedded_and_agrees_with_encode(case: Case) -> No
 
 def attributes(record: Any) -> Iterator[tuple[str, Any]]:
     """The fields of a record with their Python values."""
-    return ((name, getattr(record, name)) for name, _ in record.RULES)
+    return ((name, getattr(record, attribute(name))) for name, _ in record.RULES)
 
 
 def plain(value: Any) -> Any:

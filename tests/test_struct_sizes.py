@@ -22,7 +22,7 @@ from tooling import require_tool
 from protogen.capture.layout import struct_sizes
 from protogen.compiler import compile_file
 from protogen.model.protocol import Protocol
-from protogen.targets.c.module import view
+from protogen.targets.c.emit import unit_of
 from protogen.targets.c.options import COptions
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
@@ -49,7 +49,7 @@ def test_a_page_states_what_a_compiler_takes(machine: str, path: Path, tmp_path:
     write_sources(made, tmp_path, payloads_only=True)
     checks = [
         ASSERT.format(name=item.name, struct=item.struct, size=found[item.name])
-        for item in view(made, COptions()).messages
+        for item in unit_of(made, COptions()).module.messages
     ]
     (tmp_path / "sizes.c").write_text("\n".join([f'#include "{made.name}.h"', *checks, ""]))
     compiler, *flags = MACHINES[machine]

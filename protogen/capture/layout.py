@@ -17,7 +17,7 @@ from protogen.capture.schema import (
     TableSchema,
     Text,
 )
-from protogen.model.frame import CounterPart, IdentityPart, NumberPart, ValuePart
+from protogen.model.frame import NumberPart
 from protogen.model.messages import Message
 from protogen.model.payload_plan import (
     AnyStep,
@@ -67,8 +67,7 @@ def capture_schema(protocol: Protocol, sender: Sender) -> CaptureSchema:
 
 def shown_parts(sender: Sender) -> tuple[NumberPart, ...]:
     """The parts of a frame that events show."""
-    kinds = IdentityPart | CounterPart | ValuePart
-    return tuple(part for part in sender.frame.parts if isinstance(part, kinds))
+    return sender.frame.shown_parts
 
 
 def _parts(parts: Iterable[NumberPart], taken: Sequence[str]) -> Iterator[Column]:

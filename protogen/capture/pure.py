@@ -21,6 +21,7 @@ from protogen.capture.schema import (
     Text,
 )
 from protogen.capture.tables import Tables, empty_rows, rows
+from protogen.runtime.attributes import attribute
 from protogen.runtime.decoder import Decoder
 
 if TYPE_CHECKING:
@@ -114,7 +115,8 @@ def _framed(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
     found["size"] = [event.size for _, event in numbered]
     for column in table.columns:
         if column.role == "part":
-            found[column.name] = [getattr(event.parts, column.source) for _, event in numbered]
+            name = attribute(column.source)
+            found[column.name] = [getattr(event.parts, name) for _, event in numbered]
     return found
 
 
@@ -151,7 +153,8 @@ def _filled(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
 def _fill(found: Rows, columns: Sequence[Column], records: Values, scope: Scope) -> None:
     """Fill columns with the fields of these records."""
     for column in columns:
-        values = [getattr(record, column.source) for record in records]
+        name = attribute(column.source)
+        values = [getattr(record, name) for record in records]
         if column.role == "count":
             found[column.name] = [len(value) for value in values]
         else:

@@ -106,16 +106,12 @@ def _ask_framing() -> Framing:
 
 def _checked(name: str) -> str:
     """Return a name that a protocol may have. Raises UsageError with one that is close."""
-    from protogen.passes.names.reserved_words import languages_reserving
     from protogen.schema.syntax.base import NAME_PATTERN
 
     if not re.fullmatch(NAME_PATTERN, name) or len(name) > _GREATEST_NAME:
         close = "_".join(re.findall(r"[a-z0-9]+", name.lower())).lstrip("0123456789_")
         hint = f"did you mean `{close[:_GREATEST_NAME]}`?" if close else None
         raise UsageError(f"`{name}` is no lower snake case name", hint)
-    languages = languages_reserving(name)
-    if languages:
-        raise UsageError(f"`{name}` is a reserved word of {', '.join(languages)}")
     return name
 
 

@@ -16,6 +16,7 @@ from protogen.footprint.machines import Machine
 from protogen.model.protocol import Protocol
 from protogen.targets.c.emit import texts
 from protogen.targets.c.options import COptions
+from protogen.targets.c.protocol_names import names_of
 
 _FLAGS = ("-std=c99", "-Os", "-ffunction-sections", "-fdata-sections", "-fstack-usage")
 _QUIET = ("-fno-asynchronous-unwind-tables", "-fno-stack-protector", "-fcf-protection=none")
@@ -50,7 +51,7 @@ def build(protocol: Protocol, options: COptions, machine: Machine, structs: Sequ
             f"{machine.compiler}, the compiler for {machine.title}, is not installed",
             f"on Debian or Ubuntu: apt install {machine.package}",
         )
-    name = protocol.name
+    name = names_of(protocol).file
     header, source = texts(protocol, options)
     with TemporaryDirectory(prefix="protogen-size-") as made:
         folder = Path(made)

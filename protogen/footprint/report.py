@@ -129,8 +129,8 @@ def _messages(unit: Unit) -> list[_Owner]:
     for message in unit.module.messages:
         roles = [("encode", message.encode), ("decode", message.decode)]
         own = [frame for frame in frames if frame.message.name == message.name]
-        roles += [("frame", frame.function) for frame in own]
-        roles += [("send", frame.send) for frame in own if frame.sends]
+        roles += [("frame", frame.called.function) for frame in own]
+        roles += [("send", frame.called.send) for frame in own if frame.sends]
         owners.append(_Owner(message.name, tuple(roles), message.struct))
     return owners
 

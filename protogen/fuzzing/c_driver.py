@@ -22,7 +22,10 @@ class DrivenPart(msgspec.Struct, frozen=True):
     """A part of a frame, as C has it."""
 
     name: str
+    """In the schema."""
     type: str
+    member: str = ""
+    """The member of an event's parts."""
 
     @property
     def size(self) -> int:

@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from protogen.fuzzing.engine import Refused, Seen
 from protogen.fuzzing.samples import Values
+from protogen.runtime.attributes import arguments
 from protogen.runtime.codec import Protocol
 from protogen.runtime.decoder import Decoder
 from protogen.runtime.errors import EncodeError
@@ -48,7 +49,7 @@ class PythonEngine:
             record = self._messages[message].from_dict(values)
             spec = self._codec.sender(sender)
             form: dict[str, Any] = {"form": spec.form} if spec.form else {}
-            return self._encode(record, spec.name, **form, **parts)
+            return self._encode(record, spec.name, **form, **arguments(parts))
         except EncodeError as error:
             raise Refused(str(error)) from None
 

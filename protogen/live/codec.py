@@ -8,12 +8,13 @@ from protogen.live.modules import Modules, compiled, import_modules
 from protogen.model.protocol import Protocol
 from protogen.targets.kept import Kept
 from protogen.targets.python.emit import codec_name, kept_source
+from protogen.targets.python.names import names_of
 
 
 def modules_of(protocol: Protocol) -> Modules:
     """Compile the modules that would be generated for `protocol`."""
     text = kept_source(protocol)
-    return compiled({protocol.name: text.module, codec_name(protocol): text.codec})
+    return compiled({names_of(protocol).file: text.module, codec_name(protocol): text.codec})
 
 
 def module_of(protocol: Protocol) -> ModuleType:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from protogen.capture.layout import capture_schema
 from protogen.model.protocol import Protocol, Sender
 from protogen.native.driver import Driver
+from protogen.targets.c.protocol_names import names_of
 from protogen.targets.c.rows.layout import layout_of
 from protogen.targets.c.rows.source import rows_source
 
@@ -25,7 +26,7 @@ def driver_of(protocol: Protocol, sender: Sender) -> Driver:
 
 def _driver(protocol: Protocol, sender: Sender) -> Driver:
     schema = capture_schema(protocol, sender)
-    layout = layout_of(schema)
+    layout = layout_of(schema, names_of(protocol))
     return Driver(
         text=rows_source(protocol, sender, schema, tuple(layout)),
         schema=schema,

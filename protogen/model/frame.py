@@ -219,6 +219,12 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
         """The checksum parts in wire order."""
         return tuple(part for part in self.parts if isinstance(part, ChecksumPart))
 
+    @property
+    def shown_parts(self) -> tuple[IdentityPart | CounterPart | ValuePart, ...]:
+        """The parts that events show."""
+        kinds = IdentityPart | CounterPart | ValuePart
+        return tuple(part for part in self.parts if isinstance(part, kinds))
+
     @cached_property
     def caller_parts(self) -> tuple[CounterPart | ValuePart, ...]:
         """The parts whose values come from the caller."""

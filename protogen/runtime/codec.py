@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Generic
 
+from protogen.runtime.attributes import arguments, schema_name
 from protogen.runtime.decoder import BytesLike, Engine, check_engine, octets
 from protogen.runtime.errors import DecodeError, EncodeError
 from protogen.runtime.events import FrameEvent, UnknownEvent
@@ -73,12 +74,13 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         """The frame of a message, as the reference makes it.
 
         `sender` is needed only where several endpoints send the message in different frames;
-        `parts` gives counters and other values of the frame. Of several forms of frame, the first
-        that fits is taken unless `form` names one. Raises EncodeError where a value is missing,
-        out of range or does not fit; with `strict=False` only where it does not fit.
+        `parts` gives counters and other values of the frame; one called `class` or `message` is
+        given as `class_` or `message_`. Of several forms of frame, the first that fits is taken
+        unless `form` names one. Raises EncodeError where a value is missing, out of range or does
+        not fit; with `strict=False` only where it does not fit.
         """
         check_engine(engine)
-        return _encode(self._senders_of(message, sender, form), message, parts, strict)
+        return _encode(self._senders_of(message, sender, form), message, _named(parts), strict)
 
     def encode_unknown(
         self, sender: str, parts: Mapping[str, int], payload: bytes, form: str | None = None
@@ -167,6 +169,11 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         return chosen
 
 
+def _named(parts: Mapping[str, int | None]) -> dict[str, int | None]:
+    """Arguments by the schema's names of the parts."""
+    return {schema_name(name): value for name, value in parts.items()}
+
+
 def _sends(sender: SenderSpec[Any, Any], message: Message) -> bool:
     return type(message) in sender.messages or type(message) in sender.encode_only
 
@@ -215,7 +222,8 @@ class Encoder:
         if not senders:
             problem = f"{self._name} does not send {type(message).__name__}"
             raise EncodeError("message", problem)
-        return first_that_fits(senders, lambda item: self._frame(item, message, strict, parts))
+        named = _named(parts)
+        return first_that_fits(senders, lambda item: self._frame(item, message, strict, named))
 
     def _frame(
         self,
@@ -225,7 +233,7 @@ class Encoder:
         parts: Mapping[str, int | None],
     ) -> bytes:
         counted = [part.name for part in _counters(sender) if parts.get(part.name) is None]
-        given = {**parts, **{name: self._next[name] for name in counted}}
+        given = arguments({**parts, **{name: self._next[name] for name in counted}})
         form: dict[str, Any] = {"form": sender.form} if sender.form else {}
         wire = self._encode(message, self._name, strict, **form, **given)
         self._count(counted)
@@ -245,7 +253,7 @@ class Encoder:
         **parts: int | None,
     ) -> bytes:
         own = [item for item in self._senders if item.form == form]
-        return _encode(own, message, parts, strict)
+        return _encode(own, message, _named(parts), strict)
 
 
 def _counters(sender: SenderSpec[Any, Any]) -> list[CounterPart]:

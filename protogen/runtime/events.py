@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar, Generic, Literal, Self
 
+from protogen.runtime.attributes import attribute
 from protogen.runtime.errors import EncodeError, Reason
 from protogen.runtime.framing.extraction import payload_of
 from protogen.runtime.framing.lines import encode_line
@@ -206,7 +207,7 @@ def _line(event: Any, **named: str) -> dict[str, Any]:
 
 
 def _parts(parts: Any, codec: SenderSpec[Any, Any]) -> dict[str, int]:
-    return {name: getattr(parts, name) for name in codec.layout.shown}
+    return {name: getattr(parts, attribute(name)) for name in codec.layout.shown}
 
 
 def _exact(line: dict[str, Any], raw: bytes, codec: SenderSpec[Any, Any]) -> dict[str, Any]:

@@ -10,6 +10,8 @@ from __future__ import annotations
 from reprlib import recursive_repr
 from typing import Any, ClassVar, NoReturn, Self, TypeVar, dataclass_transform
 
+from protogen.runtime.attributes import schema_name
+
 OMITTED: Any = type("Omitted", (), {"__repr__": lambda self: "..."})()
 """Default of an argument for which each object gets a new list."""
 
@@ -97,11 +99,11 @@ def replace(item: ItemT, /, **changes: Any) -> ItemT:
 
 
 def as_dict(item: Value) -> dict[str, Any]:
-    """The fields by name; what is inside of them becomes a `dict` as well.
+    """The fields by the schema's names; what is inside of them becomes a `dict` as well.
 
     `Message.to_dict` gives what JSON can show.
     """
-    return {name: _plain(getattr(item, name)) for name in item.__fields__}
+    return {schema_name(name): _plain(getattr(item, name)) for name in item.__fields__}
 
 
 def _plain(value: Any) -> Any:

@@ -1,60 +1,56 @@
-"""Check that no target would give one name to two things, before anything is written."""
+"""Names that generated code has in place of a schema's: those that a language or a target takes.
+
+All are decided before anything is written, in the table of names of each target.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Mapping
 
 from protogen.model.protocol import Protocol
-from protogen.passes.context import Context, Loc
-from protogen.targets.c.protocol_names import names_of
-from protogen.targets.naming import PROTOCOL, Clash, Thing
-from protogen.targets.python.names import tables_of
+from protogen.runtime.attributes import argument, attribute
+from protogen.targets.c.protocol_names import names_of as names_of_c
+from protogen.targets.kept import Kept
+from protogen.targets.naming import NameTable, Thing
+from protogen.targets.python.names import names_of as names_of_python
+
+ByLanguage = Mapping[str, tuple[str, ...]]
+"""Names in generated code, by its language."""
 
 
-def check_emitted_names(context: Context, protocol: Protocol) -> None:
-    """Report each pair of things that come to the same name, and each name that is taken."""
-    told: set[tuple[Thing, Thing]] = set()
-    for language, clash in _clashes(protocol):
-        if (clash.first, clash.second) not in told:
-            told.add((clash.first, clash.second))
-            _report(context, language, clash)
+class EmittedNames:
+    """The escaped names of a protocol."""
+
+    def __init__(self, protocol: Protocol) -> None:
+        self._c = names_of_c(protocol)
+        python = names_of_python(protocol)
+        found: dict[Thing, dict[str, tuple[str, ...]]] = {}
+        _add(found, "C", (self._c.files, self._c.tags, self._c.others, self._c.members))
+        _add(found, "Python", python.tables)
+        self.escapes: Mapping[Thing, ByLanguage] = found
+        """Those of each thing that has some."""
+
+    def field(self, name: str) -> ByLanguage:
+        """The member and the attribute of fields of that name, where they have another."""
+        return _others(name, {"C": self._c.member(name), "Python": attribute(name)})
+
+    def part(self, name: str) -> ByLanguage:
+        """The same for parts, which are arguments as well."""
+        in_python = next((n for n in (attribute(name), argument(name)) if n != name), name)
+        return _others(name, {"C": self._c.member(name), "Python": in_python})
 
 
-def _clashes(protocol: Protocol) -> Iterator[tuple[str, Clash]]:
-    names = names_of(protocol)
-    for table in (names.files, names.others, names.tags, names.members):
-        yield from (("C", clash) for clash in table.clashes)
-    for table in tables_of(protocol):
-        yield from (("Python", clash) for clash in table.clashes)
+def _others(name: str, names: Mapping[str, str]) -> ByLanguage:
+    return {language: (other,) for language, other in names.items() if other != name}
 
 
-def _report(context: Context, language: str, clash: Clash) -> None:
-    first, second, name = clash.first, clash.second, clash.name
-    if not first.place:
-        whole = second == PROTOCOL
-        own = context.syntax.protocol if whole else second.place[-1]
-        becomes = "" if own == name else f" would be `{name}`, which"
-        hint = f"another name, such as `{own}_{'value' if second.place[2:] else 'data'}`"
-        report = context.error if whole else context.error_at_key
-        report("PG106", _place(context, second), f"`{own}`{becomes} {first.what}", hint)
-        return
-    spans = {thing: context.find_key(_place(context, thing)) for thing in (first, second)}
-    if spans[first].file == spans[second].file:
-        first, second = sorted((first, second), key=lambda thing: spans[thing].line)
-    text = f"{second.what} and {first.what} would both be `{name}` in {language}"
-    note = (spans[first], "the other one")
-    context.error_at_key("PG107", _place(context, second), text, "rename one of them", note)
+def _add(
+    found: dict[Thing, dict[str, tuple[str, ...]]], language: str, tables: Iterable[NameTable]
+) -> None:
+    for thing, names in (item for table in tables for item in table.escaped.items()):
+        known = found.setdefault(thing, {})
+        known[language] = tuple(dict.fromkeys((*known.get(language, ()), *names)))
 
 
-def _place(context: Context, thing: Thing) -> Loc:
-    """Keys of the schema: those of a type inside of a field begin with the field's."""
-    if len(thing.place) == 1:
-        return thing.place
-    kind, name, *rest = map(str, thing.place)
-    if kind == "frame":
-        return (*context.frames[name].loc, *rest)
-    if kind != "records":
-        return thing.place
-    if name in context.syntax.types:
-        return ("types", name, *rest)
-    return (*context.places.get(name, ("messages", name)), *rest)
+emitted_names = Kept(EmittedNames, most=64)
+"""The escaped names of a protocol."""

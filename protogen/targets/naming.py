@@ -1,8 +1,12 @@
-"""Names that a target emits: what each stands for, and which of them would stand for two things."""
+"""Names that a target emits: what each stands for, and which it escapes.
+
+A document's name is never refused for a language's sake. A name that the language reserves, or that
+something else has, gets `_` behind it. No name of a schema ends so.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 
 import msgspec
 
@@ -27,44 +31,43 @@ class Thing(msgspec.Struct, frozen=True):
         return f"{self.kind} `{'.'.join(map(str, names))}`"
 
 
-OWN = Thing("generated code uses itself")
+OWN = Thing("a word of the language, or a name that generated code uses itself")
 PROTOCOL = Thing("protocol", ("protocol",))
 
 
-class Clash(msgspec.Struct, frozen=True):
-    """A name that would stand for two things."""
-
-    name: str
-    first: Thing
-    second: Thing
-
-
 class NameTable:
-    """Names of one scope. The same thing may be named again."""
+    """Names of one scope."""
 
-    def __init__(self) -> None:
-        self.things: dict[str, Thing] = {}
-        """The first thing of each name."""
-        self.clashes: list[Clash] = []
+    def __init__(self, reserved: Iterable[str] = ()) -> None:
+        self.things: dict[str, Thing] = dict.fromkeys(reserved, OWN)
+        """What each name stands for."""
+        self.escaped: dict[Thing, list[str]] = {}
+        """The names that have `_` behind them because another thing had them already."""
 
     def copy(self) -> NameTable:
         """A table that names can be added to without a change of this one."""
         table = NameTable()
-        table.things, table.clashes = self.things.copy(), self.clashes.copy()
+        table.things = self.things.copy()
+        table.escaped = {thing: names.copy() for thing, names in self.escaped.items()}
         return table
 
     def add(self, name: str, thing: Thing = OWN) -> str:
-        """The name, which stands for this."""
-        first = self.things.setdefault(name, thing)
-        if first is not thing and first != thing:
-            self.clashes.append(Clash(name, first, thing))
-        return name
+        """The name for this thing, which is escaped where another has it.
 
-    def enter(self, name: str, thing: Thing, hidden: Mapping[str, Thing]) -> None:
-        """The name of something in a scope inside of this, which may hide none of these."""
-        self.things.setdefault(name, thing)
-        if name in hidden:
-            self.clashes.append(Clash(name, hidden[name], thing))
+        The same thing may be named again, and is then called the same.
+        """
+        found = name
+        while self.things.setdefault(found, thing) != thing:
+            found += "_"
+        if found != name:
+            self.note(thing, found)
+        return found
+
+    def note(self, thing: Thing, name: str) -> None:
+        """Keep a name that was escaped for this thing."""
+        names = self.escaped.setdefault(thing, [])
+        if name not in names:
+            names.append(name)
 
 
 def message(name: str) -> Thing:

@@ -14,6 +14,7 @@ from protogen.copying import replace
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.model.types import Array, Counted, Field, Integer, Octets, Struct, Switch, Text, Type
+from protogen.targets.c.protocol_names import names_of
 
 FIRST = 3
 """Bytes behind those of a smallest frame: of its payload, or of the next one."""
@@ -189,9 +190,9 @@ def first_driver(protocol: Protocol, header: str) -> Driver:
     polled = set(_POLLS.findall(header))
     upper = protocol.name.upper()
     parts = [_HEAD.format(name=protocol.name, upper=upper)]
-    proofs = []
+    proofs, names = [], names_of(protocol)
     for sender in protocol.senders:
-        prefix = f"{protocol.name}_{sender.name}"
+        prefix = names.senders[sender.name]
         count = sender.framing.least + FIRST
         given = {"polls": prefix in polled, "count": count, "reads": _EACH}
         parts.append(_decoder(_FIRST, prefix, upper, **given))

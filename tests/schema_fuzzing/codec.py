@@ -13,6 +13,7 @@ from protogen.model.framing import StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.api import EncodeError
+from protogen.runtime.attributes import arguments, attribute
 from protogen.runtime.constructs import PayloadError, Whole
 from schema_fuzzing.reference import frame_bytes, payload_bytes
 from schema_fuzzing.values import all_parts
@@ -59,14 +60,14 @@ def encode(
     An end that nothing protects may stand in the payload: then a decoder would cut the frame there.
     """
     try:
-        frame: bytes = module.encode(made, sender.name, engine="construct", **parts)
+        frame: bytes = module.encode(made, sender.name, engine="construct", **arguments(parts))
     except EncodeError as error:
         with pytest.raises(EncodeError, match=re.escape(str(error))):
-            module.encode(made, sender.name, **parts)
+            module.encode(made, sender.name, **arguments(parts))
         too_large = len(made.to_payload()) > sender.framing.payload.greatest
         assert too_large or (sender.framing.cut_ambiguous and "decoder" in str(error)), error
         return None
-    assert module.encode(made, sender.name, **parts) == frame
+    assert module.encode(made, sender.name, **arguments(parts)) == frame
     shown = all_parts(sender.frame, message, parts)
     assert frame == frame_bytes(sender.frame, message, made.to_payload(), shown)
     return frame
@@ -109,7 +110,7 @@ def check_decoded(
     (event,) = events_of(module, sender, [frame])
     assert event.kind == "message", event
     assert (event.offset, event.raw, event.message) == (0, frame, made)
-    assert {name: getattr(event.parts, name) for name in shown} == shown
+    assert {name: getattr(event.parts, attribute(name)) for name in shown} == shown
     assert module.decode(frame, sender.name) == made
     assert module.decode(frame, sender.name, engine="construct") == made
     assert event.payload == made.to_payload()

@@ -11,12 +11,13 @@ from functools import cache
 
 from hypothesis import strategies as st
 
-ENDPOINTS = ("host", "brain", "pc", "esp", "linux_box", "flex")
-PROTOCOLS = ("tiny", "robot_link", "serial7", "construct", "json", "typing")
+ENDPOINTS = ("host", "brain", "pc", "esp", "linux_box", "flex", "close", "close_set", "register")
+PROTOCOLS = ("tiny", "robot_link", "serial7", "construct", "json", "typing", "string", "class")
 MESSAGES = (
     "ping", "gyro", "move", "report", "status_word", "unknown", "event", "any", "final",
     "int_enum", "literal", "class_var", "fraction", "field", "dataclass", "overload", "mapping",
     "invalid", "frame", "format", "exception", "type_error", "sequence", "runtime", "noise",
+    "none", "result", "reason", "decoder", "switch", "lambda", "gyro_1", "gyro1", "on_ping",
 )  # fmt: skip
 FIELDS = (
     "speed", "heading", "x", "y", "z1", "mode", "count", "size", "data", "value", "values",
@@ -24,20 +25,24 @@ FIELDS = (
     "str", "len", "list", "tuple", "dict", "object", "id", "type", "repr", "hash", "range",
     "min", "sum", "print", "isinstance", "sender", "encode", "decode", "fields", "message",
     "messages", "kind", "annotations", "set_point", "left_motor", "byte_order", "protocol",
-    "mro", "rest",
+    "mro", "rest", "class", "self", "long", "int", "while", "try", "this", "uint8_t", "unix",
+    "to_dict",
 )  # fmt: skip
-TYPES = ("color", "axis", "vector", "words", "gain_table", "leds", "entry", "sample", "protocol_id")
+TYPES = (
+    "color", "axis", "vector", "words", "gain_table", "leds", "entry", "sample", "protocol_id",
+    "union", "parts",
+)  # fmt: skip
 VALUES = (
     "ok", "off", "on", "yes", "no", "null_value", "red", "idle", "items", "mro",
     "bit_length", "from_bytes", "real", "conjugate", "low_power", "unknown_value", "number",
-    "title",
+    "title", "none", "default",
 )  # fmt: skip
-SPECIAL = ("mask", "missing", "too_far", "not_ready")
+SPECIAL = ("mask", "missing", "too_far", "not_ready", "unit", "static")
 """Names of values without a meaning, which stand beside those of the same field's enum."""
 PARTS = (
     "start", "sync", "begin", "ident", "subclass", "command", "number", "length", "counter",
     "flavor", "crc", "checksum", "end", "stop", "tail", "marker", "timestamp", "reserved_part",
-    "id", "kind",
+    "id", "kind", "for", "short", "strict", "sender", "self",
 )  # fmt: skip
 DECISIONS = ("delimiter_in_data", "taken", "choice")
 

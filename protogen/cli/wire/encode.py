@@ -93,6 +93,7 @@ def _encode_message(
     from protogen.cli.schemas import find_message
     from protogen.cli.wire.hints import hint_at
     from protogen.cli.wire.values import raw_values, split_assignment, tree_of
+    from protogen.runtime.attributes import arguments
     from protogen.runtime.codec import Encoder
     from protogen.runtime.errors import EncodeError
 
@@ -105,7 +106,8 @@ def _encode_message(
         specs = [codec.runtime.sender(item.name) for item in forms]
         kind = specs[0].named(name)
         assert kind is not None
-        return Encoder(specs).encode_next(kind.from_dict(fields), strict=True, **parts)
+        record = kind.from_dict(fields)
+        return Encoder(specs).encode_next(record, strict=True, **arguments(parts))
     except EncodeError as error:
         raise UsageError(str(error), hint_at(message.plan.steps, fields, error.path)) from None
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from protogen.model.reading.readings import readings
+from protogen.runtime.attributes import attribute
 from protogen.runtime.values import as_dict
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ class EventLines:
         name = event.message.NAME
         yield self._name(name, "bold cyan")
         for part in self._caller_parts[event.sender, event.form]:
-            yield from _value(f"@{part}", str(getattr(event.parts, part)))
+            yield from _value(f"@{part}", str(getattr(event.parts, attribute(part))))
         for field, text in readings(self._plans[name], event.message.to_dict()):
             yield from _value(field, text)
 

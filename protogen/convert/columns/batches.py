@@ -14,6 +14,7 @@ from protogen.convert.columns.event_values import plain_fields, reached
 from protogen.convert.columns.rows import Rows
 from protogen.convert.columns.tables import Column, Table, Tables
 from protogen.convert.inputs.chunks import Chunk, Clock
+from protogen.runtime.attributes import attribute
 from protogen.runtime.decoder import Decoder
 from protogen.runtime.framing.sender import SenderSpec
 
@@ -187,7 +188,7 @@ class EventBatch(msgspec.Struct, frozen=True):
 
 def _frame_value(column: Column, frame: Mapping[str, Any], event: Any) -> Any:
     if column.path[0] == "@":
-        return getattr(event.parts, column.path[1])
+        return getattr(event.parts, attribute(column.path[1]))
     return frame[column.path[0]]
 
 

@@ -1,1 +1,1 @@
-"""Names: usable in every target, unique, not reserved."""
+"""Names: no directives, unique, not reserved."""

@@ -1,4 +1,7 @@
-"""Check that every target can use the names, and that everything named exists."""
+"""Check that names are no directives of `extends`, and that everything named exists.
+
+What a language reserves does not matter here: targets escape such names (`targets/naming.py`).
+"""
 
 from __future__ import annotations
 
@@ -7,11 +10,8 @@ from collections.abc import Mapping
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
 from protogen.passes.names.references import check_references
-from protogen.passes.names.reserved_words import (
-    DIRECTIVES,
-    languages_reserving,
-)
 from protogen.passes.types.type_names import is_builtin
+from protogen.schema.dialects.directives import DIRECTIVES
 from protogen.schema.syntax.fields import FieldSyntax
 from protogen.schema.syntax.protocol import Frame
 
@@ -19,17 +19,16 @@ _NAMED_KEYS = ("endpoints", "types", "messages", "decisions", "exchanges")
 
 
 def check_names(context: Context, draft: Draft) -> None:
-    """Reserved words and unknown names; finds the senders."""
+    """Directives and unknown names; finds the senders."""
     syntax = context.syntax
     check_references(context)
-    _usable(context, syntax.protocol, ("protocol",), at_value=True)
     for key in _NAMED_KEYS:
         for name in getattr(syntax, key):
             _usable(context, name, (key, name))
     for sender, frame in syntax.frame.items():
         _parts(context, frame, ("frame", sender))
     for form, item in (syntax.forms or {}).items():
-        _usable_as_value(context, form, ("forms", form))
+        _usable(context, form, ("forms", form))
         _parts(context, item.frame, ("forms", form, "frame"))
     for name, declared in syntax.types.items():
         if is_builtin(name):
@@ -59,18 +58,10 @@ def _carried(context: Context) -> dict[str, frozenset[str]]:
     }
 
 
-def _usable(context: Context, name: str, loc: Loc, *, at_value: bool = False) -> None:
-    languages = languages_reserving(name)
-    if languages:
-        report = context.error if at_value else context.error_at_key
-        text = f"`{name}` is a reserved word of {', '.join(languages)}"
-        report("PG106", loc, text, f"another name, such as `{name}_value`")
-
-
-def _usable_as_value(context: Context, name: str, loc: Loc) -> None:
-    """Names that stand behind another one in every language, as those of values: `X_MODE_NONE`."""
+def _usable(context: Context, name: str, loc: Loc) -> None:
     if name in DIRECTIVES:
-        _usable(context, name, loc)
+        text = f"`{name}` is a directive of `extends`"
+        context.error_at_key("PG106", loc, text, f"another name, such as `{name}_value`")
 
 
 def _parts(context: Context, frame: Frame, loc: Loc) -> None:
@@ -86,15 +77,13 @@ def _fields(context: Context, fields: Mapping[str, FieldSyntax], loc: Loc) -> No
 
 def _inside_field(context: Context, item: FieldSyntax, loc: Loc) -> None:
     """The names that stand inside of a field, those of its cases included."""
-    for key in ("flags", "special"):
+    for key in ("flags", "special", "values"):
         for entry in getattr(item, key) or ():
             _usable(context, entry, (*loc, key, entry))
-    for entry in item.values or ():
-        _usable_as_value(context, entry, (*loc, "values", entry))
     for name, bits in (item.bits or {}).items():
         _usable(context, name, (*loc, "bits", name))
         for entry in bits.values or ():
-            _usable_as_value(context, entry, (*loc, "bits", name, "values", entry))
+            _usable(context, entry, (*loc, "bits", name, "values", entry))
     _fields(context, item.fields or {}, (*loc, "fields"))
     for key, case in (item.cases or {}).items():
         _inside_field(context, case, (*loc, "cases", key))

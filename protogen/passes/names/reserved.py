@@ -60,9 +60,10 @@ def _fields(context: Context, draft: Draft, name: str, fields: tuple[str, ...]) 
 
 def _values(context: Context, draft: Draft, path: str, values: tuple[int, ...]) -> None:
     """`path` is MESSAGE.FIELD, or the name of a declared type."""
-    enum_name = path.replace(".", "_")
+    declared, inside = context.syntax.types, path.replace(".", "_")
     for enum in draft.named.enums:
-        if enum.name not in (path, enum_name):
+        is_meant = enum.name == path if enum.name in declared else enum.name.rstrip("_") == inside
+        if not is_meant:
             continue
         for entry in enum.values:
             if entry.value in values:

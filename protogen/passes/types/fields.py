@@ -16,6 +16,8 @@ from protogen.model.types import (
     Extent,
     Field,
     Fixed,
+    Float,
+    Integer,
     Octets,
     Struct,
     Switch,
@@ -114,10 +116,21 @@ class FieldBuilder:
             return UNKNOWN_TYPE
         if found.size > 1 and layout.byte_order is None:
             self._no_byte_order(item.at("type"))
-        dressed = with_names(self._context, found, item)
-        for named in dressed.named_types:
-            self._named.register(named, item.chain[0][1])
-        return dressed
+        return self._registered(with_names(self._context, found, item), item)
+
+    def _registered(self, type_: Integer | Float, item: Effective) -> Integer | Float:
+        """The number, with the names under which its values are registered."""
+        if not is_integer(type_) or not type_.named_types:
+            return type_
+        loc, register = item.chain[0][1], self._named.register
+        own = (type_.enum or type_.flags) is not None and item.declared is not None
+        enum = type_.enum and register(type_.enum, loc, declared=own)
+        flags = type_.flags and register(type_.flags, loc, declared=own)
+        runs = tuple(
+            replace(run, enum=run.enum and register(run.enum, loc, declared=False))
+            for run in type_.bit_fields
+        )
+        return replace(type_, enum=enum, flags=flags, bit_fields=runs)
 
     def _struct(
         self, item: Effective, fields: Mapping[str, FieldSyntax], setting: Setting
@@ -131,7 +144,9 @@ class FieldBuilder:
         origin = item.origin
         struct = Struct(name=item.owner, fields=built, about=about(origin.doc, origin.source))
         if not self._expansion.is_spent:
-            self._named.register(struct, item.chain[0][1])
+            struct = self._named.register(
+                struct, item.chain[0][1], declared=item.declared is not None
+            )
             self._expansion.keep(item, struct, setting.layout, begun)
         return struct
 
@@ -251,8 +266,7 @@ class FieldBuilder:
             inner = replace(setting, owner=f"{setting.owner}_value", position=0)
             field = self.field("value", item, loc, inner)
             struct = Struct(name=setting.owner, fields=(field,))
-            self._named.register(struct, loc)
-            return struct
+            return self._named.register(struct, loc, declared=False)
         type_ = self.field("value", item, loc, setting).type
         return type_ if isinstance(type_, Struct) else Struct(name=setting.owner, fields=())
 

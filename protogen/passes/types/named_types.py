@@ -8,6 +8,7 @@ bounds what the schema does not.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TypeVar
 
 from protogen.copying import replace
 from protogen.model.meanings import Enum, Flags
@@ -29,6 +30,7 @@ from protogen.model.types import (
 from protogen.passes.context import Context, Loc
 
 Named = Enum | Flags | Struct
+NamedT = TypeVar("NamedT", Enum, Flags, Struct)
 
 
 class NamedTypes:
@@ -58,21 +60,37 @@ class NamedTypes:
 
     # -- registering --------------------------------------------------------------------------
 
-    def register(self, item: Named, loc: Loc) -> None:
-        """Take an enum, flags or a struct under its name; `loc` is the field that has it."""
+    def register(self, item: NamedT, loc: Loc, *, declared: bool) -> NamedT:
+        """The enum, flags or struct under its name; `loc` is the field that has it.
+
+        What a field holds is called after message and field. Where that is the name of something
+        else, it gets `_` behind it.
+        """
+        while not declared and self._is_of_another(item, loc):
+            item = replace(item, name=f"{item.name}_")
         known = self._types.get(item.name)
         self.places.setdefault(item.name, loc)
         joined = item if known is None else _joined(known, item)
         if joined is not None:
             self._types[item.name] = joined
-            return
+            return item
         self._context.error_at_key(
             "PG107",
             loc,
             f"two different types would be called `{item.name}`",
-            "rename the field or the declared type; if it is one struct with two byte orders, "
+            "declare a type for each of the two uses; if it is one struct with two byte orders, "
             "state the byte order in the type",
         )
+        return item
+
+    def _is_of_another(self, item: Named, loc: Loc) -> bool:
+        """True if a message, a declared type or a type in another place is called so."""
+        syntax = self._context.syntax
+        if item.name in syntax.messages or item.name in syntax.types:
+            return True
+        known = self._types.get(item.name)
+        is_elsewhere = known is not None and self.places[item.name] != loc
+        return is_elsewhere and known is not None and _joined(known, item) is None
 
     # -- settling -----------------------------------------------------------------------------
 

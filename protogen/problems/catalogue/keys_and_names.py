@@ -81,29 +81,27 @@ there must be one form to start from. The name in the document can stand under `
     Code(
         "PG106",
         "reserved-word",
-        "A name is a reserved word",
+        "A name is a directive of extends",
         """\
-The name is taken in C, C++, Python or JavaScript, or by the code that protogen generates (a message
-`result` of `rn1` would be the struct `rn1_result`, beside the enum of that name), or it is a
-directive of `extends`. No target changes a name, so that a field has one name in every language and
-in the document. Add a word that says more: `class` becomes `class_id`. Names of an enum's values
-stand behind that of their enum, so that they may be words of a language, unless a case of a union
-is called after them. Files have the protocol's name: its `string.h` would hide that of C.
+A schema that extends this one could not tell the name from the directive: `rename: {old: new}`,
+`remove: [name]`, `replace: true`, `after: name` and `before: name` say what differs. Add a word
+that says more. Words of C, C++ and Python are names like others: where code can't have them, it
+has `class_` for `class`, and the reference says so.
 """,
-        with_fields("default: uint16"),
-        with_fields("default_speed: uint16"),
+        with_fields("after: uint16"),
+        with_fields("after_start: uint16"),
     ),
     Code(
         "PG107",
         "name-taken",
         "A name is taken twice",
         """\
-Messages and types share one set of names, because generated code has one class for each of them:
-`gyro_1` and `gyro1` would both be `Gyro1`. What is written inside a field is called after its
-message and field: `gyro_status`. A type can't be called like a built-in one. Nor is a declared type
-one type if its uses differ: in byte order, or because a switch in it ends the payload in one place
-and not in another. In C, joined names can come to the same: a message `board` and an endpoint
-`board` both have `RN1_BOARD_FRAME_MAX`. Rename one, or declare a type for each use.
+Messages and declared types share one set of names, because what is written inside a field is
+called after its message or type and its field: `gyro_status`. A type can't be called like a
+built-in one.
+Nor is a declared type one type if its uses differ: in byte order, or because a switch in it ends
+the payload in one place and not in another. Rename one, or declare a type for each use. Two names
+that only come to the same in some language are no problem: one of them gets `_` behind it there.
 """,
         with_messages(
             "gyro: {id: 1, from: robot, fields: {state: {type: gyro}}}",

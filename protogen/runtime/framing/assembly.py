@@ -7,6 +7,7 @@ from contextlib import suppress
 from itertools import groupby
 from typing import Any, Self
 
+from protogen.runtime.attributes import argument
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.frame import (
     ChecksumPart,
@@ -109,7 +110,7 @@ def _part_value(part: ValuePart, given: int | None, strict: bool) -> int:
 
 
 def _how_to_give(part: ValuePart) -> str:
-    example = f"encode(..., {part.name}={part.least})"
+    example = f"encode(..., {argument(part.name)}={part.least})"
     if isinstance(part, CounterPart):
         return f"the value is missing; give it as in {example}, or use an Encoder, which counts"
     return f"the value is missing; give it as in {example}"

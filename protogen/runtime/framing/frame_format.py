@@ -37,7 +37,7 @@ class FrameFormat(Piece):
             raise PayloadError(verdict.reason, path, stream.tell(), verdict.problem)
         stream.seek(start + verdict.size)
         shown = {name: verdict.numbers[name] for name in self._sender.layout.shown}
-        return Container(**shown, payload=verdict.payload)
+        return Container({**shown, "payload": verdict.payload})
 
     def _verdict(self, stream: BinaryIO) -> Cut | Failure:
         candidate = Candidate(self._sender)

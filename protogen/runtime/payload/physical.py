@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, cast, overload
 
+from protogen.runtime.attributes import attribute
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.payload.number import as_integer
 
@@ -28,6 +29,7 @@ class _View(Generic[ValueT]):
 
     def __init__(self, field: str) -> None:
         self._field = field
+        self._attribute = attribute(field)
 
     @overload
     def __get__(self, record: None, owner: type) -> Self: ...
@@ -37,7 +39,7 @@ class _View(Generic[ValueT]):
         return self if record is None else self._read(record)
 
     def __set__(self, record: object, value: ValueT) -> None:
-        setattr(record, self._field, self._raw(record, value))
+        setattr(record, self._attribute, self._raw(record, value))
 
     def _read(self, record: object) -> ValueT:
         raise NotImplementedError
@@ -65,7 +67,7 @@ class _PhysicalView(_View[ValueT]):
 
 class _PhysicalValue(_PhysicalView[ValueT]):
     def _read(self, record: object) -> Any:
-        return self._shown(getattr(record, self._field))
+        return self._shown(getattr(record, self._attribute))
 
     def _raw(self, record: object, value: Any) -> Any:
         return self._rule.nearest(value)
@@ -73,7 +75,7 @@ class _PhysicalValue(_PhysicalView[ValueT]):
 
 class _PhysicalValues(_PhysicalView[ValueT]):
     def _read(self, record: object) -> Any:
-        return [self._shown(raw) for raw in getattr(record, self._field)]
+        return [self._shown(raw) for raw in getattr(record, self._attribute)]
 
     def _raw(self, record: object, value: Any) -> Any:
         if isinstance(value, str) or not isinstance(value, Iterable):
@@ -109,13 +111,13 @@ class BitRange(_View[int]):
         self._greatest = (1 << (high - low + 1)) - 1
 
     def _read(self, record: object) -> int:
-        return (int(getattr(record, self._field)) >> self._low) & self._greatest
+        return (int(getattr(record, self._attribute)) >> self._low) & self._greatest
 
     def _raw(self, record: object, value: int) -> int:
         run = as_integer(value)
         if not 0 <= run <= self._greatest:
             raise ValueError(f"{run} is not in 0..{self._greatest}")
-        others = as_integer(getattr(record, self._field)) & ~(self._greatest << self._low)
+        others = as_integer(getattr(record, self._attribute)) & ~(self._greatest << self._low)
         return others | run << self._low
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from protogen.runtime.attributes import ATTRIBUTES
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.payload.rules import OctetsRule, Rule, Scope, SeveralRule, Violation
 
@@ -24,8 +25,9 @@ class StructRule(Rule):
             raise EncodeError("", f"must be a {self.record.__name__}, not {value!r}")
         inner = scope.new_child()
         for name, rule in self.record.RULES:
+            field = getattr(value, ATTRIBUTES.get(name, name))
             try:
-                inner[name] = rule.chosen(inner).to_wire(getattr(value, name), inner, strict)
+                inner[name] = rule.chosen(inner).to_wire(field, inner, strict)
             except EncodeError as error:
                 raise error.inside(name) from None
         return dict(inner.maps[0])
@@ -35,7 +37,8 @@ class StructRule(Rule):
         inner = scope.new_child()
         values = {}
         for name, rule in self.record.RULES:
-            values[name] = rule.chosen(inner).from_wire(raw[name], inner)
+            attribute = ATTRIBUTES.get(name, name)
+            values[attribute] = rule.chosen(inner).from_wire(raw[name], inner)
             inner[name] = raw[name]
         return self.record(**values)
 
@@ -44,7 +47,7 @@ class StructRule(Rule):
         inner = scope.new_child()
         found: list[Violation] = []
         for name, rule in self.record.RULES:
-            field = getattr(value, name)
+            field = getattr(value, ATTRIBUTES.get(name, name))
             try:
                 chosen = rule.chosen(inner)
                 raw = chosen.to_wire(field, inner, strict=False)
@@ -59,8 +62,8 @@ class StructRule(Rule):
         inner = scope.new_child()
         shown = {}
         for name, rule in self.record.RULES:
-            chosen = rule.chosen(inner)
-            shown[name] = inner[name] = chosen.to_json(getattr(value, name), inner)
+            field = getattr(value, ATTRIBUTES.get(name, name))
+            shown[name] = inner[name] = rule.chosen(inner).to_json(field, inner)
         return shown
 
     def from_json(self, data: Any, scope: Scope) -> Any:
@@ -76,14 +79,15 @@ class StructRule(Rule):
         # Of a list, this is a mark: one is made for each record. No field counts or selects by it.
         defaults = self.record.__init__.__kwdefaults__ or {}
         for name, rule in self.record.RULES:
+            attribute = ATTRIBUTES.get(name, name)
             if name in data:
                 try:
-                    values[name] = rule.chosen(inner).from_json(data[name], inner)
+                    value = rule.chosen(inner).from_json(data[name], inner)
                 except EncodeError as error:
                     raise error.inside(name) from None
-                inner[name] = values[name]
-            elif name in defaults:
-                inner[name] = defaults[name]
+                values[attribute] = inner[name] = value
+            elif attribute in defaults:
+                inner[name] = defaults[attribute]
             else:
                 raise EncodeError(name, "the value is missing")
         return self.record(**values)

@@ -17,6 +17,8 @@ _FORMS = {
     "replace": "`replace` takes `true`",
 }
 _PLACES = ("after", "before")
+DIRECTIVES = frozenset({*_FORMS, *_PLACES})
+"""Words that no name of a schema can be: a dialect could not tell them apart."""
 
 Rename = tuple[ScalarNode, ScalarNode]
 """An old name and the new one."""

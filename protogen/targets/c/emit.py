@@ -22,6 +22,8 @@ from protogen.targets.c.lines import mentions, prototype
 from protogen.targets.c.module import Module, view
 from protogen.targets.c.options import COptions
 from protogen.targets.c.package import package_files
+from protogen.targets.c.protocol_names import names_of
+from protogen.targets.c.spelling import Names
 from protogen.targets.c.wrapping import wrapped
 from protogen.targets.output import File
 from protogen.targets.printing import environment
@@ -34,6 +36,7 @@ class Unit(msgspec.Struct, frozen=True):
     """A protocol with everything that is printed of it."""
 
     protocol: Protocol
+    names: Names
     module: Module
     framing: FramingView
 
@@ -43,25 +46,28 @@ def emit(protocols: Sequence[Protocol], options: COptions = COptions()) -> tuple
     units = [unit_of(protocol, options) for protocol in protocols]
     files = [file for unit in units for file in _files(unit, options)]
     if options.style == "split" and units:
-        files += package_files([unit.protocol for unit in units], c_environment())
+        named = [unit.names.file for unit in units]
+        files += package_files([unit.protocol for unit in units], named, c_environment())
         files += [_sketch(unit) for unit in units]
     return tuple(files)
 
 
 def unit_of(protocol: Protocol, options: COptions) -> Unit:
     """Views of the chosen part of a protocol."""
+    names = names_of(protocol)
     chosen = select(protocol, options.only, options.senders)
-    module = view(chosen, options)
-    return Unit(chosen, module, framing_view(chosen, module.messages, module.sinks, options))
+    module = view(chosen, options, names)
+    framing = framing_view(chosen, module.messages, module.sinks, options, names)
+    return Unit(chosen, names, module, framing)
 
 
 def _files(unit: Unit, options: COptions) -> tuple[File, ...]:
-    name = unit.protocol.name
+    name = unit.names.file
     header, source = _print(unit.module, unit.framing, options)
     first = banner(C, [unit.protocol])
     if options.style == "single":
         text = c_environment().get_template("single.h.j2")
-        both = text.render(header=header, source=source, upper=name.upper())
+        both = text.render(header=header, source=source, upper=unit.module.upper)
         return (File(PurePosixPath(f"{name}.h"), both, first),)
     files = (
         File(PurePosixPath(f"{name}.c"), source, first),
@@ -99,7 +105,7 @@ def _stubs(unit: Unit) -> str:
 
 def _sketch(unit: Unit) -> File:
     """An Arduino sketch that receives what the first endpoint sends."""
-    name = unit.protocol.name
+    name = unit.names.file
     template = c_environment().get_template("package/sketch.ino.j2")
     baud = unit.protocol.link.baud or _BAUD
     text = template.render(module=unit.module, framing=unit.framing, baud=baud)

@@ -17,7 +17,7 @@ from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.messages import MessagePrinter, MessageView
 from protogen.targets.c.payload.records import Records, StructView
-from protogen.targets.c.protocol_names import names_of
+from protogen.targets.c.spelling import Names
 from protogen.targets.naming import named_type
 
 
@@ -25,7 +25,10 @@ class Module(msgspec.Struct, frozen=True):
     """Everything that the templates print of the payloads."""
 
     name: str
+    """What all names begin with."""
     upper: str
+    file: str
+    """The name of the files, but for its end."""
     doc: tuple[str, ...]
     spec_hash: str
     version: str | None
@@ -52,9 +55,8 @@ class Module(msgspec.Struct, frozen=True):
         raise KeyError(name)
 
 
-def view(protocol: Protocol, options: COptions) -> Module:
+def view(protocol: Protocol, options: COptions, names: Names) -> Module:
     """The module of a protocol."""
-    names = names_of(protocol)
     chosen = options.chosen(protocol)
     used = _used(chosen)
     helpers, sinks = Helpers(names), Helpers(names)
@@ -76,8 +78,9 @@ def view(protocol: Protocol, options: COptions) -> Module:
     )
     messages = tuple(printer.view(item) for item in chosen)
     return Module(
-        name=protocol.name,
-        upper=protocol.name.upper(),
+        name=names.prefix,
+        upper=names.prefix.upper(),
+        file=names.file,
         doc=comments.comment(comments.of_protocol(protocol)),
         spec_hash=protocol.spec_hash,
         version=None if protocol.version is None else string(protocol.version),

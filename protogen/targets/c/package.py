@@ -23,10 +23,12 @@ _SHARED = {
 """Files that take a comment behind `#`, and their templates."""
 
 
-def package_files(protocols: Sequence[Protocol], environment: Environment) -> tuple[File, ...]:
-    """The files around the codecs of these protocols."""
+def package_files(
+    protocols: Sequence[Protocol], files: Sequence[str], environment: Environment
+) -> tuple[File, ...]:
+    """The files around the codecs of these protocols, which are in `files`."""
     names = [protocol.name for protocol in protocols]
-    given = {"names": names, "version": VERSION}
+    given = {"files": dict(zip(names, files, strict=True)), "version": VERSION}
     first = banner(PYTHON, protocols)
     shared = [
         File(PurePosixPath(path), _render(environment, template, given), first, shared=True)

@@ -5,7 +5,7 @@ A writer takes payloads byte by byte, where a frame is sent without a buffer.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
@@ -14,9 +14,8 @@ from protogen.targets.c.frame.checksums import checksum_name
 from protogen.targets.c.named import claim_fields, enum_view, flags_view
 from protogen.targets.c.payload.message_names import claim_all
 from protogen.targets.c.spelling import Names
-from protogen.targets.c.words import foreign_words, headers
 from protogen.targets.kept import Kept
-from protogen.targets.naming import OWN, PROTOCOL, Thing, endpoint, inside, named_type, part
+from protogen.targets.naming import OWN, NameTable, Thing, endpoint, inside, named_type, part
 
 _MACROS = """
 ok error_size error_value error_encoding error_range error_space spec_hash version h implementation
@@ -47,9 +46,9 @@ def names_of(protocol: Protocol) -> Names:
 
 def _all_names(protocol: Protocol) -> Names:
     names = Names(protocol.name, writer_parameter(protocol), _writer_argument(protocol))
-    names.files.things |= dict.fromkeys(headers(), Thing("is a header of C"))
-    names.files.add(f"{protocol.name}.h", PROTOCOL)
+    names.claim_file(protocol.name)
     _claim_own(names)
+    _claim_checksums(names, protocol.senders)
     for sender in protocol.senders:
         _claim_sender(names, sender)
     for enum in protocol.enums:
@@ -62,9 +61,8 @@ def _all_names(protocol: Protocol) -> Names:
             claim_fields(names, struct.name, struct.fields)
     for message in protocol.messages:
         claim_all(names, message, protocol.senders_of(message))
-    hidden = names.others.things | dict(foreign_words())
     for name, thing in _members(protocol):
-        names.members.enter(name, thing, hidden)
+        names.claim_member(thing, name)
     return names
 
 
@@ -98,21 +96,37 @@ def _claim_own(names: Names) -> None:
         names.claim(OWN, word)
 
 
-def _claim_sender(names: Names, sender: Sender) -> None:
-    thing = endpoint(sender.endpoint)
-    for word in _TAGS_OF_A_SENDER.split():
-        names.claim_tag(thing, sender.name, word)
-    for word in _TYPES_OF_A_SENDER.split():
-        names.claim_type(thing, sender.name, word)
-    for word in _FUNCTIONS_OF_A_SENDER.split():
-        names.claim(thing, sender.name, word)
-    for word in _MACROS_OF_A_SENDER.split():
-        names.claim_macro(thing, sender.name, word)
-    for item in sender.frame.checksums:
+def _claim_checksums(names: Names, senders: Iterable[Sender]) -> None:
+    for item in (item for sender in senders for item in sender.frame.checksums):
         function = checksum_name(names.prefix, item.algorithm)
         for word in ("reversed", "step", "run", "final"):
             names.others.add(f"{function}_{word}")
-        names.claim(thing, sender.name, item.name, "run")
+
+
+def _claim_sender(names: Names, sender: Sender) -> None:
+    """All names that begin with that of an endpoint, which is escaped where one of them is taken.
+
+    `close` and `close_open` would both have a function `close_open_payload`.
+    """
+    thing, start = endpoint(sender.endpoint), f"{names.prefix}_{sender.name}"
+    while any(name in table.things for table, name in _of_sender(names, sender, start)):
+        start += "_"
+    if not start.endswith(sender.name):
+        names.others.note(thing, f"{start}_decoder")
+    names.senders[sender.name] = start
+    for table, name in _of_sender(names, sender, start):
+        table.add(name, thing)
+
+
+def _of_sender(names: Names, sender: Sender, start: str) -> Iterator[tuple[NameTable, str]]:
+    """The names of an endpoint that begin so."""
+    types, functions = _TYPES_OF_A_SENDER.split(), _FUNCTIONS_OF_A_SENDER.split()
+    for word in (*_TAGS_OF_A_SENDER.split(), *types):
+        yield names.tags, f"{start}_{word}"
+    for word in (*types, *functions, *(f"{item.name}_run" for item in sender.frame.checksums)):
+        yield names.others, f"{start}_{word}"
+    for word in _MACROS_OF_A_SENDER.split():
+        yield names.others, f"{start}_{word}".upper()
 
 
 def is_stateless(protocol: Protocol) -> bool:

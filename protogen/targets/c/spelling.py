@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from collections import ChainMap
+from copy import copy
 from functools import cache, lru_cache
 
 from protogen.model.names import free_name
 from protogen.model.types import Float, NumberType, counting_bits, storage_bits
-from protogen.targets.naming import NameTable, Thing
+from protogen.targets.c.words import foreign_words, headers
+from protogen.targets.naming import PROTOCOL, NameTable, Thing
 
 _INT_MAX = 0x7FFF
 """The greatest `int` that every target has."""
 
 
 class Names:
-    """File-scope names, and what each of them stands for.
+    """Names of a protocol's C, and what each of them stands for.
 
-    The schema's names are words that C does not reserve, but two of them, joined with others, can
-    come to the same (`robot` with `mode_idle`, `robot_mode` with `idle`). Such a schema is refused.
+    Two of them, joined of words of the schema, can come to the same (`robot` with `mode_idle`,
+    `robot_mode` with `idle`): the second is escaped.
     """
 
     def __init__(self, prefix: str, writer: str = "", writing: str = "") -> None:
@@ -26,20 +28,29 @@ class Names:
         """The parameters of functions that send byte by byte."""
         self.writing = writing
         """Arguments with which these hand the writer on."""
-        self.tags = NameTable()
+        self.file = ""
+        """The name of the files, but for its end."""
+        self.senders: dict[str, str] = {}
+        """What the names of each endpoint that sends begin with."""
+        self.files = NameTable(headers())
+        """Names of files."""
+        self.tags = NameTable(foreign_words())
         """Structs, enums and unions, which C knows by these words."""
-        self.others = NameTable()
+        self.others = NameTable(foreign_words())
         """Functions, variables, typedefs, macros and named values."""
         self.members = NameTable()
         """Members and parameters, none of which may hide one of the others."""
-        self.files = NameTable()
+        self._members: dict[str, str] = {}
 
     def copy(self) -> Names:
         """Names that others can be added to without a change of these."""
-        names = Names(self.prefix, self.writer, self.writing)
+        names = copy(self)
         names.tags, names.others = self.tags.copy(), self.others.copy()
-        names.members, names.files = self.members.copy(), self.files.copy()
         return names
+
+    def claim_file(self, name: str) -> None:
+        """The name of the files."""
+        self.file = self.files.add(name, PROTOCOL)
 
     def claim_tag(self, thing: Thing, *words: str) -> str:
         """A struct or an enum: `rn1_gyro`."""
@@ -62,6 +73,20 @@ class Names:
         taken = ChainMap(self.others.things, self.members.things)
         return self.others.add(free_name(self._joined(words), taken))
 
+    def claim_member(self, thing: Thing, name: str) -> None:
+        """A member or parameter. Things of other records may have members of that name, too."""
+        found = name
+        while found in self.others.things:
+            found += "_"
+        self._members[name] = found
+        self.members.things.setdefault(found, thing)
+        if found != name:
+            self.members.note(thing, found)
+
+    def member(self, name: str) -> str:
+        """The member or parameter for a field, a case or a part."""
+        return self._members.get(name, name)
+
     def _joined(self, words: tuple[str, ...]) -> str:
         return "_".join((self.prefix, *words))
 
@@ -69,11 +94,6 @@ class Names:
 def from_sender(name: str) -> str:
     """The suffix that tells the functions for a sender from those for others of the message."""
     return f"_from_{name}"
-
-
-def handler_name(message: str) -> str:
-    """What a message's handler is called behind the protocol's name."""
-    return f"on_{message}"
 
 
 # --- types --------------------------------------------------------------------------------------

@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+_C = """
+auto break case char const continue default do double else enum extern float for goto if inline int
+long register restrict return short signed sizeof static struct switch typedef union unsigned void
+volatile while bool true false nullptr alignas alignof thread_local static_assert typeof constexpr
+errno asm main stdin stdout stderr assert null offsetof
+"""
 
-from protogen.passes.names.reserved_words import CPP, C
-from protogen.targets.naming import Thing
+_CPP = """
+alignas alignof and and_eq asm bitand bitor bool catch char8_t char16_t char32_t class co_await
+co_return co_yield compl concept consteval constexpr constinit const_cast decltype delete
+dynamic_cast explicit export false friend mutable namespace new noexcept not not_eq nullptr operator
+or or_eq private protected public reinterpret_cast requires static_assert static_cast template this
+thread_local throw true try typeid typename using virtual wchar_t xor xor_eq
+"""
+"""Words of C++, which the headers are for as well."""
 
 _GNU_MACROS = """
 linux unix i386 sun sparc mips vax hpux pdp11 bfin mc68000 mc68010 mc68020 mc68030 mc68040 mc68060
@@ -24,20 +35,11 @@ wchar wctype
 """
 
 
-def headers() -> Iterator[str]:
+def headers() -> list[str]:
     """Headers of C, in place of which compilers would find a protocol's own."""
-    return (f"{name}.h" for name in _HEADERS.split())
+    return _HEADERS.split()
 
 
-def foreign_words() -> Iterator[tuple[str, Thing]]:
-    """Each word, with what it is."""
-    kinds = {
-        "is a reserved word of C++": CPP,
-        "is a reserved word of C": C,
-        "is a macro of some C compilers": _GNU_MACROS,
-        "is a type of C's standard library": _TYPES,
-    }
-    for what, words in kinds.items():
-        thing = Thing(what)
-        for word in words.split():
-            yield word, thing
+def foreign_words() -> list[str]:
+    """Reserved words, and what else is not for a schema's names."""
+    return " ".join((_C, _CPP, _GNU_MACROS, _TYPES)).split()

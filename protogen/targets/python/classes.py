@@ -16,9 +16,9 @@ from protogen.targets.escape import paragraphs, python_comment
 from protogen.targets.python import describing
 from protogen.targets.python.formats import constant, field_format, is_empty
 from protogen.targets.python.literals import call, octets_in_class, text, tuple_of
-from protogen.targets.python.names import bits_name, physical_name
+from protogen.targets.python.names import Names, RecordNames
 from protogen.targets.python.rules import field_rule
-from protogen.targets.python.spelling import class_name, member_name
+from protogen.targets.python.spelling import member_name
 from protogen.targets.python.wrapping import (
     WIDTH,
     docstring,
@@ -79,24 +79,24 @@ class RecordClass(msgspec.Struct, frozen=True):
     made: Constructor
 
 
-def enum_class(item: Enum) -> EnumClass:
+def enum_class(item: Enum, names: Names) -> EnumClass:
     """An enum."""
     members = tuple(
         Member(member_name(entry.name), str(entry.value), _comment(entry.about.doc))
         for entry in item.values
     )
     doc = docstring(describing.named(item.name, item.about), _INDENT)
-    return EnumClass(class_name(item.name), "_rt.OpenEnum", doc, members)
+    return EnumClass(names.classes[item.name], "_rt.OpenEnum", doc, members)
 
 
-def flags_class(item: Flags) -> EnumClass:
+def flags_class(item: Flags, names: Names) -> EnumClass:
     """A set of flags."""
     members = tuple(
         Member(member_name(entry.name), f"0x{1 << entry.bit:02X}", _comment(entry.about.doc))
         for entry in item.bits
     )
     doc = docstring(describing.named(item.name, item.about), _INDENT)
-    return EnumClass(class_name(item.name), "_rt.Flags", doc, members)
+    return EnumClass(names.classes[item.name], "_rt.Flags", doc, members)
 
 
 def _comment(doc: str) -> str:
@@ -104,13 +104,13 @@ def _comment(doc: str) -> str:
     return python_comment(first) if len(first) <= 60 else ""
 
 
-def struct_class(item: Struct) -> RecordClass:
+def struct_class(item: Struct, names: Names) -> RecordClass:
     """A struct."""
     doc = docstring(describing.named(item.name, item.about), _INDENT)
-    return _record(class_name(item.name), "_rt.Record", doc, item.fields, ())
+    return _record(item, "_rt.Record", doc, (), names)
 
 
-def message_class(item: Message, identity: str) -> RecordClass:
+def message_class(item: Message, identity: str, names: Names) -> RecordClass:
     """A message; `identity` says in words what its identity is."""
     values = tuple_of(f"0x{value:02X}" for value in item.identity)
     constants = (
@@ -121,7 +121,7 @@ def message_class(item: Message, identity: str) -> RecordClass:
         f"SIZES = {_sizes(item.sizes)}",
     )
     doc = docstring(describing.message(item), _INDENT)
-    return _record(class_name(item.name), "_rt.Message", doc, item.fields, constants)
+    return _record(item, "_rt.Message", doc, constants, names)
 
 
 def _sizes(sizes: SizeSet) -> str:
@@ -129,20 +129,30 @@ def _sizes(sizes: SizeSet) -> str:
     return call("_rt.Sizes", str(sizes.least), str(sizes.greatest), step=step)
 
 
+class _Scope(msgspec.Struct, frozen=True):
+    """Names that a class can use in its body."""
+
+    module: Names
+    own: RecordNames
+    taken: frozenset[str]
+    """Attributes of fields, which hide built-in types of the same names."""
+
+
 def _record(
-    name: str, base: str, doc: str, fields: tuple[Field, ...], constants: tuple[str, ...]
+    item: Struct | Message, base: str, doc: str, constants: tuple[str, ...], names: Names
 ) -> RecordClass:
-    taken = frozenset(field.name for field in fields)
+    own, fields = names.records[item.name], item.fields
+    scope = _Scope(names, own, frozenset(own.fields.values()))
     return RecordClass(
-        name=name,
+        name=names.classes[item.name],
         base=base,
         doc=doc,
-        attributes=tuple(_attribute(field, taken) for field in fields),
+        attributes=tuple(_attribute(field, scope) for field in fields),
         constants=constants,
-        format=tuple(_format_line(field) for field in fields),
-        rules=_rules(fields),
-        views=tuple(view for field in fields for view in _views(field, taken)),
-        made=_constructor(fields, taken),
+        format=tuple(_format_line(field, names) for field in fields),
+        rules=_rules(fields, names),
+        views=tuple(view for field in fields for view in _views(field, scope)),
+        made=_constructor(fields, scope),
     )
 
 
@@ -158,103 +168,105 @@ def _natural(name: str) -> list[tuple[int, str]]:
     return [(int(part), "") if part.isdigit() else (0, part) for part in re.split("([0-9]+)", name)]
 
 
-def _constructor(fields: tuple[Field, ...], taken: frozenset[str]) -> Constructor:
+def _constructor(fields: tuple[Field, ...], scope: _Scope) -> Constructor:
     """The constructor of a record, which takes keywords only."""
     parameters, body = ["*"], []
     for field in fields:
-        kind, default, value = annotation(field.type, taken), _default(field), field.name
+        name = value = scope.own.fields[field.name]
+        kind, default = _annotation(field.type, scope), _default(field, scope.module)
         if isinstance(default, list):
-            value = f"{default} if {field.name} is _rt.OMITTED else {field.name}"
+            value = f"{default} if {name} is _rt.OMITTED else {name}"
             default = "_rt.OMITTED"
-        parameters.append(f"{field.name}: {kind}" + (f" = {default}" if default else ""))
-        body.append(f"self.{field.name} = {value}")
+        parameters.append(f"{name}: {kind}" + (f" = {default}" if default else ""))
+        body.append(f"self.{name} = {value}")
     head = method("def __init__(", ", ".join(["self", *parameters]), ") -> None:", _INDENT)
-    return Constructor(slots_of(field.name for field in fields), head, tuple(body))
+    return Constructor(slots_of(scope.own.fields.values()), head, tuple(body))
 
 
-def _format_line(field: Field) -> str:
+def _format_line(field: Field, names: Names) -> str:
     """One line of FORMAT; a long one is broken before the slash, as formatters do."""
     name, indent = text(field.name), 3 * _INDENT
-    expression = field_format(field)
+    expression = field_format(field, names)
     if indent + len(name) + 3 + len(expression) + 1 <= 100 or "(" not in expression:
         return f"{name} / {expression},"
     broken = wrapped(expression, indent + 2, indent)
     return f"{name}\n{' ' * indent}/ {broken},"
 
 
-def _rules(fields: tuple[Field, ...]) -> str:
+def _rules(fields: tuple[Field, ...], names: Names) -> str:
     """The rules of all fields; several stand below each other."""
     if not fields:
         return "()"
     indent = " " * _INDENT
     if len(fields) < 2:
-        only = tuple_of(f"({text(field.name)}, {field_rule(field)})" for field in fields)
+        only = tuple_of(f"({text(field.name)}, {field_rule(field, names)})" for field in fields)
         whole = f"_rt.lazily(lambda: {only})"
         if _INDENT + len("RULES = ") + len(whole) <= WIDTH:
             return whole
         made = wrapped(only, 2 * _INDENT + len("lambda: "), 2 * _INDENT, after=0)
         return f"_rt.lazily(\n{2 * indent}lambda: {made}\n{indent})"
-    lines = [3 * indent + _rule_line(field) for field in fields]
+    lines = [3 * indent + _rule_line(field, names) for field in fields]
     head, end = f"_rt.lazily(\n{2 * indent}lambda: (", f"{2 * indent})\n{indent})"
     return "\n".join([head, *lines, end])
 
 
-def _rule_line(field: Field) -> str:
-    expression = f"({text(field.name)}, {field_rule(field)})"
+def _rule_line(field: Field, names: Names) -> str:
+    expression = f"({text(field.name)}, {field_rule(field, names)})"
     return wrapped(expression, 3 * _INDENT, 3 * _INDENT) + ","
 
 
-def _attribute(field: Field, taken: frozenset[str]) -> Attribute:
-    line = union(f"{field.name}: ", annotation(field.type, taken), _INDENT)
+def _attribute(field: Field, scope: _Scope) -> Attribute:
+    name = scope.own.fields[field.name]
+    line = union(f"{name}: ", _annotation(field.type, scope), _INDENT)
     return Attribute(line, remark(describing.field(field), _INDENT))
 
 
-def annotation(type_: Type, taken: frozenset[str]) -> str:
+def _annotation(type_: Type, scope: _Scope) -> str:
     """The type of a field's attribute. Named values may also be given as numbers.
 
-    A built-in type whose name a field has `taken` is named by its module.
+    A built-in type whose name a field has taken is named by its module.
     """
     match type_:
         case Integer():
-            return _integer_annotation(type_, taken)
+            return _integer_annotation(type_, scope)
         case Float():
-            return _builtin("float", taken)
+            return _builtin("float", scope)
         case Text():
-            return _builtin("str", taken)
+            return _builtin("str", scope)
         case Octets():
-            return _builtin("bytes", taken)
+            return _builtin("bytes", scope)
         case Struct():
-            return class_name(type_.name)
+            return scope.module.classes[type_.name]
         case Array():
-            return f"{_builtin('list', taken)}[{annotation(type_.element, taken)}]"
+            return f"{_builtin('list', scope)}[{_annotation(type_.element, scope)}]"
         case Switch():
-            return _switch_annotation(type_, taken)
+            return _switch_annotation(type_, scope)
 
 
-def _builtin(name: str, taken: frozenset[str]) -> str:
-    return f"_builtins.{name}" if name in taken else name
+def _builtin(name: str, scope: _Scope) -> str:
+    return f"_builtins.{name}" if name in scope.taken else name
 
 
-def _integer_annotation(type_: Integer, taken: frozenset[str]) -> str:
+def _integer_annotation(type_: Integer, scope: _Scope) -> str:
     if type_.role == "bool":
-        return _builtin("bool", taken)
+        return _builtin("bool", scope)
     named = type_.enum or type_.flags
-    number = _builtin("int", taken)
-    return f"{class_name(named.name)} | {number}" if named else number
+    number = _builtin("int", scope)
+    return f"{scope.module.classes[named.name]} | {number}" if named else number
 
 
-def _switch_annotation(type_: Switch, taken: frozenset[str]) -> str:
+def _switch_annotation(type_: Switch, scope: _Scope) -> str:
     choices = [
-        "None" if is_empty(case.type) else annotation(case.type, taken) for case in type_.cases
+        "None" if is_empty(case.type) else _annotation(case.type, scope) for case in type_.cases
     ]
     if type_.rest is not None:
-        choices.append(_builtin("bytes", taken))
+        choices.append(_builtin("bytes", scope))
     distinct = dict.fromkeys(choices)
     ordered = [choice for choice in distinct if choice != "None"]
     return one_of([*ordered, *(["None"] if "None" in distinct else [])])
 
 
-def _default(field: Field) -> str | list[int | str] | None:
+def _default(field: Field, names: Names) -> str | list[int | str] | None:
     """The default of an attribute, a list as such: a constant needs not be given."""
     value = field.const if field.const is not None else field.default
     match value:
@@ -267,32 +279,32 @@ def _default(field: Field) -> str | list[int | str] | None:
         case str():
             return text(value)
         case int() if isinstance(field.type, Integer):
-            return _named_default(field, field.type, value)
+            return _named_default(field.type, value, names)
     return constant(field) if field.const is not None else repr(value)
 
 
-def _named_default(field: Field, type_: Integer, value: int) -> str:
+def _named_default(type_: Integer, value: int, names: Names) -> str:
     if type_.role == "bool":
         return str(bool(value))
     if type_.enum:
-        names = {entry.value: entry.name for entry in type_.enum.values}
-        if value in names:
-            return f"{class_name(type_.enum.name)}.{member_name(names[value])}"
+        members = {entry.value: entry.name for entry in type_.enum.values}
+        if value in members:
+            return f"{names.classes[type_.enum.name]}.{member_name(members[value])}"
     return str(value)
 
 
 # --- properties -----------------------------------------------------------------------------------
 
 
-def _views(field: Field, taken: frozenset[str]) -> list[Attribute]:
-    views = [_physical(field, taken)] if field.scaled else []
+def _views(field: Field, scope: _Scope) -> list[Attribute]:
+    views = [_physical(field, scope.own)] if field.scaled else []
     if isinstance(field.type, Integer):
-        views += [_bits(field, item, taken) for item in field.type.bit_fields]
-    return [view for view in views if view is not None]
+        views += [_bits(field, item, scope) for item in field.type.bit_fields]
+    return views
 
 
-def _physical(field: Field, taken: frozenset[str]) -> Attribute:
-    name = physical_name(field, taken)
+def _physical(field: Field, names: RecordNames) -> Attribute:
+    name = names.reading(field)
     kind = "PhysicalList" if isinstance(field.type, Array) else "Physical"
     kind += "OrNone" if field.special else ""
     unit = f" in {field.unit}" if field.unit else ", scaled"
@@ -318,11 +330,11 @@ def _physical_range(field: Field) -> str:
     return f", {ends[0]:.10g}..{ends[1]:.10g}"
 
 
-def _bits(field: Field, item: BitField, taken: frozenset[str]) -> Attribute:
-    name = bits_name(field, item, taken)
+def _bits(field: Field, item: BitField, scope: _Scope) -> Attribute:
+    name = scope.own.run(field, item)
     bounds = (text(field.name), str(item.low), str(item.high))
     if item.enum:
-        view = call("_rt.EnumRange", *bounds, class_name(item.enum.name))
+        view = call("_rt.EnumRange", *bounds, scope.module.classes[item.enum.name])
     else:
         view = call("_rt.BitRange", *bounds)
     what = next(iter(paragraphs(item.about.doc)), item.name.replace("_", " ").capitalize())

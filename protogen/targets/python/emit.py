@@ -14,6 +14,7 @@ from protogen.targets.output import File
 from protogen.targets.printing import environment
 from protogen.targets.python.engine.view import engine_view
 from protogen.targets.python.module import Module, view
+from protogen.targets.python.names import names_of
 from protogen.targets.python.wrapping import docstring
 
 RUNTIME = "protogen.runtime"
@@ -34,7 +35,7 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
 
 def _files(protocol: Protocol) -> Iterator[File]:
     text, first_line = kept_source(protocol), banner(PYTHON, [protocol])
-    yield File(PurePosixPath(f"{protocol.name}.py"), text.module, first_line)
+    yield File(PurePosixPath(f"{names_of(protocol).file}.py"), text.module, first_line)
     yield File(PurePosixPath(f"{codec_name(protocol)}.py"), text.codec, first_line)
 
 
@@ -60,7 +61,7 @@ def source(protocol: Protocol, runtime: str = RUNTIME, *, is_package: bool = Fal
     module = view(protocol)
     given = {
         "module": module,
-        "fast": engine_view(protocol, module.arguments),
+        "fast": engine_view(protocol, tuple(module.arguments)),
         "runtime": runtime,
         "codec": codec_name(protocol),
         "is_package": is_package,

@@ -23,21 +23,21 @@ from protogen.model.types import (
     Type,
 )
 from protogen.targets.python.literals import call, mapping, octets_in_class, text
-from protogen.targets.python.spelling import class_name
+from protogen.targets.python.names import Names
 
 
-def field_format(field: Field) -> str:
+def field_format(field: Field, names: Names) -> str:
     """The declaration of a field, its constant included."""
     if field.const is not None:
-        return call("_c.Fixed", type_format(field.type), constant(field))
-    return _checked(field.type)
+        return call("_c.Fixed", type_format(field.type, names), constant(field))
+    return _checked(field.type, names)
 
 
-def _checked(type_: Type) -> str:
+def _checked(type_: Type, names: Names) -> str:
     """The declaration of a type that refuses values outside of a closed enum."""
     if isinstance(type_, Integer) and type_.enum and type_.enum.closed:
-        return call("_c.Closed", type_format(type_), class_name(type_.enum.name))
-    return type_format(type_)
+        return call("_c.Closed", type_format(type_, names), names.classes[type_.enum.name])
+    return type_format(type_, names)
 
 
 def constant(field: Field) -> str:
@@ -54,7 +54,7 @@ def constant(field: Field) -> str:
     return repr(field.const)
 
 
-def type_format(type_: Type) -> str:
+def type_format(type_: Type, names: Names) -> str:
     """The declaration of a type."""
     match type_:
         case Integer():
@@ -65,11 +65,11 @@ def type_format(type_: Type) -> str:
         case Text() | Octets():
             return _string(type_)
         case Struct():
-            return f"{class_name(type_.name)}.FORMAT"
+            return f"{names.classes[type_.name]}.FORMAT"
         case Array():
-            return _array(type_)
+            return _array(type_, names)
         case Switch():
-            return _switch(type_)
+            return _switch(type_, names)
 
 
 @lru_cache(1024)
@@ -107,22 +107,22 @@ def extent(of: Extent) -> str:
             return str(of.greatest)
 
 
-def _array(type_: Array) -> str:
-    element = _checked(type_.element)
+def _array(type_: Array, names: Names) -> str:
+    element = _checked(type_.element, names)
     if isinstance(type_.extent, Fill):
         return call("_c.Fill", element, str(type_.extent.greatest))
     return call("_c.Counted", extent(type_.extent), element)
 
 
-def _switch(type_: Switch) -> str:
-    cases = mapping({str(case.value): _case(case) for case in type_.cases})
+def _switch(type_: Switch, names: Names) -> str:
+    cases = mapping({str(case.value): _case(case, names) for case in type_.cases})
     seven = "True" if type_.byte_bits == 7 else None
     rest = None if type_.rest is None else call("_c.OctetsFill", str(type_.rest), seven_bit=seven)
     return call("_c.Cases", text(type_.selector), cases, rest=rest)
 
 
-def _case(case: Case) -> str:
-    return "_c.Pass" if is_empty(case.type) else type_format(case.type)
+def _case(case: Case, names: Names) -> str:
+    return "_c.Pass" if is_empty(case.type) else type_format(case.type, names)
 
 
 def is_empty(type_: Type) -> bool:

@@ -7,14 +7,14 @@ import msgspec
 from protogen.model.frame import CounterPart, IdentityPart, ValuePart
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
+from protogen.runtime.attributes import argument, attribute
 from protogen.targets import descriptions
 from protogen.targets.escape import paragraphs
 from protogen.targets.python import classes, describing, frames
 from protogen.targets.python.classes import Attribute, Constructor, EnumClass, RecordClass, slots_of
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.literals import call, text, tuple_of
-from protogen.targets.python.names import frame_name, parts_name, union_name
-from protogen.targets.python.spelling import class_name
+from protogen.targets.python.names import Names, frame_name, names_of
 from protogen.targets.python.wrapping import docstring, method, one_of, remark, union, wrapped
 
 _INDENT = 4
@@ -80,8 +80,8 @@ class Module(msgspec.Struct, frozen=True):
     any_parts: str
     literal: str
     protocol_text: str
-    arguments: tuple[str, ...]
-    """Counters and values that `encode` takes."""
+    arguments: dict[str, str]
+    """Counters and values that `encode` takes: names of the parts, and of its arguments."""
     arguments_doc: str
     counts: bool
     formats: str
@@ -95,22 +95,23 @@ class Module(msgspec.Struct, frozen=True):
 
 def view(protocol: Protocol) -> Module:
     """The module of a protocol."""
-    parts = _parts_classes(protocol)
-    senders = _senders(protocol, parts)
-    endpoints = _endpoints(protocol, parts)
+    names = names_of(protocol)
+    parts = _parts_classes(protocol, names)
+    senders = _senders(protocol, parts, names)
+    endpoints = _endpoints(protocol, parts, names)
     any_message = one_of(endpoint.union for endpoint in endpoints)
     any_parts = one_of(sender.parts for sender in senders)
     arguments = _arguments(protocol)
-    structs = tuple(map(classes.struct_class, classes_of(protocol)))
+    structs = tuple(classes.struct_class(item, names) for item in classes_of(protocol))
     return Module(
-        name=protocol.name,
+        name=names.file,
         doc=docstring(describing.module(protocol), 0),
         spec_hash=protocol.spec_hash,
         version=None if protocol.version is None else text(protocol.version),
         uses=_uses(structs, senders),
         enums=(
-            *(classes.enum_class(item) for item in protocol.enums),
-            *(classes.flags_class(item) for item in protocol.flags),
+            *(classes.enum_class(item, names) for item in protocol.enums),
+            *(classes.flags_class(item, names) for item in protocol.flags),
         ),
         structs=structs,
         parts=tuple(dict.fromkeys(parts.values())),
@@ -125,7 +126,7 @@ def view(protocol: Protocol) -> Module:
         arguments_doc=_arguments_doc(protocol),
         counts=any(_counters(sender) for sender in protocol.senders),
         formats=_formats(senders),
-        registry=_registry(protocol),
+        registry=_registry(protocol, names),
         decoder_heads=_decoder_heads(endpoints, any_message, any_parts),
         decode_stub=_decode_head(_ANY_SENDER, any_message, after=5),
         decode_head=_decode_head(_ANY_SENDER, any_message, after=1),
@@ -146,17 +147,12 @@ def _uses(structs: tuple[RecordClass, ...], senders: tuple[SenderView, ...]) -> 
 # --- parts ------------------------------------------------------------------------------------
 
 
-def _shown(sender: Sender) -> tuple[IdentityPart | CounterPart | ValuePart, ...]:
-    kinds = (IdentityPart, CounterPart, ValuePart)
-    return tuple(part for part in sender.frame.parts if isinstance(part, kinds))
-
-
-def _parts_classes(protocol: Protocol) -> dict[str, PartsClass]:
+def _parts_classes(protocol: Protocol, names: Names) -> dict[str, PartsClass]:
     """The class of each sender's parts; one for all where they are alike."""
     attributes = {sender.name: _part_attributes(sender) for sender in protocol.senders}
     alike = len(set(attributes.values())) == 1
     return {
-        name: PartsClass("Parts" if alike else parts_name(name), items, _made(items))
+        name: PartsClass("Parts" if alike else names.parts[name], items, _made(items))
         for name, items in attributes.items()
     }
 
@@ -170,10 +166,10 @@ def _made(parts: tuple[Attribute, ...]) -> Constructor:
 
 def _part_attributes(sender: Sender) -> tuple[Attribute, ...]:
     attributes = []
-    for part in _shown(sender):
+    for part in sender.frame.shown_parts:
         first = next(iter(paragraphs(part.about.doc)), _role(part))
         texts = describing.escaped([descriptions.sentence(first)])
-        attributes.append(Attribute(f"{part.name}: int", remark(texts, _INDENT)))
+        attributes.append(Attribute(f"{attribute(part.name)}: int", remark(texts, _INDENT)))
     return tuple(attributes)
 
 
@@ -191,16 +187,16 @@ def _counters(sender: Sender) -> list[CounterPart]:
     return [part for part in sender.frame.parts if isinstance(part, CounterPart)]
 
 
-def _arguments(protocol: Protocol) -> tuple[str, ...]:
-    names = [part.name for sender in protocol.senders for part in sender.frame.caller_parts]
-    return tuple(dict.fromkeys(names))
+def _arguments(protocol: Protocol) -> dict[str, str]:
+    parts = [part.name for sender in protocol.senders for part in sender.frame.caller_parts]
+    return {name: argument(name) for name in parts}
 
 
 def _arguments_doc(protocol: Protocol) -> str:
     sentences: dict[str, str] = {}
     for sender in protocol.senders:
         for part in sender.frame.caller_parts:
-            bounds = f"`{part.name}` ({part.least}..{part.greatest})"
+            bounds = f"`{argument(part.name)}` ({part.least}..{part.greatest})"
             default = f"is {part.default} if not given" if part.default is not None else None
             counted = isinstance(part, CounterPart)
             missing = "has to be given" + ("; an `Encoder` counts by itself" if counted else "")
@@ -211,7 +207,9 @@ def _arguments_doc(protocol: Protocol) -> str:
 # --- senders ----------------------------------------------------------------------------------
 
 
-def _senders(protocol: Protocol, parts: dict[str, PartsClass]) -> tuple[SenderView, ...]:
+def _senders(
+    protocol: Protocol, parts: dict[str, PartsClass], names: Names
+) -> tuple[SenderView, ...]:
     views: list[SenderView] = []
     frame_names: dict[str, str] = {}
     printed: set[str] = set()
@@ -229,9 +227,9 @@ def _senders(protocol: Protocol, parts: dict[str, PartsClass]) -> tuple[SenderVi
                 parts=parts[sender.name].name,
                 frame=frame,
                 frame_text="" if known else frame_text,
-                spec_text=_sender_spec(sender, frame, parts[sender.name].name),
+                spec_text=_sender_spec(sender, frame, parts[sender.name].name, names),
                 messages=tuple(
-                    classes.message_class(message, _identity_words(sender, message))
+                    classes.message_class(message, _identity_words(sender, message), names)
                     for message in new
                 ),
             )
@@ -244,17 +242,20 @@ def _title(sender: Sender) -> str:
     return sender.endpoint if sender.is_only_form else f"{sender.endpoint}, {sender.form}"
 
 
-def _endpoints(protocol: Protocol, parts: dict[str, PartsClass]) -> tuple[EndpointView, ...]:
+def _endpoints(
+    protocol: Protocol, parts: dict[str, PartsClass], names: Names
+) -> tuple[EndpointView, ...]:
     views: list[EndpointView] = []
     for name in protocol.sending:
         forms = protocol.forms(name)
         sent = {message.name: None for sender in forms for message in sender.messages}
-        messages = union_name(name)
+        messages = names.unions[name]
+        union_text = one_of(names.classes[message] for message in sent)
         views.append(
             EndpointView(
                 name=name,
                 union=messages,
-                union_text=union(f"{messages} = ", one_of(map(class_name, sent)), 0),
+                union_text=union(f"{messages} = ", union_text, 0),
                 parts=one_of(parts[sender.name].name for sender in forms),
                 decode_head=_decode_head(f"_typing.Literal[{text(name)}]", messages, after=5),
             )
@@ -321,11 +322,11 @@ def _unless(expression: str, default: str) -> str | None:
     return None if expression == default else expression
 
 
-def _sender_spec(sender: Sender, frame: str, parts: str) -> str:
-    messages = union_name(sender.endpoint)
+def _sender_spec(sender: Sender, frame: str, parts: str, names: Names) -> str:
+    messages = names.unions[sender.endpoint]
     name = f"{sender.name.upper()}_SENDER: _rt.SenderSpec[{messages}, {parts}] = "
-    shown = {m.name: class_name(m.name) for m in sender.received}
-    encode_only = [class_name(m.name) for m in sender.messages if m.name not in shown]
+    shown = {m.name: names.classes[m.name] for m in sender.received}
+    encode_only = [names.classes[m.name] for m in sender.messages if m.name not in shown]
     expression = call(
         "_rt.SenderSpec",
         text(sender.endpoint),
@@ -353,7 +354,7 @@ def _formats(senders: tuple[SenderView, ...]) -> str:
     return wrapped(expression, _INDENT + len("__getattr__ = "), _INDENT, after=0)
 
 
-def _registry(protocol: Protocol) -> str:
+def _registry(protocol: Protocol, names: Names) -> str:
     """Message classes by name."""
-    lines = [f"    {text(m.name)}: {class_name(m.name)}," for m in protocol.messages]
+    lines = [f"    {text(m.name)}: {names.classes[m.name]}," for m in protocol.messages]
     return "\n".join(["{", *lines, "}"])

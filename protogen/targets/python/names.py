@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import keyword
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.messages import Message
 from protogen.model.names import unit_suffix
-from protogen.model.protocol import Protocol
+from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import Field, Integer, Struct
+from protogen.runtime.attributes import ARGUMENTS, ATTRIBUTES
+from protogen.targets.kept import Kept
 from protogen.targets.naming import (
-    OWN,
+    PROTOCOL,
     NameTable,
     Thing,
     endpoint,
@@ -21,51 +22,72 @@ from protogen.targets.naming import (
     part,
 )
 from protogen.targets.python.spelling import class_name
-
-_OWN = """
-EncodeError DecodeError SPEC_HASH VERSION MESSAGES PROTOCOL Parts Sender Encoder Decoder encode
-decode
-"""
-_ATTRIBUTES = "violations to_dict from_dict to_payload from_payload parse_payload"
-"""Attributes of generated messages and structs, which a field of the name would hide."""
-_ARGUMENTS = "message sender strict engine"
-"""Arguments of a generated encoder beside the parts whose values the caller gives."""
-
-_RESERVED = dict.fromkeys(keyword.kwlist, Thing("is a reserved word of Python"))
-_USED = Thing("is a name that generated code uses itself")
+from protogen.targets.python.words import words_of_files, words_of_modules
 
 
-def tables_of(protocol: Protocol) -> Iterator[NameTable]:
-    """Each scope of a module."""
-    yield _module(protocol)
-    records: tuple[Struct | Message, ...] = (*protocol.structs, *protocol.messages)
-    yield from (_attributes(record.name, record.fields) for record in records)
-    yield _arguments(protocol)
+class Names:
+    """Names of a module: of its classes, and of what it has for each endpoint."""
+
+    def __init__(self, protocol: Protocol) -> None:
+        self.files = NameTable(words_of_files())
+        """Names of modules."""
+        self.file = self.files.add(protocol.name, PROTOCOL)
+        """The name of the module that people read."""
+        self.module = NameTable(words_of_modules())
+        """Names in it."""
+        self.unions: dict[str, str] = {}
+        """The type of each endpoint's messages."""
+        self.parts: dict[str, str] = {}
+        """The class of the parts of each sender's frames, where others have others."""
+        self.classes: dict[str, str] = {}
+        """The class of each message and type."""
+        self._name_endpoints(protocol)
+        self._name_classes(protocol)
+        records: tuple[Struct | Message, ...] = (*protocol.structs, *protocol.messages)
+        self.records: Mapping[str, RecordNames] = {
+            record.name: RecordNames(record.name, record.fields) for record in records
+        }
+        self.arguments = _arguments(protocol)
+        """Names of the parameters of encoders."""
+        self._shown = [_shown(sender) for sender in protocol.senders]
+
+    def _name_endpoints(self, protocol: Protocol) -> None:
+        for sender in protocol.senders:
+            thing, name, side = endpoint(sender.endpoint), sender.name, sender.endpoint
+            for word in ("SENDER", "FORMAT"):
+                self.module.add(f"{name.upper()}_{word}", thing)
+            self.unions[side] = self.module.add(f"{class_name(side)}Message", thing)
+            self.parts[name] = self.module.add(f"{class_name(name)}Parts", thing)
+
+    def _name_classes(self, protocol: Protocol) -> None:
+        types: tuple[Enum | Flags | Struct, ...] = (
+            *protocol.enums,
+            *protocol.flags,
+            *protocol.structs,
+        )
+        for item in types:
+            self.classes[item.name] = self.module.add(class_name(item.name), named_type(item.name))
+        for record in protocol.messages:
+            spelled = class_name(record.name)
+            self.classes[record.name] = self.module.add(spelled, message(record.name))
+
+    @property
+    def tables(self) -> Iterator[NameTable]:
+        """Each scope."""
+        yield self.files
+        yield self.module
+        yield from (record.table for record in self.records.values())
+        yield self.arguments
+        yield from self._shown
 
 
-def _table(own: str, used: Thing) -> NameTable:
-    """The words of Python, and those that generated code uses there."""
-    table = NameTable()
-    table.things |= _RESERVED
-    table.things |= dict.fromkeys(own.split(), used)
-    return table
+names_of = Kept(Names, most=64)
+"""The names of a protocol's module: asked for by the reference, and to print the module."""
 
 
-def _module(protocol: Protocol) -> NameTable:
-    table = _table(_OWN, OWN)
-    for sender in protocol.senders:
-        thing = endpoint(sender.endpoint)
-        for word in (f"{sender.name.upper()}_SENDER", f"{sender.name.upper()}_FORMAT"):
-            table.add(word, thing)
-        for word in (union_name(sender.endpoint), parts_name(sender.name)):
-            table.add(word, thing)
-        table.add(frame_name(sender.name), thing)
-    types: tuple[Enum | Flags | Struct, ...] = (*protocol.enums, *protocol.flags, *protocol.structs)
-    for item in types:
-        table.add(class_name(item.name), named_type(item.name))
-    for record in protocol.messages:
-        table.add(class_name(record.name), message(record.name))
-    return table
+def frame_name(sender: str) -> str:
+    """The function that describes an endpoint's frame."""
+    return f"_{sender}_frame_spec"
 
 
 def _arguments(protocol: Protocol) -> NameTable:
@@ -74,58 +96,57 @@ def _arguments(protocol: Protocol) -> NameTable:
     for sender in protocol.senders:
         for item in sender.frame.caller_parts:
             given.setdefault(item.name, part(sender.name, item.name))
-    has_forms = any(not sender.is_only_form for sender in protocol.senders)
-    table = _table(f"{_ARGUMENTS} form" if has_forms else _ARGUMENTS, _USED)
+    table = NameTable(ARGUMENTS)
     for name, thing in given.items():
         table.add(name, thing)
     return table
 
 
-def union_name(sender: str) -> str:
-    """The type of an endpoint's messages."""
-    return f"{class_name(sender)}Message"
-
-
-def parts_name(sender: str) -> str:
-    """The class of the parts of an endpoint's frames, where others have others."""
-    return f"{class_name(sender)}Parts"
-
-
-def frame_name(sender: str) -> str:
-    """The function that describes an endpoint's frame."""
-    return f"_{sender}_frame_spec"
-
-
-# --- attributes -----------------------------------------------------------------------------------
-
-
-def _attributes(record: str, fields: Sequence[Field]) -> NameTable:
-    """The attributes of a message or struct: fields, readings, and runs of bits."""
-    table = _table(_ATTRIBUTES, _USED)
-    taken = frozenset(field.name for field in fields)
-    for field in fields:
-        table.add(field.name, inside(record, "field", field.name))
-    for field in fields:
-        if field.scaled:
-            table.add(physical_name(field, taken), inside(record, "reading", field.name))
-        for item in field.type.bit_fields if isinstance(field.type, Integer) else ():
-            thing = inside(record, "run of bits", field.name, "bits", item.name)
-            table.add(bits_name(field, item, taken), thing)
+def _shown(sender: Sender) -> NameTable:
+    """Attributes of an endpoint's parts."""
+    table = NameTable(ATTRIBUTES)
+    for item in sender.frame.shown_parts:
+        table.add(item.name, part(sender.name, item.name))
     return table
 
 
-def physical_name(field: Field, taken: Collection[str]) -> str:
-    """The property that is a field's reading."""
-    return _free(f"{field.name}_{unit_suffix(field.unit)}", taken)
+class RecordNames:
+    """Attributes of a message or struct: fields, readings, and runs of bits."""
 
+    def __init__(self, record: str, fields: Sequence[Field]) -> None:
+        self.table = NameTable(ATTRIBUTES)
+        self._record = record
+        self.fields = {
+            field.name: self.table.add(field.name, inside(record, "field", field.name))
+            for field in fields
+        }
+        """The attribute of each field."""
+        self._readings = {field.name: self._reading(field) for field in fields if field.scaled}
+        self._runs = {
+            (field.name, item.name): self._run(field, item)
+            for field in fields
+            if isinstance(field.type, Integer)
+            for item in field.type.bit_fields
+        }
 
-def bits_name(field: Field, item: BitField, taken: Collection[str]) -> str:
-    """The property that is a run of bits."""
-    return _free(f"{field.name}_{item.name}", taken)
+    def reading(self, field: Field) -> str:
+        """The property that is a field's reading."""
+        return self._readings[field.name]
 
+    def run(self, field: Field, item: BitField) -> str:
+        """The property that is a run of bits."""
+        return self._runs[field.name, item.name]
 
-def _free(name: str, taken: Collection[str]) -> str:
-    """A name that no field has."""
-    while name in taken:
-        name += "_value"
-    return name
+    def _reading(self, field: Field) -> str:
+        name = self._beside_fields(f"{field.name}_{unit_suffix(field.unit)}")
+        return self.table.add(name, inside(self._record, "reading", field.name))
+
+    def _run(self, field: Field, item: BitField) -> str:
+        thing = inside(self._record, "run of bits", field.name, "bits", item.name)
+        return self.table.add(self._beside_fields(f"{field.name}_{item.name}"), thing)
+
+    def _beside_fields(self, name: str) -> str:
+        """A name that no field has."""
+        while name in self.fields:
+            name += "_value"
+        return name

@@ -23,19 +23,19 @@ from protogen.model.types import (
 )
 from protogen.targets.python.formats import constant, is_empty
 from protogen.targets.python.literals import call, mapping, number, text
-from protogen.targets.python.spelling import class_name
+from protogen.targets.python.names import Names
 
 
-def field_rule(field: Field) -> str:
+def field_rule(field: Field, names: Names) -> str:
     """The rule of a field."""
-    return _rule(field.type, field)
+    return _rule(field.type, field, names)
 
 
-def _rule(type_: Type, field: Field | None) -> str:
+def _rule(type_: Type, field: Field | None, names: Names) -> str:
     """The rule of a type, with what the field says of its values where it is the field's own."""
     match type_:
         case Integer():
-            return _integer(type_, field)
+            return _integer(type_, field, names)
         case Float():
             return _float(type_, field)
         case Text():
@@ -43,14 +43,14 @@ def _rule(type_: Type, field: Field | None) -> str:
         case Octets():
             return call("_rt.OctetsRule", **_extent("size", type_.extent), const=_const(field))
         case Struct():
-            return call("_rt.StructRule", class_name(type_.name))
+            return call("_rt.StructRule", names.classes[type_.name])
         case Array():
-            return _array(type_, field)
+            return _array(type_, field, names)
         case Switch():
-            return _switch(type_)
+            return _switch(type_, names)
 
 
-def _integer(type_: Integer, field: Field | None) -> str:
+def _integer(type_: Integer, field: Field | None, names: Names) -> str:
     if type_.role == "bool":
         return call("_rt.BoolRule", const=_const(field))
     named = type_.enum or type_.flags
@@ -59,7 +59,7 @@ def _integer(type_: Integer, field: Field | None) -> str:
         "_rt.IntegerRule",
         str(type_.bits),
         *signed,
-        named=class_name(named.name) if named else None,
+        named=names.classes[named.name] if named else None,
         closed="True" if type_.enum and type_.enum.closed else None,
         **(_range(field) if field else {}),
         const=_const(field),
@@ -120,19 +120,19 @@ def _extent(key: str, extent: Extent) -> dict[str, str | None]:
             return {"greatest": str(extent.greatest)}
 
 
-def _array(type_: Array, field: Field | None) -> str:
+def _array(type_: Array, field: Field | None, names: Names) -> str:
     """The rule of an array: range, scale and special values hold for each element."""
     inner = None if field is None else replace(field, const=None)
-    element = _rule(type_.element, inner)
+    element = _rule(type_.element, inner, names)
     const = _const(field) if field else None
     return call("_rt.ArrayRule", element, **_extent("count", type_.extent), const=const)
 
 
-def _switch(type_: Switch) -> str:
-    cases = mapping({str(case.value): _case(case) for case in type_.cases})
+def _switch(type_: Switch, names: Names) -> str:
+    cases = mapping({str(case.value): _case(case, names) for case in type_.cases})
     rest = None if type_.rest is None else call("_rt.OctetsRule", greatest=str(type_.rest))
     return call("_rt.SwitchRule", text(type_.selector), cases, rest=rest)
 
 
-def _case(case: Case) -> str:
-    return "None" if is_empty(case.type) else _rule(case.type, None)
+def _case(case: Case, names: Names) -> str:
+    return "None" if is_empty(case.type) else _rule(case.type, None, names)

@@ -11,8 +11,10 @@ from functools import lru_cache
 
 @lru_cache(4096)
 def class_name(name: str) -> str:
-    """`move_manual` is `MoveManual`."""
-    return "".join(word[:1].upper() + word[1:] for word in name.split("_"))
+    """`move_manual` is `MoveManual`; `_` at the end stays."""
+    words = name.rstrip("_")
+    spelled = "".join(word[:1].upper() + word[1:] for word in words.split("_"))
+    return spelled + name[len(words) :]
 
 
 def member_name(name: str) -> str:

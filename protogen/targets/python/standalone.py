@@ -15,6 +15,7 @@ from protogen.model.protocol import Protocol
 from protogen.targets.banner import PYTHON, banner
 from protogen.targets.output import File
 from protogen.targets.python.emit import RUNTIME, source
+from protogen.targets.python.names import names_of
 
 _COPY = "_runtime"
 _NOQA = re.compile(r"  # noqa\b(?!: S102).*$", re.MULTILINE)
@@ -30,7 +31,7 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
 
 def _package(protocol: Protocol) -> tuple[File, ...]:
     first_line = banner(PYTHON, [protocol])
-    folder = PurePosixPath(protocol.name)
+    folder = PurePosixPath(names_of(protocol).file)
     text = source(protocol, runtime=f".{_COPY}", is_package=True)
     copies = [
         File(folder / _COPY / name, "# SPDX-License-Identifier: 0BSD\n" + copied, first_line)

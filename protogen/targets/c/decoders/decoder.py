@@ -16,6 +16,7 @@ from protogen.targets.c.decoders.style import DecoderStyle, decoder_style
 from protogen.targets.c.decoders.whole import WholeFrames, whole_frames
 from protogen.targets.c.options import Events
 from protogen.targets.c.payload.messages import MessageView
+from protogen.targets.c.spelling import Names
 
 
 class DecoderView(ReceivedFrame, frozen=True, dict=True):
@@ -61,7 +62,7 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
 
 
 def decoder_view(
-    protocol: str, sender: Sender, views: Mapping[str, MessageView], events: Events
+    names: Names, sender: Sender, views: Mapping[str, MessageView], events: Events
 ) -> DecoderView:
     """The view of a sender's decoder; `views` has the messages that were chosen."""
-    return DecoderView(protocol, sender.name, sender.plan, groups_of(sender.plan, views), events)
+    return DecoderView(names, sender.name, sender.plan, groups_of(sender.plan, views), events)

@@ -25,12 +25,13 @@ from protogen.targets.c.frame.numbers import (
 )
 from protogen.targets.c.frame.stuffing import Node, Stuffing, StuffingKind, stuffing_of
 from protogen.targets.c.options import Events
+from protogen.targets.c.spelling import Names
 
 
 class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     """A sender's frame, as a decoder receives it."""
 
-    protocol: str
+    names: Names
     name: str
     plan: FramePlan
     groups: tuple[GroupView, ...]
@@ -41,12 +42,17 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def prefix(self) -> str:
         """Prefix of its functions and types."""
-        return f"{self.protocol}_{self.name}"
+        return self.names.senders[self.name]
 
     @property
     def upper(self) -> str:
         """Prefix of its macros."""
         return self.prefix.upper()
+
+    @property
+    def protocol(self) -> str:
+        """Prefix of the protocol's functions and types."""
+        return self.names.prefix
 
     @property
     def protocol_upper(self) -> str:
@@ -252,7 +258,7 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @cached_property
     def parts(self) -> tuple[PartView, ...]:
         """The parts that events show."""
-        return tuple(PartView(item) for item in self.plan.shown)
+        return tuple(PartView(item, self.names.member(item.name)) for item in self.plan.shown)
 
     @cached_property
     def checksums(self) -> tuple[ChecksumView, ...]:
@@ -278,12 +284,13 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
 
     def key(self, parts: str) -> str:
         """The identity of an event's parts, as one number."""
-        return key_from(self.plan, {part.name: parts + part.name for part in self.plan.identity})
+        members = {item.name: parts + self.names.member(item.name) for item in self.plan.identity}
+        return key_from(self.plan, members)
 
     @property
     def early_key(self) -> str:
         """The identity, made of bytes of the content, in front of the payload."""
-        return key_from(self.plan, {part.name: part.value("") for part in self.parts})
+        return key_from(self.plan, {part.placed.name: part.value("") for part in self.parts})
 
     @cached_property
     def can_open(self) -> bool:

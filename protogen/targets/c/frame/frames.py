@@ -27,7 +27,7 @@ from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
 from protogen.targets.c.frame.expressions import Index, byte, less_absent, wire_bytes
 from protogen.targets.c.frame.stuffing import Stuffing
-from protogen.targets.c.spelling import unsigned_type
+from protogen.targets.c.spelling import Names, unsigned_type
 
 _STUFFED = 128
 _FEW = 4
@@ -87,6 +87,10 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         return self.decoder.plan
 
     @property
+    def _names(self) -> Names:
+        return self.decoder.names
+
+    @property
     def _stuffing(self) -> Stuffing | None:
         return self.decoder.stuffing
 
@@ -95,12 +99,12 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
     @cached_property
     def identity(self) -> tuple[Argument, ...]:
         """The identity parts."""
-        return tuple(_argument(part) for part in self.plan.identity)
+        return tuple(_argument(part, self._names) for part in self.plan.identity)
 
     @cached_property
     def arguments(self) -> tuple[Argument, ...]:
         """The parts that the caller gives."""
-        return tuple(_argument(part) for part in self.plan.frame.caller_parts)
+        return tuple(_argument(part, self._names) for part in self.plan.frame.caller_parts)
 
     @property
     def parameters(self) -> str:
@@ -245,7 +249,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
             case LengthPart():
                 values = wire_bytes(part.type, "length")
             case NumberPart():
-                values = wire_bytes(part.type, argument_name(part.name))
+                values = wire_bytes(part.type, argument_name(part.name, self._names))
             case ChecksumPart():
                 values = wire_bytes(part.type, "due")
             case _:
@@ -311,14 +315,14 @@ _LOCAL = frozenset(_WORDS.split())
 """Names of the functions' own variables."""
 
 
-def argument_name(part: str) -> str:
+def argument_name(part: str, names: Names) -> str:
     """Name of the argument for a part that the caller gives."""
-    return f"{part}_part" if part in _LOCAL else part
+    return f"{part}_part" if part in _LOCAL else names.member(part)
 
 
-def _argument(part: IdentityPart | CounterPart | ValuePart) -> Argument:
+def _argument(part: IdentityPart | CounterPart | ValuePart, names: Names) -> Argument:
     bits = part.type.width
-    name = argument_name(part.name)
+    name = argument_name(part.name, names)
     conditions = []
     if part.least > 0:
         conditions.append(f"{name} < {part.least}U")

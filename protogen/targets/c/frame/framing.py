@@ -13,9 +13,10 @@ from protogen.targets.c.frame.frames import FrameView
 from protogen.targets.c.frame.handlers import Dispatch, dispatches
 from protogen.targets.c.frame.message_frames import MessageFrame, SenderFrames
 from protogen.targets.c.options import COptions
+from protogen.targets.c.payload.message_names import claim_frame
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.protocol_names import is_stateless
-from protogen.targets.c.spelling import from_sender
+from protogen.targets.c.spelling import Names, from_sender
 
 
 class FramingView(msgspec.Struct, frozen=True):
@@ -33,6 +34,8 @@ class FramingView(msgspec.Struct, frozen=True):
     dispatches: tuple[Dispatch, ...]
     streaming: tuple[str, ...]
     """The frames, by their sender, that some message can be sent in byte by byte."""
+    writers: tuple[str, ...]
+    """What the names of their functions begin with."""
     puts: tuple[str, ...]
     """The functions that hand payloads to a writer."""
     stateless: bool
@@ -75,16 +78,15 @@ def framing_view(
     messages: tuple[MessageView, ...],
     sinks: tuple[str, ...],
     options: COptions,
+    names: Names,
 ) -> FramingView:
     """The frames and decoders of the senders that were chosen."""
     views = {view.name: view for view in messages}
     senders = [item for item in protocol.senders if _is_chosen(item, views, options)]
-    decoders = tuple(
-        decoder_view(protocol.name, sender, views, options.events) for sender in senders
-    )
+    decoders = tuple(decoder_view(names, sender, views, options.events) for sender in senders)
     frames = _frames(senders, decoders)
     distinct = tuple({frame.decoder.name: frame for frame in frames.values()}.values())
-    message_frames = tuple(_message_frames(protocol, frames, decoders, views))
+    message_frames = tuple(_message_frames(protocol, frames, decoders, views, names))
     algorithms = [item.checksum for decoder in decoders for item in decoder.checksums]
     streaming = tuple(dict.fromkeys(m.frame.decoder.name for m in message_frames if m.sends))
     puts = tuple(dict.fromkeys(item.view.put_function for item in message_frames if item.sends))
@@ -101,6 +103,7 @@ def framing_view(
             for item in frame.decoder.checksums
         },
         streaming=streaming,
+        writers=tuple(names.senders[name] for name in streaming),
         puts=puts,
         stateless=is_stateless(protocol),
         writes=any(f"{protocol.name}_write(" in text for text in (*puts, *used)),
@@ -110,7 +113,7 @@ def framing_view(
         idle_checks=frozenset(
             item.frame.decoder.name for item in message_frames if item.needs_idle_check
         ),
-        dispatches=dispatches(decoders, messages, protocol.name),
+        dispatches=dispatches(decoders, messages, names),
         sinks=used,
     )
 
@@ -139,17 +142,19 @@ def _message_frames(
     frames: dict[str, FrameView],
     decoders: tuple[DecoderView, ...],
     views: dict[str, MessageView],
+    names: Names,
 ) -> Iterator[MessageFrame]:
     of_sender = {
         decoder.name: SenderFrames(frames[decoder.name], decoder, protocol.sender(decoder.name))
         for decoder in decoders
     }
     for message in protocol.messages:
-        names = [sender.name for sender in protocol.senders_of(message) if sender.name in frames]
-        own = {frames[name].decoder.name: name for name in names}
+        senders = [item.name for item in protocol.senders_of(message) if item.name in frames]
+        own = {frames[name].decoder.name: name for name in senders}
         for frame_name, name in own.items() if message.name in views else ():
             suffix = from_sender(frame_name) if len(own) > 1 else ""
-            yield of_sender[name].view(message, views[message.name], suffix)
+            called = claim_frame(names, message.name, suffix)
+            yield of_sender[name].view(message, views[message.name], called)
 
 
 def _is_chosen(sender: Sender, views: dict[str, MessageView], options: COptions) -> bool:

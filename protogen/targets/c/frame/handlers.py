@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import msgspec
 
 from protogen.targets.c.decoders.decoder import DecoderView
+from protogen.targets.c.payload.message_names import claim_handler
 from protogen.targets.c.payload.messages import MessageView
-from protogen.targets.c.spelling import from_sender, handler_name
+from protogen.targets.c.spelling import Names, from_sender
 
 
 class Handler(msgspec.Struct, frozen=True):
@@ -34,27 +35,27 @@ class Dispatch(msgspec.Struct, frozen=True):
 
 
 def dispatches(
-    decoders: Sequence[DecoderView], messages: Sequence[MessageView], prefix: str
+    decoders: Sequence[DecoderView], messages: Sequence[MessageView], names: Names
 ) -> tuple[Dispatch, ...]:
     """The handlers of each decoder's messages, in the schema's order."""
-    names = {d.name: {m.name for group in d.groups for m in group.messages} for d in decoders}
+    received = {d.name: {m.name for group in d.groups for m in group.messages} for d in decoders}
     return tuple(
         Dispatch(
             decoder,
             tuple(
                 Handler(
-                    _function(prefix, message.name, decoder.name, names),
+                    claim_handler(names, message.name, _suffix(message, decoder, received)),
                     message,
                     f"struct {decoder.prefix}_parts",
                 )
                 for message in messages
-                if message.name in names[decoder.name]
+                if message.name in received[decoder.name]
             ),
         )
         for decoder in decoders
     )
 
 
-def _function(prefix: str, message: str, sender: str, names: dict[str, set[str]]) -> str:
-    is_shared = sum(message in received for received in names.values()) > 1
-    return f"{prefix}_{handler_name(message)}" + (from_sender(sender) if is_shared else "")
+def _suffix(message: MessageView, decoder: DecoderView, received: dict[str, set[str]]) -> str:
+    is_shared = sum(message.name in names for names in received.values()) > 1
+    return from_sender(decoder.name) if is_shared else ""

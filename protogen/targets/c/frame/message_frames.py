@@ -10,6 +10,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.frames import FrameView
+from protogen.targets.c.payload.message_names import FrameNames
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.spelling import hexadecimal
 
@@ -22,31 +23,13 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     frame: FrameView
     decoder: DecoderView
     """That of a sender of the message."""
-    suffix: str
-    """Suffix that tells these functions from those for other senders."""
+    called: FrameNames
     greatest_frame: int
     greatest_payload: int
     """The greatest payload that a frame can carry."""
     least_payload: int
     is_sized: bool
     """True if its identity stands for payloads of one size."""
-
-    # --- names ------------------------------------------------------------------------------------
-
-    @property
-    def function(self) -> str:
-        """The function that fills a buffer."""
-        return f"{self.view.prefix}_frame{self.suffix}"
-
-    @property
-    def send(self) -> str:
-        """The function that hands over byte after byte."""
-        return f"{self.view.prefix}_send{self.suffix}"
-
-    @cached_property
-    def upper(self) -> str:
-        """Prefix of its macros."""
-        return f"{self.view.upper}{self.suffix.upper()}"
 
     # --- the payload ------------------------------------------------------------------------------
 
@@ -137,7 +120,7 @@ class SenderFrames:
         groups = [group for group in decoder.plan.groups if group.fixed is not None]
         self._sized = {item.name for group in groups for item in group.messages}
 
-    def view(self, message: Message, view: MessageView, suffix: str) -> MessageFrame:
+    def view(self, message: Message, view: MessageView, called: FrameNames) -> MessageFrame:
         """The frame functions of a message."""
         plan = self._plan
         has_length = plan.length is not None
@@ -146,7 +129,7 @@ class SenderFrames:
             view=view,
             frame=self._frame,
             decoder=self._decoder,
-            suffix=suffix,
+            called=called,
             greatest_frame=self._greatest[message.name],
             greatest_payload=plan.payload.greatest if has_length else message.sizes.greatest,
             least_payload=plan.payload.least if has_length else 0,

@@ -55,11 +55,8 @@ class PartView(msgspec.Struct, frozen=True):
     """A part that events show."""
 
     placed: PlacedPart
-
-    @property
-    def name(self) -> str:
-        """Name of the part."""
-        return self.placed.name
+    member: str
+    """The member for it."""
 
     @property
     def _part(self) -> NumberPart:

@@ -24,7 +24,7 @@ from protogen.targets.printing import environment
 def driver_of(whole: Protocol, options: COptions = COptions()) -> Driver:  # noqa: B008
     """The driver of what the options choose of a protocol."""
     unit = unit_of(whole, options)
-    protocol, name = unit.protocol, unit.protocol.name
+    protocol, name = unit.protocol, unit.names.file
     indices = {item.name: index for index, item in enumerate(unit.module.messages)}
     messages = _messages(unit)
     frames = _frames(unit, indices)
@@ -40,9 +40,9 @@ def driver_of(whole: Protocol, options: COptions = COptions()) -> Driver:  # noq
         if file.path.name in (f"{name}.c", f"{name}.h")
     }
     if options.style == "single":
-        text = f'#define {name.upper()}_IMPLEMENTATION\n#include "{name}.h"\n'
+        text = f'#define {unit.module.upper}_IMPLEMENTATION\n#include "{name}.h"\n'
         files[f"{name}.c"] = text.encode()
-    files["driver.c"] = _text(protocol, messages, frames, decoders).encode()
+    files["driver.c"] = _text(unit, messages, frames, decoders).encode()
     return Driver(
         protocol,
         messages,
@@ -55,7 +55,7 @@ def driver_of(whole: Protocol, options: COptions = COptions()) -> Driver:  # noq
 
 
 def _text(
-    protocol: Protocol,
+    unit: Unit,
     messages: tuple[DrivenMessage, ...],
     frames: tuple[DrivenFrame, ...],
     decoders: tuple[DrivenDecoder, ...],
@@ -68,8 +68,9 @@ def _text(
     ]
     template = environment("protogen.targets.c.fuzz_driver").get_template("driver.c.j2")
     return template.render(
-        name=protocol.name,
-        upper=protocol.name.upper(),
+        file=unit.names.file,
+        name=unit.module.name,
+        upper=unit.module.upper,
         messages=messages,
         frames=frames,
         decoders=decoders,
@@ -83,7 +84,7 @@ def _messages(unit: Unit) -> tuple[DrivenMessage, ...]:
         DrivenMessage(
             model := unit.protocol.message(item.name),
             item.struct,
-            exchange_function(f"exchange_{index}", item.struct, model.plan),
+            exchange_function(f"exchange_{index}", item.struct, model.plan, unit.names),
             item.encode,
             item.decode,
         )
@@ -96,8 +97,8 @@ def _frames(unit: Unit, indices: Mapping[str, int]) -> tuple[DrivenFrame, ...]:
         DrivenFrame(
             index,
             indices[item.message.name],
-            item.function,
-            item.send if item.sends else "",
+            item.called.function,
+            item.called.send if item.sends else "",
             # By their names in the schema; those of arguments may differ.
             tuple(
                 DrivenPart(part.name, argument.type)
@@ -129,7 +130,7 @@ def _decoder(
         decoder.prefix,
         decoder.all_events,
         decoder.flat is not None,
-        tuple(DrivenPart(part.name, part.type) for part in decoder.parts),
+        tuple(DrivenPart(part.placed.name, part.type, part.member) for part in decoder.parts),
         tuple(
             DrivenHandler(item.function, item.message.struct, indices[item.message.name])
             for item in dispatch.handlers

@@ -21,11 +21,11 @@ from protogen.targets.c.payload.walk import Walk
 from protogen.targets.c.spelling import Names
 
 
-def exchange_function(name: str, struct: str, plan: PayloadPlan) -> str:
+def exchange_function(name: str, struct: str, plan: PayloadPlan, names: Names) -> str:
     """The function for a message's struct."""
     lines = Lines()
     lines.add("(void)message;")
-    _Exchange(Helpers(Names("")), lines).message(plan)
+    _Exchange(Helpers(names), lines).message(plan)
     return function(f"static void {name}", (f"{struct} *message",), lines)
 
 

@@ -194,7 +194,7 @@ class Checker(Walk):
 
     def _remember(self, step: IntegerStep) -> None:
         """Put the number in front of the place into a variable, as it counts or selects."""
-        name = free_name(step.name, self._locals)
+        name = free_name(self.helpers.member(step.name), self._locals)
         self._locals.add(name)
         size = step.type.size
         address = self._address(self._offset - size)

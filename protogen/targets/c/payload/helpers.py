@@ -124,6 +124,10 @@ class Helpers:
         self.has_vectors = False
         """True if some function has a way for SSE2."""
 
+    def member(self, name: str) -> str:
+        """The member for a field or a case."""
+        return self._names.member(name)
+
     @property
     def texts(self) -> tuple[str, ...]:
         """The definitions of the functions that only the source calls."""

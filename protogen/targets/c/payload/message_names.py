@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import msgspec
+
 from protogen.model.frame import IdentityPart
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.targets import naming
 from protogen.targets.c.named import Macro, claim_fields
 from protogen.targets.c.payload.accessors import claim_accessor, is_readable
-from protogen.targets.c.spelling import Names, from_sender, handler_name, hexadecimal
+from protogen.targets.c.spelling import Names, from_sender, hexadecimal
 
 _FUNCTIONS = ("check", "load", "validate", "measure", "store", "put", "encode", "decode")
 
@@ -24,16 +26,41 @@ def claim_message(names: Names, item: Message) -> dict[str, str]:
     return called
 
 
+class FrameNames(msgspec.Struct, frozen=True):
+    """The names of the functions that make a message's frames, and of their macros."""
+
+    function: str
+    """The function that fills a buffer."""
+    send: str
+    """The function that hands over byte after byte."""
+    max: str
+    """The macro for the greatest frame."""
+    room: str
+    """The macro for the bytes of a buffer that suffice for every frame."""
+
+
+def claim_frame(names: Names, message: str, suffix: str) -> FrameNames:
+    """The names of a message's frames; `suffix` tells those of other senders apart."""
+    thing, words = naming.message(message), f"{message}{suffix}"
+    return FrameNames(
+        function=names.claim(thing, message, f"frame{suffix}"),
+        send=names.claim(thing, message, f"send{suffix}"),
+        max=names.claim_macro(thing, words, "frame_max"),
+        room=names.claim_macro(thing, words, "frame_room"),
+    )
+
+
+def claim_handler(names: Names, message: str, suffix: str) -> str:
+    """The name of the function for a message that was received."""
+    return names.claim(naming.message(message), f"on_{message}{suffix}")
+
+
 def claim_all(names: Names, item: Message, senders: Sequence[Sender]) -> None:
     """Every name that comes of a message, whatever is chosen to be printed."""
-    thing = naming.message(item.name)
     others = [from_sender(sender.name) for sender in senders] if len(senders) > 1 else []
     for suffix in ("", *others):
-        names.claim(thing, f"{handler_name(item.name)}{suffix}")
-        for word in ("frame", "send"):
-            names.claim(thing, item.name, f"{word}{suffix}")
-        for word in ("frame_max", "frame_room"):
-            names.claim_macro(thing, f"{item.name}{suffix}", word)
+        claim_handler(names, item.name, suffix)
+        claim_frame(names, item.name, suffix)
     claim_message(names, item)
     constants_of(item, senders[0], names)
     claim_fields(names, item.name, item.fields)

@@ -39,10 +39,6 @@ class MessageView(msgspec.Struct, frozen=True):
     """The name in the schema."""
     struct: str
     """`struct rn1_gyro`."""
-    prefix: str
-    """Prefix of its functions: `rn1_gyro`."""
-    upper: str
-    """Prefix of its macros: `RN1_GYRO`."""
     constant: str
     """Its value of `enum rn1_message`."""
     fixed: int | None
@@ -106,8 +102,6 @@ class MessagePrinter(msgspec.Struct, frozen=True):
         return MessageView(
             name=item.name,
             struct=f"struct {tag}",
-            prefix=tag,
-            upper=tag.upper(),
             constant=constant,
             fixed=codec.fixed,
             greatest=item.sizes.greatest,

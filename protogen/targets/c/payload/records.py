@@ -86,7 +86,7 @@ class Records:
             lines.add(f"{counting_type(step.count.greatest)} {step.count.member};")
         if step.holds_values:
             lines.add(*comments.comment(comments.of_field(step.field), INDENT))
-            self._member(lines, step, step.name)
+            self._member(lines, step, self._names.member(step.name))
 
     def _member(self, lines: Lines, step: AnyStep, name: str) -> None:
         """The member of that name, which has the sizes of the arrays around it behind it."""
@@ -111,7 +111,7 @@ class Records:
         with lines.block("union", f"}} {name};"):
             for case in step.cases:
                 if case.step.holds_values:
-                    self._member(lines, case.step, case.step.name)
+                    self._member(lines, case.step, self._names.member(case.step.name))
             if step.rest is not None:
                 text = f"The bytes where {step.selector_name} has another value."
                 lines.add(*comments.comment([text], 2 * INDENT))

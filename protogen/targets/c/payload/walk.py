@@ -65,7 +65,7 @@ class Walk:
         """Walk over the steps of a record whose members begin with `base`."""
         self._records.append(base)
         for step in steps:
-            self.step(step, base + step.name)
+            self.step(step, base + self.helpers.member(step.name))
         self._records.pop()
 
     def step(self, step: AnyStep, place: str) -> None:
@@ -106,7 +106,7 @@ class Walk:
 
     def referred(self, number: Reference) -> str:
         """The expression of an earlier number."""
-        return self._records[number.level] + number.name
+        return self._records[number.level] + self.helpers.member(number.name)
 
     # --- what subclasses say ----------------------------------------------------------------------
 
@@ -181,4 +181,4 @@ class Walk:
         elif isinstance(step, RestStep):
             self.rest(step, f"{place}.{step.name}")
         else:
-            self.step(step, f"{place}.{step.name}")
+            self.step(step, f"{place}.{self.helpers.member(step.name)}")

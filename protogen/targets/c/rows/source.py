@@ -90,8 +90,8 @@ def _spellings(unit: Unit, tables: list[str]) -> list[_Spelling]:
     return [
         _Spelling(
             tables.index(item.message.name),
-            item.function,
-            f"{item.upper}_FRAME_ROOM",
+            item.called.function,
+            item.called.room,
             tuple(argument.part for argument in item.frame.arguments),
         )
         for item in unit.framing.messages

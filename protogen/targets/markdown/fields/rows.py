@@ -17,11 +17,13 @@ from protogen.model.payload_plan import (
     without_constant,
 )
 from protogen.model.sizes import SizeSet
+from protogen.targets.emitted import EmittedNames
 from protogen.targets.markdown.fields.paths import ROOT, Path
 from protogen.targets.markdown.fields.types import type_text
 from protogen.targets.markdown.fields.values import Anchors, range_text, unit_text
 from protogen.targets.markdown.frames.layout import Place, Slot, behind, element, part_title, slots
 from protogen.targets.markdown.frames.parts import part_type, role, value_in
+from protogen.targets.markdown.text.code_names import in_code
 from protogen.targets.markdown.text.origin import about_line
 from protogen.targets.markdown.text.table import Table, table
 from protogen.targets.markdown.text.words import bounds, code, plural, short_number, size_text
@@ -34,12 +36,12 @@ _UNKNOWN = "Unknown: the document does not say what it is."
 Row = tuple[str, ...]
 
 
-def message_table(frame: Frame, message: Message, anchors: Anchors) -> Table:
+def message_table(frame: Frame, message: Message, anchors: Anchors, names: EmittedNames) -> Table:
     """Return the table of everything in a message's frame, in wire order."""
     rows: list[Row] = []
     for slot in slots(frame, message.sizes):
         if isinstance(slot.part, PayloadPart):
-            rows += _PayloadRows(slot, anchors).of_record(message.plan.steps, Place(), ROOT)
+            rows += _PayloadRows(slot, anchors, names).of_record(message.plan.steps, Place(), ROOT)
         else:
             rows.append(_part_row(slot, frame, message))
     return table(_HEADER, rows)
@@ -55,9 +57,10 @@ def _part_row(slot: Slot, frame: Frame, message: Message) -> Row:
 class _PayloadRows:
     """Rows of what lies in a payload, which has its place in a frame."""
 
-    def __init__(self, payload: Slot, anchors: Anchors) -> None:
+    def __init__(self, payload: Slot, anchors: Anchors, names: EmittedNames) -> None:
         self._payload = payload
         self._anchors = anchors
+        self._names = names
 
     def of_record(self, steps: Sequence[AnyStep], place: Place, path: Path) -> Iterator[Row]:
         for step in steps:
@@ -112,7 +115,8 @@ class _PayloadRows:
     def _field(self, step: AnyStep, place: Place, path: Path, name: str) -> Row:
         field = step.field
         values = range_text(field, path, self._anchors)
-        meaning = about_line(field.about, _UNKNOWN if field.unknown else "")
+        unknown = _UNKNOWN if field.unknown else ""
+        meaning = about_line(field.about, unknown, in_code(self._names.field(field.name)))
         return self._row(
             place, step.sizes, type_text(step), name, unit_text(field), values, meaning
         )

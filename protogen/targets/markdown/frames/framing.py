@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.sizes import SizeSet
+from protogen.targets.emitted import emitted_names
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.frames.packet import frame_diagram
 from protogen.targets.markdown.frames.parts import (
@@ -38,7 +39,7 @@ def _view(senders: Sequence[Sender], protocol: Protocol) -> View:
     transparency = frame.transparency
     return {
         "title": f"Frames from {_titles(senders, protocol)}",
-        "table": frame_table(frame, payload),
+        "table": frame_table(frame, payload, emitted_names(protocol)),
         "diagram": frame_diagram(frame, payload),
         "transparency": transparency_text(transparency) if transparency else (),
         "replacements": transparency_table(transparency) if transparency else None,

@@ -27,10 +27,12 @@ from protogen.model.frame import (
 )
 from protogen.model.sizes import SizeSet
 from protogen.model.types import NumberType
+from protogen.targets.emitted import EmittedNames
 from protogen.targets.markdown.fields.types import number_text
 from protogen.targets.markdown.fields.values import character, raw_text
 from protogen.targets.markdown.frames.layout import CodePart, Slot, length_values, part_title, slots
 from protogen.targets.markdown.text.anchors import decision_link
+from protogen.targets.markdown.text.code_names import in_code
 from protogen.targets.markdown.text.origin import about_line
 from protogen.targets.markdown.text.table import Table, table
 from protogen.targets.markdown.text.words import code, hex_bytes, hex_number, listed, size_text
@@ -38,16 +40,16 @@ from protogen.targets.markdown.text.words import code, hex_bytes, hex_number, li
 _HEADER = ("Frame byte", "Size", "Type", "Part", "Value", "Meaning")
 
 
-def frame_table(frame: Frame, payload: SizeSet) -> Table:
+def frame_table(frame: Frame, payload: SizeSet, names: EmittedNames) -> Table:
     """Return the table of a frame's parts."""
-    return table(_HEADER, (_frame_row(frame, slot) for slot in slots(frame, payload)))
+    return table(_HEADER, (_frame_row(slot, names) for slot in slots(frame, payload)))
 
 
-def _frame_row(frame: Frame, slot: Slot) -> tuple[str, ...]:
+def _frame_row(slot: Slot, names: EmittedNames) -> tuple[str, ...]:
     part = slot.part
     size = size_text(slot.sizes)
     name = part_title(part)
-    return (slot.place, size, part_type(part), name, part_value(part), meaning(part))
+    return (slot.place, size, part_type(part), name, part_value(part), meaning(part, names))
 
 
 @lru_cache(maxsize=256)
@@ -97,9 +99,10 @@ def _part_number(value: int, part: NumberPart) -> str:
     return code(hex_number(value, part.type.bits)) if isinstance(part, IdentityPart) else str(value)
 
 
-def meaning(part: Part) -> str:
+def meaning(part: Part, names: EmittedNames) -> str:
     """Say what a part is for, and where that is written down."""
-    return about_line(part.about, *_roles(part))
+    shown = isinstance(part, IdentityPart | CounterPart | ValuePart)
+    return about_line(part.about, *_roles(part), in_code(names.part(part.name)) if shown else "")
 
 
 @lru_cache(maxsize=256)

@@ -10,6 +10,7 @@ from protogen.model.framing import MessageFraming
 from protogen.model.messages import Message, Overload
 from protogen.model.protocol import Sender
 from protogen.model.sizes import SizeSet
+from protogen.targets.emitted import EmittedNames, emitted_names
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.fields.legends import legends
 from protogen.targets.markdown.fields.paths import named_fields
@@ -42,7 +43,7 @@ def message_view(context: Context, message: Message) -> View:
         "summary": _summary(message),
         "facts": [*_facts(context, message)],
         "notes": (*_notes(senders, message), *prose(message.about.doc)),
-        "layouts": [*_layouts(senders, message, anchors)],
+        "layouts": [*_layouts(senders, message, anchors, emitted_names(context.protocol))],
         "legends": [
             legend
             for path, field in named_fields(message.plan.steps)
@@ -114,7 +115,9 @@ def _told_apart(overload: Overload) -> str:
 # --- layout -------------------------------------------------------------------------------------
 
 
-def _layouts(senders: Iterable[Sender], message: Message, anchors: Anchors) -> Iterator[View]:
+def _layouts(
+    senders: Iterable[Sender], message: Message, anchors: Anchors, emitted: EmittedNames
+) -> Iterator[View]:
     """Yield a layout for each different frame of the senders."""
     groups = by_frame(senders)
     for group in groups:
@@ -122,6 +125,6 @@ def _layouts(senders: Iterable[Sender], message: Message, anchors: Anchors) -> I
         names = [sender_code(sender) for sender in group]
         yield {
             "caption": f"From {listed(names)}:" if len(groups) > 1 else "",
-            "table": message_table(frame, message, anchors),
+            "table": message_table(frame, message, anchors, emitted),
             "diagram": message_diagram(frame, message),
         }

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from protogen.model.meanings import Enum, Flags
 from protogen.model.protocol import Link, Protocol
+from protogen.targets.emitted import emitted_names
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.fields.legends import Legend, type_legends
 from protogen.targets.markdown.fields.values import type_anchor
@@ -15,6 +16,7 @@ from protogen.targets.markdown.pages.context import Context
 from protogen.targets.markdown.pages.listing import counting, listing, ordered, overloads
 from protogen.targets.markdown.pages.message import message_view
 from protogen.targets.markdown.pages.record import decision_view, exchange_view, reserved, unknowns
+from protogen.targets.markdown.text.code_names import other_names
 from protogen.targets.markdown.text.origin import about_line, link, prose
 from protogen.targets.markdown.text.table import View
 from protogen.targets.markdown.text.words import code, number, plural, rate
@@ -35,6 +37,7 @@ def page_view(protocol: Protocol) -> View:
         "overloads": [*overloads(protocol)],
         "messages": [message_view(context, item) for item in ordered(protocol)],
         "types": [*_shared_tables(context)],
+        "names": other_names(emitted_names(protocol)),
         "exchanges": [exchange_view(item, protocol) for item in protocol.exchanges],
         "decisions": [*map(decision_view, protocol.decisions)],
         "unknowns": unknowns(protocol.messages),

@@ -6,7 +6,6 @@ from protogen.model.payload_plan import AnyStep, BytesStep, FloatStep, IntegerSt
 from protogen.model.types import Float, Octets
 from protogen.targets.python.engine.layout import code_of, is_native, is_pair
 from protogen.targets.python.engine.lines import Lines
-from protogen.targets.python.spelling import class_name
 
 
 class Converter:
@@ -64,10 +63,10 @@ class Converter:
         if named is None:
             return value
         if not type_.is_closed and not type_.signed and type_.bits <= 8:
-            table = f"_TABLES.members({class_name(named.name)}, {type_.bits})"
+            table = f"_TABLES.members({self.lines.classes[named.name]}, {type_.bits})"
             return f"{self.lines.constants.named('MEMBERS', table)}[{value}]"
         kind = "closed" if type_.is_closed else "Members"
-        members = f"_fast.{kind}({class_name(named.name)})"
+        members = f"_fast.{kind}({self.lines.classes[named.name]})"
         return f"{self.lines.constants.named('MEMBERS', members)}[{value}]"
 
     def string(self, value: str, step: BytesStep) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from protogen.model.types import NumberType
+from protogen.targets.python.names import Names
 from protogen.targets.python.wrapping import WIDTH, wrapped
 
 _INDENT = "    "
@@ -15,7 +16,9 @@ _INDENT = "    "
 class Constants:
     """The module's constants of the fast engine: each expression gets one name."""
 
-    def __init__(self) -> None:
+    def __init__(self, names: Names) -> None:
+        self.classes = names.classes
+        """The class of each message and type."""
         self._names: dict[str, str] = {}
         self._counts: Counter[str] = Counter()
 
@@ -50,6 +53,7 @@ class Lines:
 
     def __init__(self, constants: Constants) -> None:
         self.constants = constants
+        self.classes = constants.classes
         self._lines: list[str] = []
         self._depth = 0
         self._locals = 0

@@ -23,6 +23,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Octets, Struct
+from protogen.runtime.attributes import attribute
 from protogen.targets.python.engine.converting import Converter
 from protogen.targets.python.engine.layout import (
     array_code,
@@ -38,7 +39,6 @@ from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.place import Place
 from protogen.targets.python.formats import constant
 from protogen.targets.python.literals import tuple_of
-from protogen.targets.python.spelling import class_name
 
 
 def message_reader(
@@ -121,10 +121,10 @@ class _Reader(Converter):
         self._flush()
 
     def _record(self, target: str, name: str, steps: Sequence[AnyStep]) -> None:
-        self.lines.add(f"{target} = _new({class_name(name)})")
+        self.lines.add(f"{target} = _new({self.lines.classes[name]})")
         outside = dict(self.raw)
         for step in steps:
-            self._field(f"{target}.{step.name}", step)
+            self._field(f"{target}.{attribute(step.name)}", step)
         self.raw = outside
 
     def _field(self, target: str, step: AnyStep) -> None:
@@ -428,13 +428,13 @@ class _Reader(Converter):
         self.lines.add(f"{values}: list[_typing.Any] = []")
         outside, self._run, raw = self._run, _Run(), dict(self.raw)
         for step in element.steps:
-            self._field(f"{item}.{step.name}", step)
+            self._field(f"{item}.{attribute(step.name)}", step)
         run, self._run, self.raw = self._run, outside, raw
         layout = f'_struct.Struct("{run.order or "<"}{run.codes}").iter_unpack'
         unpack = self.lines.constants.named("ITERATE", layout)
         names = [self.lines.local() if "." in name else name for name in run.variables]
         with self.lines.block(f"for {tuple_of(names)[1:-1]} in {unpack}({data}):"):
-            self.lines.add(f"{item} = _new({class_name(element.type.name)})")
+            self.lines.add(f"{item} = _new({self.lines.classes[element.type.name]})")
             for name, variable in zip(names, run.variables, strict=True):
                 if "." in variable:
                     self.lines.add(f"{variable} = {name}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 import msgspec
 
@@ -18,7 +19,7 @@ from protogen.targets.python.engine.writing import struct_writer
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.literals import call, mapping, text, tuple_of
 from protogen.targets.python.literals import octets_in_class as literal
-from protogen.targets.python.spelling import class_name
+from protogen.targets.python.names import names_of
 from protogen.targets.python.wrapping import method, one_of, wrapped
 
 
@@ -73,13 +74,14 @@ class EngineModule(msgspec.Struct, frozen=True):
 
 def engine_view(protocol: Protocol, of_caller: tuple[str, ...]) -> EngineModule:
     """The fast engine of a protocol; `of_caller` are the parts that callers of `encode` give."""
-    constants = Constants()
+    constants = Constants(names_of(protocol))
+    classes = constants.classes
     frames = [EngineFrame(sender) for sender in protocol.senders]
     around = _around(frames)
     for frame in frames:
         frame.gives_content = around is not None
     records = _records(protocol, around or (0, 0), constants)
-    overloads = [function for frame in frames for function in _overloads(frame)]
+    overloads = [function for frame in frames for function in _overloads(frame, constants)]
     senders = tuple(_sender(frame, of_caller, constants) for frame in frames)
     made = {m.name: _encoder(m, frames, of_caller, constants) for m in protocol.messages}
     encoders = {name: encoder for name, encoder in made.items() if encoder is not None}
@@ -97,11 +99,11 @@ def engine_view(protocol: Protocol, of_caller: tuple[str, ...]) -> EngineModule:
         records=(*records, *overloads),
         senders=senders,
         encoders=tuple(encoders.values()),
-        table=tuple(f"{class_name(name)}: _encode_{name}," for name in encoders),
-        readers=_readers(protocol, around or (0, 0), tables),
+        table=tuple(f"{classes[name]}: _encode_{name}," for name in encoders),
+        readers=_readers(protocol, around or (0, 0), constants),
         writers=_writers(protocol, of_caller, codes),
         modules=tuple(name for name, used in _USES.items() if used in joined),
-        names=_names(protocol, joined, tables=tables, codes=codes),
+        names=_names(protocol, joined, constants),
         tables=tables,
         codes=codes,
     )
@@ -116,17 +118,13 @@ _USES = {
 }
 
 
-def _names(protocol: Protocol, used: str, *, tables: bool, codes: bool) -> tuple[str, ...]:
+def _names(protocol: Protocol, used: str, constants: Constants) -> tuple[str, ...]:
     """Names that the text uses of the other module, sorted as imports are."""
-    words = set(_CLASS.findall(used))
-    types = {item.name for item in protocol.enums}
-    types |= {item.name for item in protocol.flags}
-    types |= {item.name for item in protocol.structs}
-    kept = {"_DECODERS", "_ENCODERS"} | ({"_TABLES"} if tables else set())
-    kept |= {"_CODES"} if codes else set()
+    kept = {"_DECODERS", "_ENCODERS"}
+    kept |= {name for name in ("_TABLES", "_CODES") if constants.use(f"{name}.")}
     kept |= {f"{sender.name.upper()}_SENDER" for sender in protocol.senders}
-    kept |= {class_name(message.name) for message in protocol.messages}
-    kept |= words & set(map(class_name, types))
+    kept |= {constants.classes[message.name] for message in protocol.messages}
+    kept |= set(_CLASS.findall(used)) & set(constants.classes.values())
     return tuple(sorted(kept))
 
 
@@ -146,7 +144,7 @@ def _records(
     functions: list[Function] = []
     ascii_messages = _seen_to_be_ascii(protocol)
     for struct in classes_of(protocol):
-        name = class_name(struct.name)
+        name = constants.classes[struct.name]
         outer = "".join(f", {name}_: int" for name in outer_names(struct))
         given = name if struct.sizes.fixed is not None else f"tuple[{name}, int]"
         body = struct_reader(struct, constants)
@@ -156,24 +154,24 @@ def _records(
         body = struct_writer(struct, constants)
         functions.append(_function(f"_write_{struct.name}", f"item: {name}{outer}", "bytes", body))
     for message in protocol.messages:
-        name = class_name(message.name)
+        name = constants.classes[message.name]
         is_ascii = message.name in ascii_messages
         body = message_reader(message, constants, around, is_ascii=is_ascii)
         functions.append(_function(f"_read_{message.name}", "data: bytes", name, body))
     return tuple(functions)
 
 
-def _readers(protocol: Protocol, around: tuple[int, int], tables: bool) -> tuple[str, ...]:
+def _readers(protocol: Protocol, around: tuple[int, int], constants: Constants) -> tuple[str, ...]:
     """The arguments of each call of `add_readers`."""
     ascii_messages = _seen_to_be_ascii(protocol)
     alike: dict[bool, dict[str, str]] = {}
     for message in protocol.messages:
         names = alike.setdefault(message.name in ascii_messages, {})
-        names[class_name(message.name)] = f"_read_{message.name}"
+        names[constants.classes[message.name]] = f"_read_{message.name}"
     return tuple(
         _arguments(
             mapping(names),
-            *(["_TABLES"] if tables else []),
+            *(["_TABLES"] if constants.use("_TABLES.") else []),
             around=str(around) if any(around) else None,
             seven_bit="True" if is_ascii else None,
         )
@@ -211,25 +209,31 @@ def _encoder(
     if not all(frame.can_frame for frame in own):
         return None
     given = "".join(f", {name}: int | None" for name in framing.encoder_arguments(of_caller))
-    parameters = f"item: {class_name(message.name)}, module: object, sender: str | None{given}"
+    parameters = (
+        f"item: {constants.classes[message.name]}, module: object, sender: str | None{given}"
+    )
     body = framing.encoder(message, own, of_caller, constants)
     return _function(f"_encode_{message.name}", parameters, "bytes", body)
 
 
-def _overloads(frame: EngineFrame) -> list[Function]:
+def _overloads(frame: EngineFrame, constants: Constants) -> list[Function]:
     """Readers of identities that several messages share."""
     if not frame.plan.takes_whole:
         return []
-    return [_overload(frame, group) for group in frame.plan.groups if len(group.messages) > 1]
+    return [
+        _overload(frame, group, constants.classes)
+        for group in frame.plan.groups
+        if len(group.messages) > 1
+    ]
 
 
-def _overload(frame: EngineFrame, group: IdentityGroup) -> Function:
-    given = one_of(class_name(message.name) for message in group.messages)
+def _overload(frame: EngineFrame, group: IdentityGroup, classes: Mapping[str, str]) -> Function:
+    given = one_of(classes[message.name] for message in group.messages)
     body: list[str] = []
     around = sum(frame.around or ()) if frame.gives_content else 0
     size = f"len(data) - {around}" if around else "len(data)"
     for message in group.messages:
-        body.append(f"if {size} in {class_name(message.name)}.SIZES:")
+        body.append(f"if {size} in {classes[message.name]}.SIZES:")
         body.append(f"    return _read_{message.name}(data)")
     body.append("raise _fast.NeedsReference")
     return _function(identities.reader_of(frame, group), "data: bytes", given, tuple(body))

@@ -22,6 +22,7 @@ from protogen.model.payload_plan import (
     without_constant,
 )
 from protogen.model.types import Field, Struct, Text
+from protogen.runtime.attributes import attribute
 from protogen.targets.python.engine.layout import (
     array_code,
     code_of,
@@ -36,7 +37,6 @@ from protogen.targets.python.engine.layout import (
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.formats import constant
 from protogen.targets.python.literals import number, tuple_of
-from protogen.targets.python.spelling import class_name
 
 _GREATEST_FLOAT32 = "3.4028234663852886e38"
 
@@ -83,7 +83,7 @@ def struct_writer(struct: Struct, constants: Constants) -> tuple[str, ...]:
     """The body of `_write_NAME(item, OUTER...)`; OUTER are raw values of fields in front."""
     writer = _Writer(Lines(constants))
     writer.raw = {name: f"{name}_" for name in outer_names(struct)}
-    writer.lines.refuse_if(f"type(item) is not {class_name(struct.name)}")
+    writer.lines.refuse_if(f"type(item) is not {constants.classes[struct.name]}")
     writer.lines.add(f"return {writer.record('item', plan_of(struct.fields).steps)}")
     return writer.lines.text
 
@@ -192,7 +192,7 @@ class _Writer:
         outside = dict(self.raw)
         for step in steps:
             value = self.lines.local()
-            self.lines.add(f"{value} = {source}.{step.name}")
+            self.lines.add(f"{value} = {source}.{attribute(step.name)}")
             bare = without_constant(step)
             if isinstance(bare, IntegerStep):
                 self.raw[step.name] = value
@@ -239,7 +239,7 @@ class _Writer:
                 else:
                     self._octets(value, step)
             case RecordStep():
-                self.lines.refuse_if(f"type({value}) is not {class_name(step.type.name)}")
+                self.lines.refuse_if(f"type({value}) is not {self.lines.classes[step.type.name]}")
                 self._fields(value, step.steps)
             case RepeatStep():
                 self._array(value, step, item)
@@ -253,7 +253,7 @@ class _Writer:
         elif not is_native(step) and not _is_narrow(step) and not _is_looked_up(step):
             self._unseen(value, step)
         if type_.enum is not None and type_.is_closed:
-            members = f"frozenset(map(int, {class_name(type_.enum.name)}))"
+            members = f"frozenset(map(int, {self.lines.classes[type_.enum.name]}))"
             self.lines.refuse_if(f"{value} not in {self.lines.constants.named('VALUES', members)}")
         self._in_range(value, item)
         if _is_looked_up(step) and (item is None or not _is_bounded(item)):
@@ -268,7 +268,7 @@ class _Writer:
         if named is None:
             self._bytes.integers.append(value)
             return
-        name = class_name(named.name)
+        name = self.lines.classes[named.name]
         self.lines.refuse_if(f"type({value}) is not int and type({value}) is not {name}")
 
     def _in_range(self, value: str, item: Field | None) -> None:
@@ -419,8 +419,8 @@ class _Writer:
         # All that `struct` is given, whatever it is: what is no integer it refuses.
         self.lines.add(f"{values}: list[_typing.Any] = [{', '.join(due.values)}]")
         with self.lines.block(f"for each in {value}:"):
-            self.lines.refuse_if(f"type(each) is not {class_name(element.type.name)}")
-            numbers = tuple_of(f"each.{step.name}" for step in element.steps)
+            self.lines.refuse_if(f"type(each) is not {self.lines.classes[element.type.name]}")
+            numbers = tuple_of(f"each.{attribute(step.name)}" for step in element.steps)
             self.lines.add(f"{values} += {numbers}")
         due.codes = ""
         self._bytes.piece(f"{packers}[len({value})](*{values})")
