@@ -50,7 +50,7 @@ def test_frame_with_stuffing() -> None:
     frame = "1B02 03 65 00 0D 0BA41B0005 FFFFFFFA 0000001A 00 AE 1B03"
     assert lines(rows(schema("rflex"), "flex", frame)) == [
         "1b02 start",
-        "03 class_id 3",
+        "03 class 3",
         "65 number 101",
         "00 subclass 0 joystick_data",
         "0d length 13 bytes of payload",
@@ -206,10 +206,10 @@ def test_only_some_parts() -> None:
         schema("rflex"),
         "flex",
         data,
-        covers=("class_id", "number", "subclass", "length", "payload"),
+        covers=("class", "number", "subclass", "length", "payload"),
     )
     assert b"".join(row.wire for row in found) == data
-    assert [row.path for row in found][:4] == ["class_id", "number", "subclass", "length"]
+    assert [row.path for row in found][:4] == ["class", "number", "subclass", "length"]
     assert not any(row.fault for row in found)
 
 

@@ -101,7 +101,7 @@ def test_rflex_looks_for_an_end_and_has_two_parts_of_identity():
     assert plan.identity_bits == 16
     assert [(item.name, item.offset) for item in plan.head] == [
         ("start", 0),
-        ("class_id", 2),
+        ("class", 2),
         ("number", 3),
         ("subclass", 4),
         ("length", 5),

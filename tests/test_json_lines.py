@@ -113,7 +113,7 @@ def test_an_unknown_frame_comes_back_from_its_parts_and_payload() -> None:
         "size": 13,
         "event": "unknown",
         "sender": "flex",
-        "parts": {"class_id": 6, "number": 5, "subclass": 1},
+        "parts": {"class": 6, "number": 5, "subclass": 1},
         "payload": "01021b",
     }
 

@@ -225,7 +225,7 @@ def test_the_documents() -> None:
     assert "a wrong end of 00 joins" in said("dagny", "host")
     assert "still a hex digit" in said("uherobot", "board")
     # rflex: the checksum covers the contents only.
-    for part in ("class_id", "number", "subclass"):
+    for part in ("class", "number", "subclass"):
         assert f"`{part}`" in said("rflex", "flex")
     assert "payload" not in said("rflex", "flex")
     # matty: the sum covers everything behind the start.

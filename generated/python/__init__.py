@@ -8,9 +8,9 @@
 # from matty_v4.yaml
 # spec sha256 dceb8649d3db
 # from rflex.yaml
-# spec sha256 eac2668763be
+# spec sha256 bdc0dbf75479
 # from rflex_drivers.yaml
-# spec sha256 d1936cccde27
+# spec sha256 6b293ff835f7
 # from rn1.yaml
 # spec sha256 52b96749db6c
 # from rn1_firmware.yaml

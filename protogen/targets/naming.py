@@ -24,7 +24,7 @@ class Thing(msgspec.Struct, frozen=True):
 
     @property
     def what(self) -> str:
-        """Kind and name, such as "field `gyro.int_x`". Made only where a problem is reported."""
+        """Kind and name, such as "field `gyro.int_x`". Made only where the reference lists it."""
         if len(self.place) < len(("kind", "name")):
             return self.kind
         names = self.place[-1:] if self.place[0] == "frame" else self.place[1::2]
