@@ -6,6 +6,7 @@ import math
 import struct
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from random import Random
 from typing import Any
 
@@ -87,7 +88,8 @@ Needs = dict[tuple[int, str], Need]
 """The needs of numbers, by the level of the record that holds each, and its name."""
 
 
-def needs_of(steps: Sequence[AnyStep], level: int) -> Needs:
+@lru_cache(maxsize=256)
+def needs_of(steps: tuple[AnyStep, ...], level: int) -> Needs:
     """Needs of the steps of a record at some level, of its numbers and of those around it."""
     needs: Needs = {}
     for step in steps:

@@ -6,7 +6,7 @@ structs.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import count
 from random import Random
 from typing import Any
@@ -162,7 +162,7 @@ class _Sampler:
         self._sizes = sizes
         self._records: list[Values] = []
 
-    def record(self, steps: Sequence[AnyStep], chooser: Chooser) -> Values:
+    def record(self, steps: tuple[AnyStep, ...], chooser: Chooser) -> Values:
         """The values of a record."""
         level = len(self._records)
         needs = needs_of(steps, level)
