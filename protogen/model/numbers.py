@@ -1,0 +1,178 @@
+"""Numbers, resolved to bits and bytes."""
+
+from __future__ import annotations
+
+import struct
+import sys
+from fractions import Fraction
+from functools import cached_property
+from typing import ClassVar, Literal
+
+import msgspec
+
+from protogen.model.meanings import BitField, Enum, Flags
+from protogen.model.sizes import SizeSet
+from protogen.runtime.payload.number import Number
+
+ByteOrder = Literal["little", "big"]
+IntegerRole = Literal["number", "byte", "char", "bool"]
+MachineKind = Literal["bool", "int", "uint", "float"]
+"""Kind of the machine number that holds a value."""
+
+_NO_NAMES: frozenset[str] = frozenset()
+
+
+def storage_bits(bits: int) -> int:
+    """Bits of the smallest machine integer that holds so many: 8, 16, 32 or 64."""
+    return max(8, 1 << (bits - 1).bit_length())
+
+
+def counting_bits(greatest: int) -> int:
+    """Bits of the smallest machine integer that counts from 0 to `greatest`."""
+    return storage_bits(max(1, greatest.bit_length()))
+
+
+class _Number(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=True):
+    """A number of `bits` bits in `size` wire bytes of `byte_bits` bits each.
+
+    A protocol has few of them, whose facts are asked for wherever a field is of such a type.
+    """
+
+    bits: int
+    byte_bits: Literal[7, 8] = 8
+    byte_order: ByteOrder = "little"
+    """Meaningless, and always `little`, where `size` is 1."""
+    extent: ClassVar[None] = None
+    holds_values: ClassVar[bool] = True
+    needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def unsigned(self) -> Integer:
+        """The unsigned integer in the same bytes."""
+        return Integer(bits=self.bits, byte_bits=self.byte_bits, byte_order=self.byte_order)
+
+    @cached_property
+    def width(self) -> int:
+        """Bits of the smallest machine number that holds the value."""
+        return storage_bits(self.bits)
+
+    @cached_property
+    def size(self) -> int:
+        """Wire bytes."""
+        return -(-self.bits // self.byte_bits)
+
+    @cached_property
+    def sizes(self) -> SizeSet:
+        """Wire bytes, as a set."""
+        return SizeSet.exactly(self.size)
+
+
+class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
+    """An integer. Bits above its own are zero; signed ones are two's complement in these bits."""
+
+    signed: bool = False
+    role: IntegerRole = "number"
+    enum: Enum | None = None
+    flags: Flags | None = None
+    bit_fields: tuple[BitField, ...] = ()
+
+    @cached_property
+    def name(self) -> str:
+        """The name in the schema language, such as `sint14` or `char`."""
+        kind = "sint" if self.signed else "uint"
+        return f"{kind}{self.bits}" if self.role == "number" else self.role
+
+    @property
+    def label(self) -> str:
+        """The type in the words of the schema language, such as `uint16 big`."""
+        return self.name if self.size == 1 else f"{self.name} {self.byte_order}"
+
+    @property
+    def kind(self) -> MachineKind:
+        """Kind of the machine number that holds the value."""
+        if self.role == "bool":
+            return "bool"
+        return "int" if self.signed else "uint"
+
+    @cached_property
+    def machine_bounds(self) -> tuple[int, int]:
+        """The least and the greatest value of the machine integer that holds the value."""
+        greatest = (1 << (self.width - self.signed)) - 1
+        return (-greatest - 1 if self.signed else 0), greatest
+
+    @property
+    def is_named(self) -> bool:
+        """True if its values or its bits have names of their own type."""
+        return self.enum is not None or self.flags is not None
+
+    @cached_property
+    def named_types(self) -> tuple[Enum | Flags, ...]:
+        """The enums and flags that have names of their own."""
+        found = (self.enum, self.flags, *(field.enum for field in self.bit_fields))
+        return tuple(item for item in found if item is not None)
+
+    def raw(self, value: float) -> int:
+        """The number whose bits lie on the wire."""
+        return int(value)
+
+    @property
+    def is_closed(self) -> bool:
+        """True if only the values of a closed enum are valid."""
+        return self.enum is not None and self.enum.closed
+
+    @cached_property
+    def least(self) -> int:
+        """The least raw value that the bits can hold."""
+        return -(1 << (self.bits - 1)) if self.signed else 0
+
+    @cached_property
+    def greatest(self) -> int:
+        """The greatest raw value that the bits can hold."""
+        return (1 << (self.bits - 1 if self.signed else self.bits)) - 1
+
+    def holds(self, value: int) -> bool:
+        """True if the bits can hold `value`."""
+        return self.least <= value <= self.greatest
+
+
+class Float(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
+    """IEEE 754 binary32 or binary64."""
+
+    bits: Literal[32, 64]
+    signed: ClassVar[bool] = False
+    role: ClassVar[IntegerRole] = "number"
+    kind: ClassVar[MachineKind] = "float"
+    enum: ClassVar[None] = None
+    flags: ClassVar[None] = None
+    bit_fields: ClassVar[tuple[()]] = ()
+    named_types: ClassVar[tuple[()]] = ()
+    is_closed: ClassVar[bool] = False
+
+    @property
+    def greatest(self) -> Fraction:
+        """The greatest finite number."""
+        return Fraction((2 - 2**-23) * 2.0**127 if self.bits == 32 else sys.float_info.max)
+
+    def raw(self, value: float) -> int:
+        """The number whose bits lie on the wire."""
+        form, size = ("<f", 4) if self.bits == 32 else ("<d", 8)
+        return int.from_bytes(struct.pack(form, value)[:size], "little")
+
+    @property
+    def name(self) -> str:
+        """The name in the schema language."""
+        return f"float{self.bits}"
+
+    @property
+    def label(self) -> str:
+        """The type in the words of the schema language."""
+        return f"{self.name} {self.byte_order}"
+
+
+NumberType = Integer | Float
+"""A type of numbers."""
+
+
+def codec(type_: NumberType) -> Number:
+    """Codec of a number's raw value; of a float it is that of its bits."""
+    return Number(type_.bits, type_.signed, type_.byte_order, seven_bit=type_.byte_bits == 7)
