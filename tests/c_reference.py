@@ -10,6 +10,8 @@ import struct
 from collections.abc import Sequence
 from typing import Any
 
+from bit_runs import bits_of, number_of
+
 from protogen.model.messages import Message
 from protogen.model.types import (
     Array,
@@ -80,6 +82,8 @@ class _Reader:
                 inner[field.name] = found
 
     def _value(self, type_: Type, scope: Scope, *, constant: bool = False) -> Any:
+        if isinstance(type_, Struct | Array) and type_.packed is not None:
+            return self._packed(type_, type_.packed, constant=constant)
         match type_:
             case Integer() | Float():
                 return self._number(type_, constant=constant)
@@ -91,6 +95,20 @@ class _Reader:
                 return self._elements(type_, scope, constant=constant)
             case Switch():
                 return self._case(type_, scope)
+
+    def _packed(self, type_: Struct | Array, order: str, *, constant: bool) -> list[int] | None:
+        run = _Run(bits_of(self._take(type_.sizes.least), order), order)
+        if isinstance(type_, Array):
+            found = run.numbers(type_, constant=constant)
+        else:
+            found = None
+            for field in type_.fields:
+                inner = run.value(field.type, constant=field.const is not None)
+                if field.const is not None and not _is(inner, field.const):
+                    raise Wrong("value")
+        if any(run.bits):
+            raise Wrong("value")
+        return found
 
     def _number(self, type_: Integer | Float, *, constant: bool) -> int | float:
         data = self._take(type_.size)
@@ -155,6 +173,31 @@ class _Reader:
         if type_.byte_bits == 7 and not self._payload[self.at :].isascii():
             raise Wrong("encoding")
         self.at = len(self._payload)
+
+
+class _Run:
+    """Bits of packed numbers that were not taken yet."""
+
+    def __init__(self, bits: list[int], order: str) -> None:
+        self.bits = bits
+        self._order = order
+
+    def value(self, type_: Type, *, constant: bool) -> Any:
+        if isinstance(type_, Array):
+            return self.numbers(type_, constant=constant)
+        assert isinstance(type_, Integer)
+        own, self.bits = self.bits[: type_.bits], self.bits[type_.bits :]
+        found = number_of(own, self._order)
+        if type_.signed and found >= 2 ** (type_.bits - 1):
+            found -= 2**type_.bits
+        is_closed = type_.enum is not None and type_.enum.closed and not constant
+        if is_closed and found not in _names(type_):
+            raise Wrong("value")
+        return found
+
+    def numbers(self, type_: Array, *, constant: bool) -> list[int]:
+        count = type_.extent.counts.least
+        return [self.value(type_.element, constant=constant) for _ in range(count)]
 
 
 def _bounded(extent: Counted, count: int) -> None:

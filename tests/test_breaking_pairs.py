@@ -82,6 +82,8 @@ KINDS: dict[str, Data] = {
     "array": {"x": {"type": "uint16", "count": 3}},
     "struct": {"x": {"fields": {"a": "sint16", "b": "uint8"}}},
     "counted": {"n": {"type": "uint8", "range": [0, 4]}, "x": {"type": "uint8", "count": "n"}},
+    "packed": {"x": {"type": "uint11", "count": 5, "packed": "lsb_first"}},
+    "run": {"x": {"packed": "msb_first", "fields": {"a": "uint3", "b": "sint9", "c": "bool"}}},
     "union": {
         "n": {"type": "uint8", "values": {"small": 0, "large": 1}, "closed": True},
         "x": {"switch": "n", "cases": {"small": "uint8", "large": "uint16"}},
@@ -319,9 +321,37 @@ def of_frames() -> Iterator[Pair]:
             yield Pair(kind, f"frame {name}", edit, verdict, reason)
 
 
+def of_packed() -> Iterator[Pair]:
+    def add(data: Data) -> None:
+        fields(data)["x"]["fields"]["d"] = "bool"
+
+    def turn(data: Data) -> None:
+        fields(data)["x"]["fields"] = {"b": "sint9", "a": "uint3", "c": "bool"}
+
+    def rename(data: Data) -> None:
+        fields(data)["x"]["fields"] = {"a": "uint3", "b_now": "sint9", "c": "bool"}
+
+    def number(data: Data) -> None:
+        fields(data)["x"]["fields"]["c"] = "uint1"
+
+    yield Pair("packed", "order", put("packed", "msb_first"), "WIRE", "bits are read backwards")
+    yield Pair("run", "order", put("packed", "lsb_first"), "WIRE", "bits are read backwards")
+    for kind in ("packed", "run"):
+        unpacked: Edit = lambda d: fields(d)["x"].pop("packed")  # noqa: E731
+        yield Pair(kind, "unpacked", unpacked, "WIRE", "each takes whole bytes")
+    yield Pair("packed", "width", put("type", "uint12"), "WIRE", "what follows moves")
+    yield Pair("packed", "sign", put("type", "sint11"), "WIRE", "the highest bit means another")
+    yield Pair("packed", "count", put("count", 6), "WIRE", "what follows moves")
+    yield Pair("run", "more", add, "WIRE", "old receivers refuse a bit behind the last number")
+    yield Pair("run", "turned", turn, "WIRE", "numbers change places")
+    yield Pair("run", "rename", rename, "PASS", "the same bits")
+    yield Pair("run", "as number", number, "PASS", "the same bit, shown otherwise")
+
+
 PAIRS = [
     *(pair for kind in KINDS for pair in of_every_kind(kind)),
     *of_types(),
+    *of_packed(),
     *of_names(),
     *of_quantities(),
     *of_frames(),

@@ -50,9 +50,9 @@ class FieldComparison(msgspec.Struct, frozen=True):
             elif other.name != field.name:
                 change = self._change("field-renamed", path, named(field.name, other.name))
                 yield replace(change, now=_joined(prefix, other.name))
-            words = _moved(_place(old, index, kept, renamed), places[other.name])
-            if words:
-                yield self._change("field-moved", path, words)
+            place = _place(old, index, kept, renamed)
+            if place != places[other.name]:
+                yield self._change("field-moved", path, named(place, places[other.name]))
             yield from self._field(field, other, path, renamed)
         known = ({field.name for field in old} - renamed.keys()) | set(renamed.values())
         for field in new:
@@ -141,11 +141,18 @@ def renames(old: Sequence[Field], new: Sequence[Field]) -> tuple[dict[str, str],
         other = fresh.get(index)
         if other is None or field.name in after or field.name in said:
             continue
-        if (shape(field.type), field.position) == (shape(other.type), other.position):
+        if (shape(field.type), _start(field)) == (shape(other.type), _start(other)):
             found.setdefault(shape(field.type), []).append((field.name, other.name))
     pairs = {one: other for group in found.values() for one, other in group}
     unclear = {one for group in found.values() if not are_alike(group) for one, _ in group}
     return pairs | said, unclear
+
+
+def _start(field: Field) -> str:
+    """Where the field begins; empty where that varies."""
+    if field.bit is not None:
+        return f"bit {field.bit}"
+    return "" if field.position is None else f"byte {field.position}"
 
 
 def _place(
@@ -153,32 +160,19 @@ def _place(
     index: int,
     kept: set[str],
     renamed: dict[str, str] | None = None,
-) -> tuple[int | None, tuple[str, ...]]:
-    """The byte where a field begins; where that varies, those of `kept` that are in front of it."""
-    position = fields[index].position
+) -> str:
+    """Where a field begins; where that varies, behind which of `kept` it stands."""
+    start = _start(fields[index])
     names = [(renamed or {}).get(field.name, field.name) for field in fields[:index]]
     found = sorted(name for name in names if name in kept)
-    return position, () if position is not None else tuple(found)
-
-
-def _moved(old: tuple[int | None, tuple[str, ...]], new: tuple[int | None, tuple[str, ...]]) -> str:
-    if old == new:
-        return ""
-    if old[0] is not None and new[0] is not None:
-        return named(f"byte {old[0]}", f"byte {new[0]}")
-    return named(_words(old), _words(new))
-
-
-def _words(place: tuple[int | None, tuple[str, ...]]) -> str:
-    position, names = place
-    return f"byte {position}" if position is not None else f"behind {', '.join(names) or 'nothing'}"
+    return start or f"behind {', '.join(found) or 'nothing'}"
 
 
 def _described(field: Field) -> str:
-    size = field.size
+    size, start = field.size, _start(field)
     bytes_ = "" if size is None else f", {size} byte{'' if size == 1 else 's'}"
-    at = "" if field.position is None else f" at byte {field.position}"
-    return f"{field.type.label}{at}{bytes_}"
+    at = f" at {start}" if start else ""
+    return f"{field.type.label}{at}{'' if field.bit is not None else bytes_}"
 
 
 def _joined(prefix: str, name: str) -> str:

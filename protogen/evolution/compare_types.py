@@ -11,6 +11,7 @@ from protogen.evolution.shapes import are_crossed
 from protogen.model.meanings import BitField, Enum, Flags, NamedBit
 from protogen.model.types import (
     Array,
+    BitOrder,
     Counted,
     Extent,
     Fill,
@@ -56,8 +57,10 @@ class TypeComparison:
                 yield self._report("field-kind", path, named(old.label, new.label))
             case Array(), Array():
                 yield from self._extents(old.extent, new.extent, path)
+                yield from self._packing(old, new, path)
                 yield from self.compare(old.element, new.element, path)
             case Struct(), Struct():
+                yield from self._packing(old, new, path)
                 yield from self._fields(old.fields, new.fields, path)
             case Switch(), Switch():
                 yield from self._switches(old, new, path)
@@ -66,11 +69,13 @@ class TypeComparison:
 
     def _integers(self, old: Integer, new: Integer, path: str) -> Iterator[Change]:
         words = named(old.label, new.label)
-        is_bool = [kind.role == "bool" for kind in (old, new)]
+        # A packed bool is a bit like any other; elsewhere it is a byte that is 0 or 1.
+        is_bool = [kind.role == "bool" and not kind.packed for kind in (old, new)]
+        is_wider = old.size != new.size or not any(is_bool)
         tests = {
-            "field-width": old.bits != new.bits and (old.size != new.size or not any(is_bool)),
+            "field-width": old.bits != new.bits and is_wider,
             "field-sign": old.signed != new.signed,
-            "field-byte-order": old.byte_order != new.byte_order,
+            "field-byte-order": old.byte_order != new.byte_order and old.packed == new.packed,
             "field-encoding": old.byte_bits != new.byte_bits or is_bool[0] != is_bool[1],
         }
         found = [rule for rule, differs in tests.items() if differs]
@@ -104,6 +109,11 @@ class TypeComparison:
             return
         words = named(_amount(old), _amount(new))
         yield self._report("field-count", path, words)
+
+    def _packing(self, old: Array | Struct, new: Array | Struct, path: str) -> Iterator[Change]:
+        if old.packed != new.packed:
+            words = named(_packed(old.packed), _packed(new.packed))
+            yield self._report("field-encoding", path, words)
 
     def _switches(self, old: Switch, new: Switch, path: str) -> Iterator[Change]:
         if self._renamed.get(old.selector, old.selector) != new.selector:
@@ -265,6 +275,10 @@ def _bytes(kind: Type) -> tuple[Extent, int] | None:
             plain = Integer(bits=width, byte_bits=width, role=element.role)
             return (extent, width) if element == plain and plain.role != "bool" else None
     return None
+
+
+def _packed(order: BitOrder | None) -> str:
+    return "whole bytes" if order is None else f"packed bits, {order}"
 
 
 def _amount(extent: Extent) -> str:

@@ -174,6 +174,8 @@ class _Sampler:
         return values
 
     def _value(self, step: AnyStep, chooser: Chooser, need: Need | None = None) -> Any:
+        if isinstance(step, RecordStep | RepeatStep) and step.packing is not None:
+            self.size += step.packing.size  # Of the numbers themselves, none has bytes.
         match step:
             case RecordStep():
                 return self.record(step.steps, chooser)

@@ -75,6 +75,13 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     enum: Enum | None = None
     flags: Flags | None = None
     bit_fields: tuple[BitField, ...] = ()
+    packed: bool = False
+    """True if it has no bytes of its own: its bits lie among those of its neighbours."""
+
+    @cached_property
+    def size(self) -> int:
+        """Wire bytes; none where it is packed."""
+        return 0 if self.packed else -(-self.bits // self.byte_bits)
 
     @cached_property
     def name(self) -> str:
@@ -85,7 +92,7 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     @property
     def label(self) -> str:
         """The type in the words of the schema language, such as `uint16 big`."""
-        return self.name if self.size == 1 else f"{self.name} {self.byte_order}"
+        return self.name if self.size <= 1 else f"{self.name} {self.byte_order}"
 
     @property
     def kind(self) -> MachineKind:

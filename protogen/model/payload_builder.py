@@ -23,6 +23,7 @@ from protogen.model.payload_plan import (
     RestStep,
     Step,
     allowed,
+    packing_checks,
 )
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
@@ -41,6 +42,7 @@ from protogen.model.types import (
     Text,
     Type,
     count_name,
+    packing_of,
     total,
 )
 
@@ -49,6 +51,11 @@ def plan_of(fields: Sequence[Field]) -> PayloadPlan:
     """The plan of a message's or struct's fields."""
     steps = _Builder(0, {}, {}).record(fields, is_last=True)
     return PayloadPlan(steps=steps, sizes=total(tuple(fields)))
+
+
+def plan_of_struct(struct: Struct) -> PayloadPlan:
+    """The plan of a struct by itself."""
+    return replace(plan_of(struct.fields), sizes=struct.sizes, packing=packing_of(struct))
 
 
 _NOTHING: frozenset[Check] = frozenset()
@@ -128,17 +135,18 @@ class _Builder:
                     count=count,
                 )
             case Struct():
-                steps = self._inner(type_, is_last)
+                steps, packing = self._inner(type_, is_last), packing_of(type_)
                 return RecordStep(
                     name=name,
                     field=field,
                     sizes=type_.sizes,
-                    checks=_checks(steps),
+                    checks=_checks(steps) | packing_checks(packing),
                     is_refusable=any(step.is_refusable for step in steps),
                     holds_values=any(step.holds_values or step.fills for step in steps),
                     is_last=is_last,
                     type=type_,
                     steps=steps,
+                    packing=packing,
                 )
             case Array():
                 return self._repeat(field, type_, name, is_last, member)
@@ -158,17 +166,20 @@ class _Builder:
         self, field: Field, type_: Array, name: str, is_last: bool, member: str
     ) -> RepeatStep:
         element = self._step(field, type_.element, "", is_last=False)
+        packing = packing_of(type_)
+        checks = element.checks | _count_checks(type_.extent) | packing_checks(packing)
         return RepeatStep(
             name=name,
             field=field,
             sizes=type_.sizes,
-            checks=element.checks | _count_checks(type_.extent),
+            checks=checks,
             is_refusable=element.is_refusable or not isinstance(type_.extent, Fixed),
             holds_values=element.holds_values,
             is_last=is_last,
             type=type_,
             element=element,
             count=self._count(type_.extent, member),
+            packing=packing,
         )
 
     def _choose(self, field: Field, type_: Switch, name: str, is_last: bool) -> ChooseStep:
@@ -261,7 +272,7 @@ def _number_checks(type_: Integer | Float) -> frozenset[Check]:
     found = [Check.SEVEN_BIT] if type_.byte_bits == 7 else []
     if type_.bits < type_.byte_bits * type_.size:
         found.append(Check.PADDING)
-    if type_.role == "bool":
+    if type_.role == "bool" and type_.size:
         found.append(Check.BOOLEAN)
     if type_.is_closed:
         found.append(Check.CLOSED)

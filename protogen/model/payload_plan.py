@@ -17,8 +17,10 @@ from math import ceil, floor
 
 import msgspec
 
+from protogen.model.packing import Packing
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
+    Array,
     Constant,
     Field,
     Fixed,
@@ -31,6 +33,7 @@ from protogen.model.types import (
     Type,
     codec,
 )
+from protogen.runtime.payload.bits import BitWriter
 
 
 class Check(Enum):
@@ -53,6 +56,12 @@ class Check(Enum):
 
 
 _NO_CHECKS: frozenset[Check] = frozenset()
+
+
+def packing_checks(packing: Packing | None) -> frozenset[Check]:
+    """Faults of a run of bits, beside those of its numbers."""
+    is_padded = packing is not None and packing.padding
+    return frozenset({Check.PADDING}) if is_padded else _NO_CHECKS
 
 
 class Reference(msgspec.Struct, frozen=True):
@@ -175,6 +184,8 @@ class RecordStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
 
     type: Struct
     steps: tuple[AnyStep, ...]
+    packing: Packing | None = None
+    """The run of bits that its numbers are, where they are packed."""
 
 
 class RepeatStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
@@ -182,6 +193,8 @@ class RepeatStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
 
     element: AnyStep
     count: Count
+    packing: Packing | None = None
+    """The run of bits that its numbers are, where they are packed."""
 
 
 class RestStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
@@ -228,11 +241,13 @@ class PayloadPlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     steps: tuple[AnyStep, ...]
     sizes: SizeSet
     """Wire bytes of the steps; a frame may allow fewer of them."""
+    packing: Packing | None = None
+    """The run of bits that the numbers of a packed struct are."""
 
     @cached_property
     def checks(self) -> frozenset[Check]:
         """Faults that the right number of bytes can have."""
-        return _NO_CHECKS.union(*(step.checks for step in self.steps))
+        return packing_checks(self.packing).union(*(step.checks for step in self.steps))
 
     @property
     def has_wrong_values(self) -> bool:
@@ -270,9 +285,50 @@ def every_step(steps: Iterable[AnyStep]) -> Iterator[AnyStep]:
                 yield from every_step(case.step for case in step.cases)
 
 
+class PackedNumber(msgspec.Struct, frozen=True):
+    """A number of a run of bits."""
+
+    step: IntegerStep
+    name: str
+    """The field; empty in an array that is packed itself."""
+    index: int | None
+    """Place among the elements of an array."""
+    first: int
+    """Place of its first bit in the run."""
+    constant: int | None
+
+
+def packed_numbers(steps: Iterable[AnyStep]) -> Iterator[PackedNumber]:
+    """Yield the numbers of packed steps, in wire order."""
+    first = 0
+    for step in steps:
+        value = without_constant(step)
+        elements = [value] if isinstance(value, IntegerStep) else _packed_elements(value)
+        const = step.field.const
+        for index, element in enumerate(elements):
+            constant = const[index] if isinstance(const, tuple) else const
+            assert constant is None or isinstance(constant, int)
+            place = None if element is value else index
+            yield PackedNumber(element, step.name, place, first, constant)
+            first += element.type.bits
+
+
+def _packed_elements(step: AnyStep) -> list[IntegerStep]:
+    assert isinstance(step, RepeatStep)
+    assert isinstance(step.element, IntegerStep)
+    return [step.element] * (step.count.known or 0)
+
+
 def constant_bytes(field: Field) -> bytes:
-    """The wire bytes of a constant field."""
+    """The wire bytes of a constant field that is not in a run of bits itself."""
     assert field.const is not None
+    if isinstance(field.type, Array) and field.type.packed is not None:
+        assert isinstance(field.const, tuple)
+        assert isinstance(field.type.element, Integer)
+        run = BitWriter(field.type.packed)
+        for item in field.const:
+            run.put(field.type.element.bits, item)
+        return run.finish()
     if isinstance(field.const, tuple):
         return b"".join(_wire_bytes(field.element, item) for item in field.const)
     return _wire_bytes(field.type, field.const)

@@ -25,12 +25,15 @@ from protogen.model.numbers import (
     storage_bits,
 )
 from protogen.model.origin import NOTHING, About
+from protogen.model.packing import Packing
 from protogen.model.sizes import SizeSet
+from protogen.runtime.payload.bits import BitOrder
 
 __all__ = [
     "NO_OFFSET",
     "UNSCALED",
     "Array",
+    "BitOrder",
     "ByteOrder",
     "Case",
     "Constant",
@@ -48,10 +51,12 @@ __all__ = [
     "Switch",
     "Text",
     "Type",
+    "bits_of",
     "codec",
     "count_name",
     "counting_bits",
     "is_integer",
+    "packing_of",
     "storage_bits",
     "total",
 ]
@@ -179,6 +184,8 @@ class Struct:
     """Snake-case name, unique in the protocol."""
     fields: tuple[Field, ...]
     about: About = NOTHING
+    packed: BitOrder | None = None
+    """Order of the bits, where fields follow each other without byte boundaries."""
     sizes: SizeSet = dataclass_field(init=False, repr=False, compare=False)
     """Wire bytes. Added up once: structs that hold each other are asked at every level."""
     holds_values: bool = dataclass_field(init=False, repr=False, compare=False)
@@ -194,7 +201,9 @@ class Struct:
 
     def __post_init__(self) -> None:
         stored = any(field.is_stored or field.fills for field in self.fields)
-        object.__setattr__(self, "sizes", total(self.fields))
+        packing = packing_of(self)
+        sizes = total(self.fields) if packing is None else SizeSet.exactly(packing.size)
+        object.__setattr__(self, "sizes", sizes)
         object.__setattr__(self, "holds_values", stored)
         object.__setattr__(self, "needs", _needed_by(self.fields))
 
@@ -204,11 +213,14 @@ class Array(msgspec.Struct, frozen=True, kw_only=True):
 
     element: Type
     extent: Extent
+    packed: BitOrder | None = None
+    """Order of the bits, where integers follow each other without byte boundaries."""
 
     @property
     def label(self) -> str:
         """The type in the words of the schema language, such as `sint14[3]`."""
-        return f"{self.element.label}[{self.extent.label}]"
+        order = "" if self.packed is None else f" {self.packed}"
+        return f"{self.element.label}[{self.extent.label}]{order}"
 
     @property
     def holds_values(self) -> bool:
@@ -223,6 +235,9 @@ class Array(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def sizes(self) -> SizeSet:
         """Wire bytes."""
+        packing = packing_of(self)
+        if packing is not None:
+            return SizeSet.exactly(packing.size)
         return self.element.sizes.times(self.extent.counts)
 
 
@@ -292,6 +307,23 @@ def is_integer(type_: Type) -> TypeGuard[Integer]:
     return isinstance(type_, Integer)
 
 
+def packing_of(type_: Struct | Array) -> Packing | None:
+    """The run of bits that a struct or an array is, if its numbers are packed."""
+    return None if type_.packed is None else Packing(type_.packed, bits_of(type_))
+
+
+def bits_of(type_: Type) -> int:
+    """Bits of packed numbers, one behind another; of anything else those of its bytes."""
+    match type_:
+        case Integer():
+            return type_.bits
+        case Array():
+            return type_.extent.counts.greatest * bits_of(type_.element)
+        case Struct():
+            return sum(bits_of(field.type) for field in type_.fields)
+    return 8 * type_.sizes.greatest
+
+
 class Field(msgspec.Struct, frozen=True, kw_only=True):
     """One field of a message or struct.
 
@@ -303,7 +335,9 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     name: str
     type: Type
     position: int | None
-    """Byte offset in the message or struct; None where it varies."""
+    """Byte offset in the message or struct; None where it varies, and for packed integers."""
+    bit: int | None = None
+    """Bit offset in a packed struct; None in others."""
     const: Constant | None = None
     default: Constant | None = None
     least: Fraction | None = None

@@ -93,10 +93,25 @@ _FIELD_RULES = (
     _where(
         _type_like("ascii|bytes"),
         "These are for numbers; the length is the `size`.",
-        _none_of((*_NUMERIC, *_NAMED, "count", "closed")),
+        _none_of((*_NUMERIC, *_NAMED, "count", "closed", "packed")),
     ),
     _where(_type_like("bool"), "A bool is no number.", _none_of((*_NUMERIC, *_NAMED, "closed"))),
-    _where(_type_like("float32|float64"), "These are for integers.", _none_of((*_NAMED, "closed"))),
+    _where(
+        _type_like("float32|float64"),
+        "These are for integers.",
+        _none_of((*_NAMED, "closed", "packed")),
+    ),
+    _where(_with("switch"), "A switch has nothing to pack.", _none_of(("packed",))),
+    _where(
+        {**_type_like(f"{INTEGER_PATTERN}|byte|char|bool"), "required": ["type", "packed"]},
+        "A single integer has nothing to follow; several are counted.",
+        _with("count"),
+    ),
+    _where(
+        {"required": ["packed", "count"], "properties": {"fields": False}},
+        "The number of packed integers is always the same.",
+        {"properties": {"count": {"type": "integer", "minimum": 1}}},
+    ),
     _where(
         _type_like("sint[0-9]+"),
         "These name bits of an unsigned integer.",

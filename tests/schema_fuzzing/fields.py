@@ -11,6 +11,7 @@ from protogen.copying import replace
 from schema_fuzzing import forms
 from schema_fuzzing.names import FIELDS, fresh
 from schema_fuzzing.numbers import ORDERS, counter, integer, number
+from schema_fuzzing.packed import can_pack, packed_arrays, packed_structs
 from schema_fuzzing.setting import NOTHING, Built, Declared, Selector, Setting, Size
 
 GREATEST_DEPTH = 2
@@ -147,6 +148,8 @@ def _kinds(setting: Setting) -> list[str]:
     kinds = ["number"] * 6 + ["string", "string", "array", "array", "counted", "switch"]
     if setting.depth < GREATEST_DEPTH:
         kinds += ["struct", "struct"]
+    if can_pack(setting):
+        kinds += ["packed array", "packed struct"]
     if setting.may_fill:
         kinds += ["fill"] * 8
     if any(_fits(declared, setting) for declared in setting.types):
@@ -171,6 +174,8 @@ def _elements(draw: st.DrawFn, setting: Setting) -> Built:
         inner = replace(setting.inside(last=False), budget=min(setting.budget, _USUAL_BYTES))
         built = draw(structs(inner, greatest=3))
         return replace(built, data={"fields": built.data}, counts=None, keys=())
+    if can_pack(setting) and draw(forms.one_in(8)):
+        return draw(packed_structs(replace(setting, budget=min(setting.budget, _USUAL_BYTES))))
     fitting = [declared for declared in setting.types if _fits(declared, setting)]
     if draw(forms.one_in(4)) and fitting:
         return draw(_use(setting, draw(st.sampled_from(fitting))))
@@ -331,5 +336,7 @@ _ITEMS: Mapping[str, Callable[[Setting], st.SearchStrategy[Built]]] = {
     "array": _fixed_array,
     "struct": _struct,
     "declared": _declared,
+    "packed array": packed_arrays,
+    "packed struct": packed_structs,
     "fill": _fill,
 }

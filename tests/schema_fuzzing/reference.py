@@ -10,6 +10,8 @@ import struct
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from bit_runs import bits_of_number, bytes_of
+
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
     Base16,
@@ -65,11 +67,24 @@ def _value(type_: Type, value: Any, scope: Scope) -> bytes:
             )
         case Octets():
             return bytes.fromhex(value)
+        case Struct(packed=str(order)) | Array(packed=str(order)):
+            return bytes_of(_bits(type_, value, order), order)
         case Struct():
             return payload_bytes(type_.fields, value or {}, scope)
         case Array():
             return b"".join(_value(type_.element, element, scope) for element in value)
     return _switch_bytes(type_, value, scope)
+
+
+def _bits(type_: Type, value: Any, order: str) -> list[int]:
+    """The bits of a packed number, or of several."""
+    if isinstance(type_, Struct):
+        each = (_bits(field.type, value[field.name], order) for field in type_.fields)
+        return [bit for bits in each for bit in bits]
+    if isinstance(type_, Array):
+        return [bit for item in value for bit in _bits(type_.element, item, order)]
+    assert isinstance(type_, Integer)
+    return bits_of_number(int(value), type_.bits, order)
 
 
 def _switch_bytes(type_: Switch, value: Any, scope: Scope) -> bytes:

@@ -9,7 +9,7 @@ from schema_fuzzing.frames import FramePlan
 
 _FIELD_KEYS = (
     "values", "closed", "flags", "bits", "const", "default", "range", "scale", "offset", "unit",
-    "special", "byte_order", "unknown", "switch",
+    "special", "byte_order", "unknown", "switch", "packed",
 )  # fmt: skip
 
 _CODES = (

@@ -8,8 +8,10 @@ from hypothesis import strategies as st
 
 from protogen.copying import replace
 from schema_fuzzing.fields import structs
+from schema_fuzzing.forms import one_in
 from schema_fuzzing.names import TYPES, several
 from schema_fuzzing.numbers import ORDERS, integer
+from schema_fuzzing.packed import can_pack, packed_structs
 from schema_fuzzing.setting import Built, Declared, Setting
 
 _GREATEST_TYPE = 10
@@ -43,6 +45,8 @@ def _number(draw: st.DrawFn, name: str, setting: Setting) -> Declared:
 
 
 def _struct(draw: st.DrawFn, name: str, setting: Setting) -> Declared:
+    if can_pack(setting) and draw(one_in(6)):
+        return Declared(name, draw(packed_structs(setting)), is_struct=True, chooses=False)
     order = {"byte_order": draw(ORDERS)} if draw(st.booleans()) else {}
     built = draw(structs(replace(setting, ordered=bool(order))))
     choosing = {declared.name for declared in setting.types if declared.chooses}

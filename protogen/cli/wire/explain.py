@@ -127,7 +127,8 @@ def _lines(offset: int, row: Row) -> Iterator[list[Cell]]:
     for index in range(count):
         part = slice(index * _BYTES_IN_A_ROW, (index + 1) * _BYTES_IN_A_ROW)
         place = str(offset + row.offset + part.start)
-        texts = (place, row.wire[part].hex(" ").upper(), row.bytes[part].hex(" ").upper())
+        wire = row.bits or row.wire[part].hex(" ").upper()
+        texts = (place, wire, row.bytes[part].hex(" ").upper())
         named = (row.path, row.type, _value(row.value), meaning) if index == 0 else ("", "", "", "")
         yield [*texts, *named]
 

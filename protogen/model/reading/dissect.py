@@ -5,11 +5,13 @@ from __future__ import annotations
 import struct
 from collections import ChainMap
 from collections.abc import Sequence
+from typing import Literal
 
 import msgspec
 
 from protogen.copying import replace
 from protogen.model.frame import Part
+from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -19,15 +21,18 @@ from protogen.model.payload_plan import (
     Count,
     FloatStep,
     IntegerStep,
+    PackedNumber,
     PayloadPlan,
     RecordStep,
     RepeatStep,
     RestStep,
+    packed_numbers,
 )
 from protogen.model.reading.readings import integer_reading, physical, quoted, value_name
 from protogen.model.reading.wire import Unit
 from protogen.model.types import Field, Fixed, Float, Scalar, Text, codec
 from protogen.runtime.errors import ByteError
+from protogen.runtime.payload.bits import BitReader
 
 Scope = ChainMap[str, int]
 """The integers read so far, which count and select what follows."""
@@ -44,6 +49,11 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     """As on the wire."""
     bytes: bytes = b""
     """Without transparency."""
+    bits: str = ""
+    """The bits of a packed number, most significant first. It has no bytes of its own: they are
+    those of a row in front, the `run`."""
+    run: Literal["", "list", "record"] = ""
+    """What the rows behind are that have their bits in these bytes."""
     path: str = ""
     """The part's name, or the field's with what leads to it, such as `points[2].x`."""
     type: str = ""
@@ -147,6 +157,8 @@ class _Reader:
         if self._short:
             return
         match step:
+            case RecordStep() | RepeatStep() if step.packing is not None:
+                self._packed(step, step.packing, path)
             case RecordStep():
                 self.record(step.steps, f"{path}.", scope.new_child())
             case RepeatStep():
@@ -178,6 +190,23 @@ class _Reader:
             row = self._cursor.take(left, path, "bytes", fault=fault, subject=step.field)
             self.rows.append(row)
 
+    def _packed(self, step: RecordStep | RepeatStep, packing: Packing, path: str) -> None:
+        """A row for the bytes of packed numbers, and one for each of the numbers."""
+        is_record = isinstance(step, RecordStep)
+        row = self._cursor.take(packing.size, path, f"packed {packing.order}", subject=step.field)
+        row = replace(row, meaning=f"{packing.bits} bits", run="record" if is_record else "list")
+        if not row.cut and row.bytes[-1] & packing.padding:
+            row = replace(row, fault="the bits behind the last number have to be zero")
+        self._short = row.cut
+        self.rows.append(row)
+        if row.cut:
+            return
+        run = BitReader(row.bytes, packing.order)
+        steps = step.steps if isinstance(step, RecordStep) else (replace(step, name=""),)
+        base = f"{path}." if is_record else path
+        for item in packed_numbers(steps):
+            self.rows.append(_bits(item, run, base, row.offset))
+
     def _scalar(self, step: ScalarStep, path: str, scope: Scope) -> None:
         size = _count(step.count, scope) if isinstance(step, BytesStep) else step.type.size
         size = self._cursor.left if size is None else size
@@ -196,6 +225,26 @@ def _element(field: Field, index: int) -> Field:
     if not isinstance(field.const, tuple):
         return field
     return replace(field, const=field.const[index] if index < len(field.const) else None)
+
+
+def _bits(item: PackedNumber, run: BitReader, base: str, offset: int) -> Row:
+    """The row of a packed number, whose bits are taken out of the run."""
+    type_, end = item.step.type, item.first + item.step.type.bits - 1
+    place = f"bit {end}" if end == item.first else f"bits {item.first}..{end}"
+    index = "" if item.index is None else f"[{item.index}]"
+    raw = run.take(type_.bits)
+    step = replace(item.step, field=_element(item.step.field, item.index or 0))
+    value = codec(type_).value_of(raw)
+    row = Row(
+        offset=offset + item.first // 8,
+        wire=b"",
+        bits=f"{raw:0{type_.bits}b}",
+        path=f"{base}{item.name}{index}",
+        type=f"{type_.label}, {place}",
+        subject=step.field,
+        value_type=type_,
+    )
+    return row.reads(value, _meaning(step, value), _fault(step, value))
 
 
 def _count(count: Count, scope: Scope) -> int | None:

@@ -22,7 +22,7 @@ VALUE_NAMES = ("values", "flags", "bits")
 _NAMING_KEYS = ("fields", *VALUE_NAMES)
 """Keys that make a named type. It is called after the declaration that has them."""
 
-_LAYOUT_KEYS = (*_NAMING_KEYS, "switch", "cases")
+_LAYOUT_KEYS = (*_NAMING_KEYS, "switch", "cases", "packed")
 
 
 class Effective(msgspec.Struct, frozen=True):

@@ -23,6 +23,7 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    bits_of,
     is_integer,
 )
 from protogen.passes.context import Context, Loc, about
@@ -32,6 +33,13 @@ from protogen.passes.types.declared import Declarations, Effective, Expansion
 from protogen.passes.types.extents import Written, extent_of
 from protogen.passes.types.field_keys import check_keys, has_one_form
 from protogen.passes.types.named_types import NamedTypes
+from protogen.passes.types.packing import (
+    check_packing,
+    order_of_elements,
+    order_of_fields,
+    packed_elements,
+    packed_fields,
+)
 from protogen.passes.types.setting import Setting
 from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
 from protogen.passes.types.value_names import with_names
@@ -63,7 +71,7 @@ class FieldBuilder:
         """The fields of one struct or message, with their positions."""
         built: dict[str, Field] = {}
         scope = setting.outer.new_child(built)
-        behind = SizeSet.exactly(0)
+        behind, bits = SizeSet.exactly(0), 0
         filler = ""
         final = list(syntax)[-1:]
         for name, item in syntax.items():
@@ -72,6 +80,9 @@ class FieldBuilder:
             inner = setting.inside(name, behind, scope, [name] == final)
             built[name] = self.field(name, item, (*loc, name), inner)
             behind += built[name].type.sizes
+            if setting.layout.packed is not None:
+                built[name] = replace(built[name], bit=bits)
+                bits += bits_of(built[name].type)
             filler = filler or (name if takes_rest(built[name].type) else "")
         return tuple(built.values())
 
@@ -84,6 +95,8 @@ class FieldBuilder:
         if not all(has_one_form(self._context, *link) for link in effective.chain[1:]):
             return unknown
         check_keys(self._context, name, effective)
+        if not check_packing(self._context, name, effective):
+            return unknown
         return meaning.attach(self._context, name, self._type(effective), effective)
 
     def _effective(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Effective:
@@ -135,6 +148,7 @@ class FieldBuilder:
     def _struct(
         self, item: Effective, fields: Mapping[str, FieldSyntax], setting: Setting
     ) -> Struct:
+        setting = packed_fields(item, setting)
         known = self._expansion.known(item, setting.layout)
         if known is not None:
             return known
@@ -142,7 +156,12 @@ class FieldBuilder:
         inner = replace(setting, owner=item.owner, depth=setting.depth + 1)
         built = self.fields(fields, (*item.place, "fields"), inner)
         origin = item.origin
-        struct = Struct(name=item.owner, fields=built, about=about(origin.doc, origin.source))
+        struct = Struct(
+            name=item.owner,
+            fields=built,
+            about=about(origin.doc, origin.source),
+            packed=order_of_fields(self._context, built, item),
+        )
         if not self._expansion.is_spent:
             struct = self._named.register(
                 struct, item.chain[0][1], declared=item.declared is not None
@@ -152,7 +171,8 @@ class FieldBuilder:
 
     def _array(self, item: Effective) -> Array:
         written, loc = item.syntax.count, item.at("count")
-        element = self._element(item, replace(item.setting, last=False))
+        setting = packed_elements(self._context, item, replace(item.setting, last=False))
+        element = self._element(item, setting)
         if takes_rest(element):
             text = "elements of an array can't fill the payload"
             self._context.error("PG111", loc, text)
@@ -160,7 +180,11 @@ class FieldBuilder:
             text = "an element may be empty, so nothing says how many fill the payload"
             self._context.error("PG118", loc, text)
         least = max(1, element.sizes.least)
-        return Array(element=element, extent=self._extent(written, loc, least, item.setting))
+        return Array(
+            element=element,
+            extent=self._extent(written, loc, least, item.setting),
+            packed=order_of_elements(self._context, element, item, setting),
+        )
 
     def _string(self, item: Effective) -> Text | Octets:
         kind, size = item.syntax.type, item.syntax.size

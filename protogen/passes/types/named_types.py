@@ -107,7 +107,8 @@ class NamedTypes:
             latest = self._types.get(struct.name)
             struct = latest if isinstance(latest, Struct) else struct
             fields = self.settled(struct.fields)
-            self._settled[struct.name] = replace(struct, fields=_placed(fields))
+            placed = fields if struct.packed else _placed(fields)
+            self._settled[struct.name] = replace(struct, fields=placed)
         return self._settled[struct.name]
 
 
@@ -137,7 +138,7 @@ def joined_struct(one: Struct, other: Struct) -> Struct | None:
 
     Structs inside of them are joined under their own names, not here.
     """
-    if len(one.fields) != len(other.fields):
+    if len(one.fields) != len(other.fields) or one.packed != other.packed:
         return None
     fields = [_field(*both) for both in zip(one.fields, other.fields, strict=True)]
     found = tuple(field for field in fields if field is not None)
@@ -161,7 +162,9 @@ def _type(one: Type, other: Type) -> Type | None:
             return _with_extent(one, other)
         case Array(), Array():
             element = _type(one.element, other.element)
-            return None if element is None else _with_extent(replace(one, element=element), other)
+            if element is None or one.packed != other.packed:
+                return None
+            return _with_extent(replace(one, element=element), other)
         case Switch(), Switch():
             return _switch(one, other)
     return one if one == other else None

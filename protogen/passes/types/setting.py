@@ -31,7 +31,8 @@ class Setting(msgspec.Struct, frozen=True):
     used: int = 0
     """The least number of bytes of the payload in front."""
     position: int | None = 0
-    """The number of bytes of the struct or message in front, where it is always the same."""
+    """The number of bytes of the struct or message in front, where it is always the same; None
+    for bits that are packed."""
     outer: Scope = msgspec.field(default_factory=ChainMap)
     """Fields that counts and switches may name, from the structs around."""
     stack: tuple[str, ...] = ()
@@ -51,7 +52,7 @@ class Setting(msgspec.Struct, frozen=True):
         return replace(
             self,
             used=self.used + behind.least,
-            position=behind.fixed,
+            position=None if self.layout.packed else behind.fixed,
             owner=f"{self.owner}_{name}",
             outer=outer,
             last=self.last and last,

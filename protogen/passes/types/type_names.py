@@ -10,7 +10,7 @@ from typing import Literal
 import msgspec
 
 from protogen.copying import replace
-from protogen.model.types import ByteOrder, Float, Integer
+from protogen.model.types import BitOrder, ByteOrder, Float, Integer
 from protogen.problems import hint_for
 
 _INTEGER = re.compile(r"[us]int(0|[1-9][0-9]{0,5})")
@@ -44,6 +44,8 @@ class Layout(msgspec.Struct, frozen=True):
 
     byte_bits: Literal[7, 8]
     byte_order: ByteOrder | None
+    packed: BitOrder | None = None
+    """Order of the bits where numbers follow each other without byte boundaries."""
 
 
 def integer_width(name: str) -> int | None:
@@ -98,9 +100,13 @@ def is_builtin(name: str) -> bool:
 def integer(name: str, layout: Layout) -> Integer | None:
     """The integer type that a built-in name stands for, or None if it is no integer.
 
-    Fields of one type share it. The byte order of a number of one byte is `little`; of others the
-    layout's, `little` where the layout has none (the caller reports that).
+    Fields of one type share it. The byte order of a number of one byte is `little`, and so it is of
+    packed ones; of others the layout's, `little` where the layout has none (the caller reports
+    that).
     """
+    if layout.packed is not None:
+        found = integer(name, Layout(8, None))
+        return None if found is None else replace(found, packed=True)
     width = integer_width(name)
     if width is not None and has_width(name):
         plain = Integer(bits=width, signed=name[0] == "s", byte_bits=layout.byte_bits)

@@ -21,6 +21,7 @@ from construct import (  # type: ignore[import-untyped,unused-ignore]
     Renamed,
 )
 
+from protogen.runtime.constructs.bits import Bit, Bits, Packed
 from protogen.runtime.constructs.numbers import (
     Closed,
     Fixed,
@@ -35,6 +36,8 @@ from protogen.runtime.constructs.strings import Latin1, Latin1Fill, Octets, Octe
 from protogen.runtime.constructs.structs import Cases, Counted, Fill, Struct, Whole, prefix_size
 
 __all__ = [
+    "Bit",
+    "Bits",
     "Cases",
     "Closed",
     "Construct",
@@ -50,6 +53,7 @@ __all__ = [
     "Latin1Fill",
     "Octets",
     "OctetsFill",
+    "Packed",
     "Pass",
     "PayloadError",
     "Piece",

@@ -49,10 +49,7 @@ class Number(Frozen):
 
     def encode(self, value: int) -> bytes:
         """The bytes for `value`. Raises ValueError if it is no integer that the bits can hold."""
-        value = as_integer(value)
-        if not self.least <= value <= self.greatest:
-            raise ValueError(f"{value} is not in {self.least}..{self.greatest}")
-        raw = value & ((1 << self.bits) - 1)
+        raw = self.raw_of(value)
         if self.seven_bit:
             groups = bytes((raw >> shift) & 0x7F for shift in range(0, 7 * self.size, 7))
             return groups if self.order == "little" else groups[::-1]
@@ -66,9 +63,18 @@ class Number(Frozen):
             raw = int.from_bytes(data, self.order)
         if raw >> self.bits:
             raise ByteError("value", f"the bits above the lowest {self.bits} have to be zero")
-        if self.signed and raw >> (self.bits - 1):
-            raw -= 1 << self.bits
-        return raw
+        return self.value_of(raw)
+
+    def raw_of(self, value: int) -> int:
+        """The bits for `value`. Raises ValueError if it is no integer that they can hold."""
+        value = as_integer(value)
+        if not self.least <= value <= self.greatest:
+            raise ValueError(f"{value} is not in {self.least}..{self.greatest}")
+        return value & ((1 << self.bits) - 1)
+
+    def value_of(self, raw: int) -> int:
+        """The value that has these bits."""
+        return raw - (1 << self.bits) if self.signed and raw >> (self.bits - 1) else raw
 
 
 def as_integer(value: object) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
@@ -100,6 +100,9 @@ Extent = Annotated[
 """Number of elements or bytes: a number, the name of an earlier field, or `fill`."""
 
 
+BitOrder = Literal["lsb_first", "msb_first"]
+
+
 def _to_constant(value: Any) -> Any:
     """A number, a text (also an enum's name) or bytes; which of them fits the type is not asked."""
     if isinstance(value, bool | bytes | tuple):
@@ -166,6 +169,12 @@ class FieldSyntax(Syntax):
         None,
         description="Bytes of an ascii or bytes field: a number, the earlier field that gives it, "
         "or fill (to the end of the payload).",
+    )
+    packed: BitOrder | None = Field(
+        None,
+        description="The integers of the array or struct follow each other bit by bit, without "
+        "byte boundaries: lsb_first (bit 0 of each byte comes first, and of each number) or "
+        "msb_first (bit 7 and the most significant bit do).",
     )
     values: ValueNames | None = Field(
         None,

@@ -74,6 +74,8 @@ class RecordClass(msgspec.Struct, frozen=True):
     constants: tuple[str, ...]
     """Lines that only messages have: name, senders, identity and sizes."""
     format: tuple[str, ...]
+    packed: str
+    """Order of the bits, where the fields are packed."""
     rules: str
     views: tuple[Attribute, ...]
     made: Constructor
@@ -107,7 +109,8 @@ def _comment(doc: str) -> str:
 def struct_class(item: Struct, names: Names) -> RecordClass:
     """A struct."""
     doc = docstring(describing.named(item.name, item.about), _INDENT)
-    return _record(item, "_rt.Record", doc, (), names)
+    packed = text(item.packed) if item.packed else ""
+    return _record(item, "_rt.Record", doc, (), names, packed)
 
 
 def message_class(item: Message, identity: str, names: Names) -> RecordClass:
@@ -139,7 +142,12 @@ class _Scope(msgspec.Struct, frozen=True):
 
 
 def _record(
-    item: Struct | Message, base: str, doc: str, constants: tuple[str, ...], names: Names
+    item: Struct | Message,
+    base: str,
+    doc: str,
+    constants: tuple[str, ...],
+    names: Names,
+    packed: str = "",
 ) -> RecordClass:
     own, fields = names.records[item.name], item.fields
     scope = _Scope(names, own, frozenset(own.fields.values()))
@@ -149,7 +157,8 @@ def _record(
         doc=doc,
         attributes=tuple(_attribute(field, scope) for field in fields),
         constants=constants,
-        format=tuple(_format_line(field, names) for field in fields),
+        format=tuple(_format_line(field, names, 4 if packed else 3) for field in fields),
+        packed=packed,
         rules=_rules(fields, names),
         views=tuple(view for field in fields for view in _views(field, scope)),
         made=_constructor(fields, scope),
@@ -183,9 +192,9 @@ def _constructor(fields: tuple[Field, ...], scope: _Scope) -> Constructor:
     return Constructor(slots_of(scope.own.fields.values()), head, tuple(body))
 
 
-def _format_line(field: Field, names: Names) -> str:
+def _format_line(field: Field, names: Names, depth: int) -> str:
     """One line of FORMAT; a long one is broken before the slash, as formatters do."""
-    name, indent = text(field.name), 3 * _INDENT
+    name, indent = text(field.name), depth * _INDENT
     expression = field_format(field, names)
     if indent + len(name) + 3 + len(expression) + 1 <= 100 or "(" not in expression:
         return f"{name} / {expression},"

@@ -75,7 +75,9 @@ def type_format(type_: Type, names: Names) -> str:
 @lru_cache(1024)
 def _integer(type_: Integer) -> str:
     if type_.role == "bool":
-        return "_c.Flag01"
+        return "_c.Bit" if type_.packed else "_c.Flag01"
+    if type_.packed:
+        return call("_c.Bits", str(type_.bits), signed="True" if type_.signed else None)
     kind = "_c.SevenBit" if type_.byte_bits == 7 else "_c.Int"
     signed = "signed=True" if type_.signed else None
     arguments = [str(type_.bits), *([signed] if signed else [])]
@@ -111,7 +113,8 @@ def _array(type_: Array, names: Names) -> str:
     element = _checked(type_.element, names)
     if isinstance(type_.extent, Fill):
         return call("_c.Fill", element, str(type_.extent.greatest))
-    return call("_c.Counted", extent(type_.extent), element)
+    counted = call("_c.Counted", extent(type_.extent), element)
+    return counted if type_.packed is None else call("_c.Packed", text(type_.packed), counted)
 
 
 def _switch(type_: Switch, names: Names) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from protogen.model.payload_builder import plan_of
+from protogen.model.payload_builder import plan_of_struct
 from protogen.model.payload_plan import (
     AnyStep,
     FloatStep,
@@ -25,6 +25,8 @@ def is_readable(step: AnyStep) -> bool:
     """True if there is such a function: elements of one size lie at a place that is known."""
     if not isinstance(step, RepeatStep) or step.field.position is None:
         return False
+    if step.packing is not None:
+        return False  # Its elements begin anywhere in a byte.
     element = step.element
     if isinstance(element, RecordStep):
         # Nothing outside of it may say what is in it.
@@ -61,7 +63,7 @@ def accessor(
             case RecordStep():
                 type_ = "void"
                 arguments = (*arguments, f"{records.spelled(element.type)} *out")
-                Load(helpers, body).pointed(plan_of(element.type.fields), "out->")
+                Load(helpers, body).pointed(plan_of_struct(element.type), "out->")
             case _:
                 raise AssertionError(element)
     body.drop_unused_places()

@@ -7,10 +7,11 @@ one call.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from protogen.model.names import free_name
+from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -21,14 +22,17 @@ from protogen.model.payload_plan import (
     FloatStep,
     IntegerStep,
     NumberStep,
+    RecordStep,
     Reference,
     RepeatStep,
     RestStep,
 )
 from protogen.targets.c.lines import Lines
+from protogen.targets.c.payload.checked_places import CheckedWalk
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import loaded
-from protogen.targets.c.payload.walk import Walk, out_of_bounds, times
+from protogen.targets.c.payload.packing import Placed, faults_in
+from protogen.targets.c.payload.walk import out_of_bounds, times
 from protogen.targets.c.spelling import hexadecimal, integer_type, unsigned
 
 _RESERVED = frozenset(
@@ -43,74 +47,17 @@ def _carried(step: BytesStep | NumberStep) -> int:
     return 8 if Check.BOOLEAN in step.checks else step.type.byte_bits
 
 
-class Checker(Walk):
-    """Prints a check of `payload`, whose `size` bytes may be too few.
-
-    With `needs`, a pointer `need` is told, unless it is NULL, how many bytes there have to be at
-    least. A message of a fixed size has all of its bytes; the function's head has seen to that.
-    """
+class Checker(CheckedWalk):
+    """Prints a check of the payload."""
 
     def __init__(
         self, helpers: Helpers, lines: Lines, prefix: str, *, fixed: bool, needs: bool
     ) -> None:
-        super().__init__(helpers, lines)
-        self._error = f"return {prefix.upper()}_ERROR_"
-        self._fixed = fixed
-        self._needs = needs
-        self._at = ""
-        self._offset = 0
-        self._secured = 0  # Bytes behind `at` that are known to be there.
-        self._unchecked: int | None = None  # Where bytes begin whose top bits are to be checked.
+        super().__init__(helpers, lines, prefix, fixed=fixed, needs=needs)
         self._ended = False  # True once something has taken all bytes that there were.
         self._locals = set(_RESERVED)
         self._numbers: dict[tuple[int, str], str] = {}  # Variables, by the level of their record.
         self._branches = 0
-
-    # --- positions ------------------------------------------------------------------------------
-
-    def _sum(self, offset: int) -> str:
-        if not self._at:
-            return str(offset)
-        return f"{self._at} + {offset}" if offset else self._at
-
-    def _byte(self, index: int = 0) -> str:
-        return f"payload[{self._sum(self._offset + index)}]"
-
-    def _address(self, offset: int | None = None) -> str:
-        total = self._sum(self._offset if offset is None else offset)
-        return "payload" if total == "0" else f"payload + {total}"
-
-    def _require(self, size: int, extra: str = "") -> None:
-        """Go on only if so many bytes more are there."""
-        due = self._offset + size
-        if self._fixed or (not extra and due <= self._secured):
-            return
-        here = f"size - {self._at}" if self._at else "size"
-        amount = " + ".join(filter(None, [unsigned(due) if due or not extra else "", extra]))
-        with self.lines.block(f"if ({here} < {amount})"):
-            if self._needs:
-                end = f"{self._at} + {amount}" if self._at else amount
-                self.lines.add(f"return {self.helpers.missing()}(need, {end});")
-            else:
-                self.lines.add(f"{self._error}SIZE;")
-        if not extra:
-            self._secured = due
-
-    def _settle(self) -> None:
-        """Have `at` stand at the place itself; all bytes in front of it are there."""
-        self._flush()
-        self._require(0)
-        self._move(self._offset)
-
-    def _move(self, distance: int | str) -> None:
-        if not self._at:
-            self.lines.add(f"size_t at = {distance};")
-            self._at = "at"
-        elif distance:
-            self.lines.add(f"at += {distance};")
-        passed = distance if isinstance(distance, int) else 0
-        self._secured = max(0, self._secured - passed) if isinstance(distance, int) else 0
-        self._offset = 0
 
     def finish(self, unfit: str) -> None:
         """Say what is left to say at the end of the payload, and refuse sizes that are unfit."""
@@ -121,37 +68,6 @@ class Checker(Walk):
         if not self._ended:
             self._refuse(f"size != {self._sum(self._offset)}", "SIZE")
         self._refuse(unfit, "SIZE")
-
-    # --- most significant bits ------------------------------------------------------------------
-
-    def _seven_bit(self, size: int) -> None:
-        """Have the top bits of so many bytes checked, at the latest before anything else is."""
-        if self._unchecked is None:
-            self._unchecked = self._offset
-        if not self._fixed:
-            self._flush(size)
-
-    def _begin(self, byte_bits: int) -> None:
-        """Begin a value of such bytes."""
-        if byte_bits == 8:
-            self._flush()
-
-    def _flush(self, size: int = 0) -> None:
-        start = self._unchecked
-        self._unchecked = None
-        end = self._offset + size
-        if start is None or start == end:
-            return
-        if end - start == 1:
-            self._refuse(f"payload[{self._sum(start)}] > 0x7FU", "ENCODING")
-            return
-        check = self.helpers.seven_bit()
-        self._refuse(f"!{check}({self._address(start)}, {end - start})", "ENCODING")
-
-    def _refuse(self, condition: str, reason: str) -> None:
-        if condition:
-            with self.lines.block(f"if ({condition})"):
-                self.lines.add(f"{self._error}{reason};")
 
     # --- numbers that count and select ----------------------------------------------------------
 
@@ -221,12 +137,46 @@ class Checker(Walk):
             number = loaded(self.helpers, type_, self._byte(), self._address())
             self._refuse(f"!{known}({number})", "VALUE")
 
+    # --- packed numbers ---------------------------------------------------------------------------
+
+    def packed(self, step: RecordStep | RepeatStep, place: str) -> None:
+        """Numbers that are packed; where none of them can be wrong, only what is left behind."""
+        if step.packing is not None and not step.checks - {Check.PADDING}:
+            self.run(step.packing, ())
+        else:
+            self.runs(step, place)
+
+    def run(self, packing: Packing, placed: Sequence[Placed]) -> None:
+        """Numbers that are packed."""
+        items = [item for item, _ in placed]
+        faults = list(faults_in(self.helpers, packing, items, self._byte))
+        self._flush()
+        if faults:
+            self._require(packing.size)
+        for fault in faults:
+            self._refuse(fault, "VALUE")
+        self._offset += packing.size
+
+    @contextmanager
+    def group(self, count: int, size: int) -> Iterator[str]:
+        """A loop over groups of packed numbers."""
+        self._require(count * size)
+        with self._places(size, count) as index:
+            self._secured = size
+            yield index
+        self._offset += count * size
+
     # --- constants --------------------------------------------------------------------------------
 
     def constant(self, step: ConstantStep) -> None:
         """Its bytes, after its elements have been looked at."""
         value, data = step.value, step.data
         match value:
+            case RepeatStep() if value.packing is not None:
+                self._flush()
+                self._require(len(data))
+                self._offset += len(data)
+                self._same(data)
             case RepeatStep():
                 self._constant_elements(value, data)
             case BytesStep() | NumberStep():
@@ -381,6 +331,19 @@ class Checker(Walk):
         """Check elements of one size."""
         self._flush()
         self._require(0)
+        with self._places(size, count) as index:
+            self.step(element, f"{place}[{index}]")
+            self._flush()
+            self._require(0)
+        if isinstance(count, int):
+            self._offset += count * size
+            self._secured = self._offset
+        else:
+            self._require_nothing(times(count, size))
+
+    @contextmanager
+    def _places(self, size: int, count: int | str) -> Iterator[str]:
+        """A loop over elements of one size, each of which has a place of its own."""
         before = self._at, self._offset
         with self.loop(count) as index:
             step = f"{size} * {index}" if size > 1 else index
@@ -388,15 +351,8 @@ class Checker(Walk):
             start = step if start == "0" else f"{start} + {step}"
             self._at, self._offset, self._secured = f"at_{index}", 0, 0
             self.lines.add(f"const size_t {self._at} = {start};")
-            self.step(element, f"{place}[{index}]")
-            self._flush()
-            self._require(0)
+            yield index
             self._at, self._offset = before
-        if isinstance(count, int):
-            self._offset += count * size
-            self._secured = self._offset
-        else:
-            self._require_nothing(times(count, size))
 
     def _require_nothing(self, distance: int | str) -> None:
         """Go on behind bytes that were looked at."""

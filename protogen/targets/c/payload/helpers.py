@@ -174,6 +174,13 @@ class Helpers:
             result, body = integer_type(type_), _joined(type_)
         return self._helper(f"load_{layout_name(type_)}", result, (_AT,), body)
 
+    def extended(self, type_: NumberType, raw: str) -> str:
+        """The signed number that has these bits."""
+        body = f"return {sign_extended(type_, 'raw')};"
+        arguments = (f"{unsigned_type(type_.bits)} raw",)
+        name = self._helper(f"extend_s{type_.bits}", integer_type(type_), arguments, body)
+        return f"{name}({raw})"
+
     def loads_runs(self, type_: NumberType) -> bool:
         """True if an array of such numbers is read by a function of its own."""
         if type_.signed or self._is_public:

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     BytesStep,
     ConstantStep,
     IntegerStep,
     NumberStep,
     PayloadPlan,
+    RecordStep,
     RepeatStep,
     RestStep,
 )
 from protogen.model.types import Float, NumberType
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole
+from protogen.targets.c.payload.packing import Placed, members_of, number_in
 from protogen.targets.c.payload.placed import PlacedWalk
 from protogen.targets.c.payload.storing import is_bytes
 from protogen.targets.c.payload.walk import amount, times
@@ -42,7 +47,10 @@ class Load(PlacedWalk):
     def pointed(self, plan: PayloadPlan, base: str) -> None:
         """Take a record that lies where there is an `at` already; what counts is in it."""
         self.settled()
-        self.record(plan.steps, base)
+        if plan.packing is None:
+            self.record(plan.steps, base)
+        else:
+            self.run(plan.packing, members_of(plan.steps, base))
 
     def constant(self, step: ConstantStep) -> None:
         """It was checked, and nothing keeps it."""
@@ -53,6 +61,17 @@ class Load(PlacedWalk):
         value = loaded(self.helpers, step.type, self.byte(), self.address())
         self.lines.add(f"{place} = {value};")
         self.skip(step.type.size)
+
+    def packed(self, step: RecordStep | RepeatStep, place: str) -> None:
+        """Numbers that are packed."""
+        self.runs(step, place)
+
+    def run(self, packing: Packing, placed: Sequence[Placed]) -> None:
+        """Numbers that are packed."""
+        for item, place in placed:
+            if item.constant is None:
+                self.lines.add(f"{place} = {number_in(self.helpers, packing, item, self.byte)};")
+        self.skip(packing.size)
 
     def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
         """A text, or bytes."""

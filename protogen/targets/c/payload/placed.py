@@ -27,10 +27,11 @@ class PlacedWalk(Walk):
         self._index = ""  # What an index adds, as `2 * i`.
         self._pending = ""  # What has to be added before anything else is done.
 
-    def byte(self) -> str:
-        """The byte that lies there."""
+    def byte(self, index: int = 0) -> str:
+        """The byte that lies there, or so many bytes behind."""
         self.catch_up()
-        return f"{self._name}[{self._sum('') or '0'}]"
+        terms = [str(self._offset + index or ""), self._index]
+        return f"{self._name}[{' + '.join(filter(None, terms)) or '0'}]"
 
     def address(self) -> str:
         """The address of what lies there."""
@@ -73,6 +74,21 @@ class PlacedWalk(Walk):
 
     # --- elements and cases -----------------------------------------------------------------------
 
+    @contextmanager
+    def group(self, count: int, size: int) -> Iterator[str]:
+        """A loop over groups of packed numbers, which have a pointer of their own."""
+        self.catch_up()
+        with self.loop(count) as index, self.branch():
+            self._index = f"{size} * {index}" if size > 1 else index
+            self._point(index)
+            yield index
+        self.skip(count * size)
+
+    def _point(self, index: str) -> None:
+        """Have a pointer of its own for what the index says."""
+        self.lines.add(f"{self._pointer}at_{index} = {self.address()};")
+        self._name, self._offset, self._index = f"at_{index}", 0, ""
+
     def elements(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Walk over elements one by one."""
         element, size = step.element, step.element.sizes.fixed
@@ -86,8 +102,7 @@ class PlacedWalk(Walk):
         with self.loop(count) as index, self.branch():
             self._index = f"{size} * {index}" if size > 1 else index
             if not isinstance(element, NumberStep):  # Several values have a pointer of their own.
-                self.lines.add(f"{self._pointer}at_{index} = {self.address()};")
-                self._name, self._offset, self._index = f"at_{index}", 0, ""
+                self._point(index)
             self.step(element, f"{place}[{index}]")
         self.skip(times(count, size))
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -9,12 +12,14 @@ from protogen.model.payload_plan import (
     FloatStep,
     IntegerStep,
     NumberStep,
+    RecordStep,
     RepeatStep,
     RestStep,
 )
 from protogen.model.types import NumberType
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers, is_plain, parted
+from protogen.targets.c.payload.packing import Placed, bytes_of
 from protogen.targets.c.payload.placed import PlacedWalk
 from protogen.targets.c.payload.walk import Walk, amount
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
@@ -69,6 +74,15 @@ class _Output(Walk):
             self._byte(_byte_of(type_, place))
         else:
             self._number(type_, _raw_of(type_, place))
+
+    def packed(self, step: RecordStep | RepeatStep, place: str) -> None:
+        """Numbers that are packed."""
+        self.runs(step, place)
+
+    def run(self, packing: Packing, placed: Sequence[Placed]) -> None:
+        """Numbers that are packed."""
+        for byte in bytes_of(packing, placed):
+            self._byte(byte)
 
     def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
         """A text, or bytes."""

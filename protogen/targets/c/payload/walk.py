@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
+from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -12,6 +13,7 @@ from protogen.model.payload_plan import (
     ConstantStep,
     Count,
     NumberStep,
+    PackedNumber,
     PayloadPlan,
     RecordStep,
     Reference,
@@ -20,6 +22,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.packing import Placed, groups_of, members_of
 from protogen.targets.c.spelling import constant, unsigned
 
 _INDICES = "ijklmnopqrstuvw"
@@ -43,6 +46,11 @@ def out_of_bounds(number: str, least: int, greatest: int, most: int) -> str:
     tests = [f"{number} < {unsigned(least)}"] if least > 0 else []
     tests += [f"{number} > {unsigned(greatest)}"] if greatest < most else []
     return " || ".join(tests)
+
+
+def _behind(start: str, item: PackedNumber) -> str:
+    """The index of an element behind the first one of its group."""
+    return f"{start} + {item.index}" if item.index else start
 
 
 class Walk:
@@ -71,6 +79,8 @@ class Walk:
     def step(self, step: AnyStep, place: str) -> None:
         """Walk over a step of any kind."""
         match step:
+            case RecordStep() | RepeatStep() if step.packing is not None:
+                self.packed(step, place)
             case NumberStep():
                 self.number(step, place)
             case ConstantStep():
@@ -83,10 +93,48 @@ class Walk:
                 self.record(step.steps, f"{place}.")
             case RepeatStep():
                 count = self.count(step.count)
-                if count != 0 and step.element.sizes.greatest:
+                if count != 0 and (step.element.sizes.greatest or step.element.holds_values):
                     self.repeat(step, place, count)
             case ChooseStep():
                 self.choose(step, place)
+
+    # --- packed numbers ---------------------------------------------------------------------------
+
+    def packed(self, step: RecordStep | RepeatStep, place: str) -> None:
+        """Walk over packed numbers, each for itself; what goes by their bytes goes over `runs`."""
+        if isinstance(step, RecordStep):
+            self.record(step.steps, f"{place}.")
+        else:
+            self.repeat(step, place, step.count.known or 0)
+
+    def runs(self, step: RecordStep | RepeatStep, place: str) -> None:
+        """Walk over packed numbers, as many at once as take whole bytes."""
+        if isinstance(step, RecordStep):
+            assert step.packing is not None
+            self.run(step.packing, members_of(step.steps, f"{place}."))
+            return
+        behind = 0
+        for group in groups_of(step):
+            if group.times == 1:
+                members = [(it, f"{place}[{behind + (it.index or 0)}]") for it in group.numbers]
+                self.run(group.packing, members)
+            else:
+                count = len(group.numbers)
+                with self.group(group.times, group.packing.size) as index:
+                    start = f"{count} * {index}" if count > 1 else index
+                    members = [(it, f"{place}[{_behind(start, it)}]") for it in group.numbers]
+                    self.run(group.packing, members)
+                behind += count * group.times
+
+    def run(self, packing: Packing, placed: Sequence[Placed]) -> None:
+        """Print numbers that are packed, with their members."""
+        raise NotImplementedError
+
+    @contextmanager
+    def group(self, count: int, size: int) -> Iterator[str]:
+        """A loop over so many groups of `size` bytes; yields the index."""
+        with self.loop(count) as index:
+            yield index
 
     # --- numbers that count and select ----------------------------------------------------------
 

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from protogen.model.frame import Frame, PayloadPart
 from protogen.model.messages import Message
+from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     AnyStep,
     CaseStep,
@@ -14,6 +15,7 @@ from protogen.model.payload_plan import (
     IntegerStep,
     RecordStep,
     RepeatStep,
+    packed_numbers,
     without_constant,
 )
 from protogen.model.sizes import SizeSet
@@ -21,12 +23,27 @@ from protogen.targets.emitted import EmittedNames
 from protogen.targets.markdown.fields.paths import ROOT, Path
 from protogen.targets.markdown.fields.types import type_text
 from protogen.targets.markdown.fields.values import Anchors, range_text, unit_text
-from protogen.targets.markdown.frames.layout import Place, Slot, behind, element, part_title, slots
+from protogen.targets.markdown.frames.layout import (
+    INDICES,
+    Place,
+    Slot,
+    behind,
+    element,
+    part_title,
+    slots,
+)
 from protogen.targets.markdown.frames.parts import part_type, role, value_in
 from protogen.targets.markdown.text.code_names import in_code
 from protogen.targets.markdown.text.origin import about_line
 from protogen.targets.markdown.text.table import Table, table
-from protogen.targets.markdown.text.words import bounds, code, plural, short_number, size_text
+from protogen.targets.markdown.text.words import (
+    bit_span,
+    bounds,
+    code,
+    plural,
+    short_number,
+    size_text,
+)
 
 _HEADER = ("Frame byte", "Payload byte", "Size", "Type", "Name", "Unit", "Range", "Meaning")
 _UNNAMED = "value"
@@ -73,6 +90,10 @@ class _PayloadRows:
     def _inside(self, step: AnyStep, place: Place, path: Path) -> Iterator[Row]:
         """Yield the rows of what a field is made of."""
         match without_constant(step):
+            case RecordStep(steps=steps, packing=Packing()):
+                yield from self._packed_fields(steps, path)
+            case RepeatStep(packing=Packing()) as run:
+                yield self._packed_elements(run, 0, path)
             case RecordStep(steps=steps):
                 yield from self.of_record(steps, place, path)
             case RepeatStep(element=inner):
@@ -83,6 +104,25 @@ class _PayloadRows:
                 yield from self._inside(inner, first, path)
             case ChooseStep() as choice:
                 yield from self._choice(choice, place, path)
+
+    def _packed_fields(self, steps: Sequence[AnyStep], path: Path) -> Iterator[Row]:
+        first = 0
+        for step in steps:
+            inner = path.field(step.name)
+            bits = sum(item.step.type.bits for item in packed_numbers([step]))
+            place = bit_span(first, bits)
+            yield ("", place, plural(bits, "bit"), *self._cells(step, inner, code(inner.shown)))
+            bare = without_constant(step)
+            if isinstance(bare, RepeatStep):
+                yield self._packed_elements(bare, first, inner)
+            first += bits
+
+    def _packed_elements(self, step: RepeatStep, first: int, path: Path) -> Row:
+        assert isinstance(step.element, IntegerStep)
+        bits, name = step.element.type.bits, code(path.element().shown)
+        place = f"{bit_span(first, bits)} + {'' if bits == 1 else bits}{INDICES[0]}"
+        cells = ("", place, plural(bits, "bit"), type_text(step.element), name)
+        return (*cells, *[""] * (len(_HEADER) - len(cells)))
 
     def _choice(self, step: ChooseStep, place: Place, path: Path) -> Iterator[Row]:
         for case in step.cases:
@@ -113,13 +153,15 @@ class _PayloadRows:
         return self._row(place, step.sizes, type_, name, "", values, meaning)
 
     def _field(self, step: AnyStep, place: Place, path: Path, name: str) -> Row:
+        return self._row(place, step.sizes, *self._cells(step, path, name))
+
+    def _cells(self, step: AnyStep, path: Path, name: str) -> Row:
+        """Return the cells from that of the type on."""
         field = step.field
         values = range_text(field, path, self._anchors)
         unknown = _UNKNOWN if field.unknown else ""
         meaning = about_line(field.about, unknown, in_code(self._names.field(field.name)))
-        return self._row(
-            place, step.sizes, type_text(step), name, unit_text(field), values, meaning
-        )
+        return (type_text(step), name, unit_text(field), values, meaning)
 
     def _row(self, place: Place, sizes: SizeSet, *cells: str) -> Row:
         """Return a row with these cells from that of the type on."""

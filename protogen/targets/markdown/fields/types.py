@@ -18,6 +18,10 @@ from protogen.model.types import NumberType, Text
 from protogen.targets.markdown.text.words import code, plural
 
 _ORDERS = {"little": "LE", "big": "BE"}
+_BIT_ORDERS = {
+    "lsb_first": "least significant bits first",
+    "msb_first": "most significant bits first",
+}
 
 
 def type_text(step: AnyStep) -> str:
@@ -29,13 +33,17 @@ def type_text(step: AnyStep) -> str:
             name = "ascii" if isinstance(step.type, Text) else "bytes"
             return _extended(code(name), step.count, "byte")
         case RepeatStep():
-            return _extended(type_text(step.element), step.count, "element")
+            return _extended(type_text(step.element), step.count, "element") + _packed(step)
         case ConstantStep():
             return type_text(step.value)
         case ChooseStep():
             return f"depends on {code(step.selector_name)}"
         case RecordStep():
-            return "struct"
+            return "struct" + _packed(step)
+
+
+def _packed(step: RecordStep | RepeatStep) -> str:
+    return "" if step.packing is None else f" (packed, {_BIT_ORDERS[step.packing.order]})"
 
 
 @lru_cache(maxsize=1024)

@@ -148,25 +148,26 @@ def _bytes_text(data: bytes) -> str:
 
 def _lines(rows: Sequence[Row], start: int = 0) -> Iterator[_Line]:
     """Yield the lines of rows whose paths are the same up to `start`."""
-    for array, group in groupby(rows, lambda row: _array(row.path, start)):
+    for array, group in groupby(rows, lambda row: _array(row, start)):
         if array:
             yield from _array_lines(array, [*group])
         else:
             yield from map(_line, group)
 
 
-def _array(path: str, start: int) -> str:
+def _array(row: Row, start: int) -> str:
     """The path of the outermost array behind `start`; empty if there is none."""
-    return path[: max(0, path.find("[", start))]
+    found = row.path[: max(0, row.path.find("[", start))]
+    return found or (row.path if row.run == "list" else "")
 
 
 def _array_lines(array: str, rows: Sequence[Row]) -> Iterator[_Line]:
+    own = [row for row in rows if row.run != "list"]
     elements = [
-        (path, [*group])
-        for path, group in groupby(rows, lambda row: _element(row.path, len(array)))
+        (path, [*group]) for path, group in groupby(own, lambda row: _element(row.path, len(array)))
     ]
     if all(row.path == path and _is_number(row) for path, group in elements for row in group):
-        yield _list_line(array, rows)
+        yield _list_line(array, rows, own)
     elif len(elements) > _MOST_ELEMENTS:
         yield _Line(rows, array, "", f"{len(elements)} elements.")
     else:
@@ -179,17 +180,18 @@ def _element(path: str, start: int) -> str:
     return path[: path.index("]", start) + 1]
 
 
-def _list_line(array: str, rows: Sequence[Row]) -> _Line:
-    values = ["?" if row.value is None else code(row.value) for row in rows[:_MOST_VALUES]]
-    more = ["..."] if len(rows) > _MOST_VALUES else []
+def _list_line(array: str, rows: Sequence[Row], elements: Sequence[Row]) -> _Line:
+    values = ["?" if row.value is None else code(row.value) for row in elements[:_MOST_VALUES]]
+    more = ["..."] if len(elements) > _MOST_VALUES else []
     return _Line(rows, array, ", ".join(values + more), _doc(rows[0]))
 
 
 def _element_lines(path: str, rows: Sequence[Row]) -> Iterator[_Line]:
     """Yield the lines of one element of an array; a struct of numbers takes one."""
-    names = [row.path.removeprefix(f"{path}.") for row in rows]
-    if all(map(_is_number, rows)) and all(map(str.isidentifier, names)):
-        pairs = zip(names, rows, strict=True)
+    own = [row for row in rows if not row.run]
+    names = [row.path.removeprefix(f"{path}.") for row in own]
+    if all(map(_is_number, own)) and all(map(str.isidentifier, names)):
+        pairs = zip(names, own, strict=True)
         yield _Line(rows, path, ", ".join(f"{name} {_member(row)}" for name, row in pairs))
     else:
         yield from _lines(rows, len(path))
@@ -254,6 +256,8 @@ def _meaning(row: Row, field: Field) -> str:
         return value_meaning(row.value, field, row.value_type)
     if isinstance(row.value, float):
         return markdown((row.meaning if field.scaled else field.unit) or field.about.doc)
+    if row.run:
+        return f"{row.meaning}, {markdown(row.type)}"
     if row.value_type is None and not row.fault:
         return "Raw bytes, as no case has this value."
     return markdown(field.about.doc)

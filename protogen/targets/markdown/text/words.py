@@ -102,6 +102,11 @@ def span(start: int, size: int) -> str:
     return str(start) if size <= 1 else f"{start}..{start + size - 1}"
 
 
+def bit_span(first: int, count: int) -> str:
+    """Print which bits these are: ``bit 7`` or ``bits 2..3``."""
+    return f"bit{'' if count == 1 else 's'} {span(first, count)}"
+
+
 def rate(per_second: Fraction) -> str:
     """Print a rate, rounded down: whole from ten on, else to a tenth."""
     return str(int(per_second)) if per_second >= 10 else number(Fraction(int(per_second * 10), 10))

@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
-from protogen.model.payload_plan import AnyStep, BytesStep, FloatStep, IntegerStep, without_constant
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    FloatStep,
+    IntegerStep,
+    RecordStep,
+    RepeatStep,
+    without_constant,
+)
 from protogen.model.types import Float, Octets
 from protogen.targets.python.engine.layout import code_of, is_native, is_pair
 from protogen.targets.python.engine.lines import Lines
+from protogen.targets.python.engine.packing import unpacked
 
 
 class Converter:
@@ -26,6 +35,8 @@ class Converter:
                 return f"{self.lines.constants.named('FLOAT', call)}({variable})"
             case BytesStep() as string:
                 return self.string(variable, string)
+            case RecordStep() | RepeatStep() as run:  # Which is packed.
+                return unpacked(self.lines, variable, run, self.named)
         return variable
 
     def _integer(self, variable: str, step: IntegerStep) -> str:

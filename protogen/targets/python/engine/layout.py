@@ -11,6 +11,7 @@ from protogen.model.payload_plan import (
     FloatStep,
     IntegerStep,
     NumberStep,
+    RecordStep,
     RepeatStep,
     without_constant,
 )
@@ -30,6 +31,8 @@ def code_of(step: AnyStep) -> str | None:
         return _number_code(value.type)
     if isinstance(value, BytesStep) and value.count.is_fixed:
         return f"{value.count.known}s"
+    if isinstance(value, RecordStep | RepeatStep) and value.packing is not None:
+        return f"{value.packing.size}s"
     return None
 
 

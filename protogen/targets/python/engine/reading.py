@@ -36,6 +36,7 @@ from protogen.targets.python.engine.layout import (
     outside,
 )
 from protogen.targets.python.engine.lines import Constants, Lines
+from protogen.targets.python.engine.packing import Record, unpack_record
 from protogen.targets.python.engine.place import Place
 from protogen.targets.python.formats import constant
 from protogen.targets.python.literals import tuple_of
@@ -75,7 +76,13 @@ def struct_reader(struct: Struct, constants: Constants) -> tuple[str, ...]:
     """
     reader = _Reader(Lines(constants), Place("at"))
     reader.raw = {name: f"{name}_" for name in outer_names(struct)}
-    reader.record("item", struct.name, plan_of(struct.fields).steps)
+    if struct.packed is None:
+        reader.record("item", struct.name, plan_of(struct.fields).steps)
+    else:
+        size = struct.sizes.greatest
+        reader.lines.add(f"data = data[at : at + {size}]")
+        reader.lines.refuse_if(f"len(data) != {size}")
+        unpack_record(reader.lines, "data", "item", Record.of_struct(struct), reader.named)
     behind = "" if struct.sizes.fixed is not None else f", {reader.place.text}"
     reader.lines.add(f"return item{behind}")
     return reader.lines.text
@@ -217,6 +224,8 @@ class _Reader(Converter):
         match step:
             case ConstantStep():
                 return self._value(step.value)
+            case RecordStep() | RepeatStep() if step.packing is not None:
+                pass
             case RecordStep():
                 return self._struct(step.type)
             case RepeatStep():

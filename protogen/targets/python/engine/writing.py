@@ -35,6 +35,7 @@ from protogen.targets.python.engine.layout import (
     outside,
 )
 from protogen.targets.python.engine.lines import Constants, Lines
+from protogen.targets.python.engine.packing import Record, packed, packed_record
 from protogen.targets.python.formats import constant
 from protogen.targets.python.literals import number, tuple_of
 
@@ -83,6 +84,10 @@ def struct_writer(struct: Struct, constants: Constants) -> tuple[str, ...]:
     """The body of `_write_NAME(item, OUTER...)`; OUTER are raw values of fields in front."""
     writer = _Writer(Lines(constants))
     writer.raw = {name: f"{name}_" for name in outer_names(struct)}
+    if struct.packed is not None:
+        data = packed_record(writer.lines, "item", Record.of_struct(struct))
+        writer.lines.add(f"return {data}")
+        return writer.lines.text
     writer.lines.refuse_if(f"type(item) is not {constants.classes[struct.name]}")
     writer.lines.add(f"return {writer.record('item', plan_of(struct.fields).steps)}")
     return writer.lines.text
@@ -238,6 +243,8 @@ class _Writer:
                     self._text(value, step)
                 else:
                     self._octets(value, step)
+            case RecordStep() | RepeatStep() if step.packing is not None:
+                self._put(step, packed(self.lines, value, step))
             case RecordStep():
                 self.lines.refuse_if(f"type({value}) is not {self.lines.classes[step.type.name]}")
                 self._fields(value, step.steps)
