@@ -344,7 +344,7 @@ def of_packed() -> Iterator[Pair]:
     yield Pair("packed", "count", put("count", 6), "WIRE", "what follows moves")
     yield Pair("run", "more", add, "WIRE", "old receivers refuse a bit behind the last number")
     yield Pair("run", "turned", turn, "WIRE", "numbers change places")
-    yield Pair("run", "rename", rename, "PASS", "the same bits")
+    yield Pair("run", "rename a member", rename, "PASS", "the same bits")
     yield Pair("run", "as number", number, "PASS", "the same bit, shown otherwise")
 
 
