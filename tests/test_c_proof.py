@@ -22,9 +22,11 @@ WIDE, NARROW = MACHINES
 ALL = bool(os.environ.get("PROTOGEN_PROVE_ALL"))
 SLOW = ("dagny_library", "rflex_drivers")
 """Cases that take minutes: long arrays that fill payloads; some documents have them too."""
+CONSTRUCTS = [ROOT / "tests" / "framings" / f"{name}.yaml" for name in ("packed_bits",)]
+"""Schemas of what no document has, and C has to parse."""
 DECODES = [
     (path, machine)
-    for path in (*DOCUMENTS, *DIALECTS)
+    for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS)
     for machine in MACHINES[: 1 + ALL]
     if ALL or path.stem not in SLOW
 ]
@@ -32,7 +34,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
     [(path, events, machine) for path in SCHEMAS for events in EVENTS for machine in MACHINES]
     if ALL
     else [
-        *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS)),
+        *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS)),
         *((path, events, NARROW) for path in DOCUMENTS for events in EVENTS),
     ]
 )

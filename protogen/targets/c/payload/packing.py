@@ -131,9 +131,9 @@ def _byte(terms: list[str], known: int) -> str:
     """A byte of terms, and of bits that are always the same."""
     if not terms:
         return hexadecimal(known)
-    constants = [hexadecimal(known)] if known else []
+    # Bytes are signed ints where they meet, so this is one, too.
+    constants = [f"0x{known:02X}"] if known else []
     if len(terms) + len(constants) > 1:
-        # What is shifted is a signed int, and would meet unsigned ones.
         terms = [f"(uint8_t){_in_brackets(term)}" for term in terms]
     return f"(uint8_t)({' | '.join(terms + constants)})"
 
