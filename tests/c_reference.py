@@ -112,6 +112,8 @@ class _Reader:
 
     def _number(self, type_: Integer | Float, *, constant: bool) -> int | float:
         data = self._take(type_.size)
+        if isinstance(type_, Integer) and type_.text is not None:
+            return _written(type_, type_.text.alphabet, data, constant=constant)
         signed = isinstance(type_, Integer) and type_.signed
         if isinstance(type_, Integer) and type_.role == "bool" and data[0] > 1:
             raise Wrong("value")
@@ -198,6 +200,22 @@ class _Run:
     def numbers(self, type_: Array, *, constant: bool) -> list[int]:
         count = type_.extent.counts.least
         return [self.value(type_.element, constant=constant) for _ in range(count)]
+
+
+def _written(type_: Integer, alphabet: bytes, data: bytes, *, constant: bool) -> int:
+    """An integer as digits, the highest one first."""
+    if not set(data) <= set(alphabet):
+        raise Wrong("value")
+    raw = sum(
+        alphabet.index(digit) * len(alphabet) ** place for place, digit in enumerate(reversed(data))
+    )
+    if raw >= 2**type_.bits:
+        raise Wrong("value")
+    value = raw - 2**type_.bits if type_.signed and raw >= 2 ** (type_.bits - 1) else raw
+    is_closed = type_.enum is not None and type_.enum.closed and not constant
+    if is_closed and value not in _names(type_):
+        raise Wrong("value")
+    return value
 
 
 def _bounded(extent: Counted, count: int) -> None:

@@ -84,6 +84,7 @@ KINDS: dict[str, Data] = {
     "counted": {"n": {"type": "uint8", "range": [0, 4]}, "x": {"type": "uint8", "count": "n"}},
     "packed": {"x": {"type": "uint11", "count": 5, "packed": "lsb_first"}},
     "run": {"x": {"packed": "msb_first", "fields": {"a": "uint3", "b": "sint9", "c": "bool"}}},
+    "digits": {"x": {"type": "uint16", "digits": "base16-upper"}},
     "union": {
         "n": {"type": "uint8", "values": {"small": 0, "large": 1}, "closed": True},
         "x": {"switch": "n", "cases": {"small": "uint8", "large": "uint16"}},
@@ -321,7 +322,7 @@ def of_frames() -> Iterator[Pair]:
             yield Pair(kind, f"frame {name}", edit, verdict, reason)
 
 
-def of_packed() -> Iterator[Pair]:
+def of_bits_and_digits() -> Iterator[Pair]:
     def add(data: Data) -> None:
         fields(data)["x"]["fields"]["d"] = "bool"
 
@@ -334,6 +335,12 @@ def of_packed() -> Iterator[Pair]:
     def number(data: Data) -> None:
         fields(data)["x"]["fields"]["c"] = "uint1"
 
+    yield Pair("digits", "case", put("digits", "base16-lower"), "WIRE", "letters are others")
+    yield Pair("digits", "chars", put("chars", 5), "WIRE", "what follows moves")
+    yield Pair("digits", "base", put("digits", "base10"), "WIRE", "what follows moves")
+    undone: Edit = lambda d: fields(d)["x"].pop("digits")  # noqa: E731
+    yield Pair("digits", "no text", undone, "WIRE", "two bytes instead of four digits")
+    yield Pair("digits", "width", put("type", "uint12"), "WIRE", "what follows moves")
     yield Pair("packed", "order", put("packed", "msb_first"), "WIRE", "bits are read backwards")
     yield Pair("run", "order", put("packed", "lsb_first"), "WIRE", "bits are read backwards")
     for kind in ("packed", "run"):
@@ -351,7 +358,7 @@ def of_packed() -> Iterator[Pair]:
 PAIRS = [
     *(pair for kind in KINDS for pair in of_every_kind(kind)),
     *of_types(),
-    *of_packed(),
+    *of_bits_and_digits(),
     *of_names(),
     *of_quantities(),
     *of_frames(),

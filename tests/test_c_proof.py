@@ -22,7 +22,9 @@ WIDE, NARROW = MACHINES
 ALL = bool(os.environ.get("PROTOGEN_PROVE_ALL"))
 SLOW = ("dagny_library", "rflex_drivers")
 """Cases that take minutes: long arrays that fill payloads; some documents have them too."""
-CONSTRUCTS = [ROOT / "tests" / "framings" / f"{name}.yaml" for name in ("packed_bits",)]
+CONSTRUCTS = [
+    ROOT / "tests" / "framings" / f"{name}.yaml" for name in ("packed_bits", "digits_line")
+]
 """Schemas of what no document has, and C has to parse."""
 DECODES = [
     (path, machine)

@@ -109,6 +109,8 @@ def _unskippable(
 
 def _obstacle(message: Message, old: FramePlan, new: FramePlan) -> str:
     """Reason why OLD can't pass over frames of a message; empty if it can."""
+    if old.start_is_unique > new.start_is_unique or old.cut_ambiguous < new.cut_ambiguous:
+        return "old receivers take bytes that its payload can hold for a delimiter"
     if old.end_bytes or old.start_is_unique or not old.identity:
         return ""  # It goes on at the next delimiter, or has no other messages.
     if old.end_rule is EndRule.IDENTITY:

@@ -72,11 +72,14 @@ class TypeComparison:
         # A packed bool is a bit like any other; elsewhere it is a byte that is 0 or 1.
         is_bool = [kind.role == "bool" and not kind.packed for kind in (old, new)]
         is_wider = old.size != new.size or not any(is_bool)
+        is_alike = (old.packed, old.text) == (new.packed, new.text)
         tests = {
             "field-width": old.bits != new.bits and is_wider,
             "field-sign": old.signed != new.signed,
-            "field-byte-order": old.byte_order != new.byte_order and old.packed == new.packed,
-            "field-encoding": old.byte_bits != new.byte_bits or is_bool[0] != is_bool[1],
+            "field-byte-order": old.byte_order != new.byte_order and is_alike,
+            "field-encoding": old.byte_bits != new.byte_bits
+            or is_bool[0] != is_bool[1]
+            or old.text != new.text,
         }
         found = [rule for rule, differs in tests.items() if differs]
         if old.size != new.size or old.size == 1:

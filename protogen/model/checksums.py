@@ -69,6 +69,13 @@ class ChecksumSpec(msgspec.Struct, frozen=True):
         return (1 << self.width) - 1
 
     @property
+    def bounds(self) -> tuple[int, int]:
+        """The least and the greatest checksum, as far as mask and addition say."""
+        if self.mask is None or self.mask + self.add > self.greatest:
+            return 0, self.greatest
+        return self.add, self.mask + self.add
+
+    @property
     def modulus(self) -> int:
         """Modulus of Fletcher's two sums."""
         # No field: it would be in the spec hash of every schema, and the name says it already.

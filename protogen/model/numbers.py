@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 import sys
+from collections.abc import Mapping
 from fractions import Fraction
 from functools import cached_property
 from typing import ClassVar, Literal
@@ -13,6 +14,7 @@ import msgspec
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.sizes import SizeSet
 from protogen.runtime.payload.number import Number
+from protogen.runtime.payload.numerals import Numeral as WrittenNumeral
 
 ByteOrder = Literal["little", "big"]
 IntegerRole = Literal["number", "byte", "char", "bool"]
@@ -67,6 +69,35 @@ class _Number(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=T
         return SizeSet.exactly(self.size)
 
 
+class Numeral(msgspec.Struct, frozen=True, kw_only=True, cache_hash=True):
+    """Text form of an integer: digits, as many each time, the most significant one first."""
+
+    alphabet: bytes
+    """Characters of the digits, in the order of their values."""
+    size: int
+    """Wire bytes."""
+
+    @property
+    def base(self) -> int:
+        """How many digits there are."""
+        return len(self.alphabet)
+
+    @property
+    def greatest(self) -> int:
+        """The greatest number that has so many digits."""
+        return int(self.base**self.size) - 1
+
+    @property
+    def known(self) -> str:
+        """The name of the digits, such as `base10`; empty for characters in a row."""
+        return next((name for name, own in ALPHABETS.items() if own == self.alphabet), "")
+
+    @property
+    def name(self) -> str:
+        """What the digits are: `base10`, `base16-upper`, or `base64 from 0x30`."""
+        return self.known or f"base{self.base} from 0x{self.alphabet[0]:02X}"
+
+
 class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     """An integer. Bits above its own are zero; signed ones are two's complement in these bits."""
 
@@ -77,10 +108,14 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     bit_fields: tuple[BitField, ...] = ()
     packed: bool = False
     """True if it has no bytes of its own: its bits lie among those of its neighbours."""
+    text: Numeral | None = None
+    """How it is written as text, if it is."""
 
     @cached_property
     def size(self) -> int:
         """Wire bytes; none where it is packed."""
+        if self.text is not None:
+            return self.text.size
         return 0 if self.packed else -(-self.bits // self.byte_bits)
 
     @cached_property
@@ -92,6 +127,8 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     @property
     def label(self) -> str:
         """The type in the words of the schema language, such as `uint16 big`."""
+        if self.text is not None:
+            return f"{self.name} as {self.text.size} digits {self.text.name}"
         return self.name if self.size <= 1 else f"{self.name} {self.byte_order}"
 
     @property
@@ -134,11 +171,17 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
 
     @cached_property
     def greatest(self) -> int:
-        """The greatest raw value that the bits can hold."""
-        return (1 << (self.bits - 1 if self.signed else self.bits)) - 1
+        """The greatest raw value that the bits can hold, and the digits of an unsigned one."""
+        greatest = (1 << (self.bits - 1 if self.signed else self.bits)) - 1
+        return greatest if self.text is None or self.signed else min(greatest, self.text.greatest)
+
+    @property
+    def is_bound_by_text(self) -> bool:
+        """True if its digits hold less than its bits."""
+        return not self.signed and self.greatest < (1 << self.bits) - 1
 
     def holds(self, value: int) -> bool:
-        """True if the bits can hold `value`."""
+        """True if the wire can hold `value`."""
         return self.least <= value <= self.greatest
 
 
@@ -176,10 +219,19 @@ class Float(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
         return f"{self.name} {self.byte_order}"
 
 
+ALPHABETS: Mapping[str, bytes] = {
+    "base10": b"0123456789",
+    "base16-upper": b"0123456789ABCDEF",
+    "base16-lower": b"0123456789abcdef",
+}
+"""Digits by their names."""
+
 NumberType = Integer | Float
 """A type of numbers."""
 
 
-def codec(type_: NumberType) -> Number:
+def codec(type_: NumberType) -> Number | WrittenNumeral:
     """Codec of a number's raw value; of a float it is that of its bits."""
+    if isinstance(type_, Integer) and type_.text is not None:
+        return WrittenNumeral(type_.bits, type_.text.alphabet, type_.text.size, type_.signed)
     return Number(type_.bits, type_.signed, type_.byte_order, seven_bit=type_.byte_bits == 7)

@@ -42,6 +42,7 @@ from protogen.model.types import (
     Text,
     Type,
     count_name,
+    is_text,
     packing_of,
     total,
 )
@@ -270,7 +271,9 @@ def _checks(steps: Iterable[Step]) -> frozenset[Check]:
 
 def _number_checks(type_: Integer | Float) -> frozenset[Check]:
     found = [Check.SEVEN_BIT] if type_.byte_bits == 7 else []
-    if type_.bits < type_.byte_bits * type_.size:
+    if is_text(type_):
+        found.append(Check.DIGITS)
+    elif type_.bits < type_.byte_bits * type_.size:
         found.append(Check.PADDING)
     if type_.role == "bool" and type_.size:
         found.append(Check.BOOLEAN)

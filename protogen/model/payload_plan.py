@@ -43,6 +43,8 @@ class Check(Enum):
     """A byte has its most significant bit set."""
     PADDING = auto()
     """A bit above those of the number is set."""
+    DIGITS = auto()
+    """A character is no digit, or the digits stand for a number that is too great."""
     BOOLEAN = auto()
     """The number is neither 0 nor 1."""
     CLOSED = auto()

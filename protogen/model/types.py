@@ -56,6 +56,7 @@ __all__ = [
     "count_name",
     "counting_bits",
     "is_integer",
+    "is_text",
     "packing_of",
     "storage_bits",
     "total",
@@ -322,6 +323,11 @@ def bits_of(type_: Type) -> int:
         case Struct():
             return sum(bits_of(field.type) for field in type_.fields)
     return 8 * type_.sizes.greatest
+
+
+def is_text(type_: Type) -> bool:
+    """True if the values are integers that are written as text."""
+    return isinstance(type_, Integer) and type_.text is not None
 
 
 class Field(msgspec.Struct, frozen=True, kw_only=True):

@@ -24,7 +24,7 @@ _CERTAIN = frozenset(
 """Problems of a single word or number: they are no consequence of what is missing around it."""
 
 _OF_ONE_FIELD = frozenset(
-    {"PG110", "PG112", "PG113", "PG114", "PG115", "PG220", "PG221", "PG222", "PG223"}
+    {"PG110", "PG112", "PG113", "PG114", "PG115"} | {f"PG{number}" for number in range(220, 226)}
 )
 """Problems of one field and its declared type: what is missing in other fields has no part in."""
 _OF_REFERENCES = frozenset({"PG116", "PG117", "PG121"})

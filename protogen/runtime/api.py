@@ -29,6 +29,7 @@ from protogen.runtime.lazy import importer, lazily
 from protogen.runtime.payload.enums import Flags, OpenEnum
 from protogen.runtime.payload.message import Message, Record, Sizes
 from protogen.runtime.payload.number import Number
+from protogen.runtime.payload.numerals import Numeral
 from protogen.runtime.payload.physical import (
     BitRange,
     EnumRange,
@@ -74,6 +75,7 @@ __all__ = [
     "MessageEvent",
     "MessageT_co",
     "Number",
+    "Numeral",
     "OctetsRule",
     "OpenEnum",
     "PartsT_co",

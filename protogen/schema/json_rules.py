@@ -20,6 +20,7 @@ _BUILT_IN_PATTERN = f"^({INTEGER_PATTERN}|byte|char|bool|float32|float64|ascii|b
 _FORMS = ("fields", "switch")
 _NUMERIC = ("scale", "offset", "unit", "special", "range")
 _NAMED = ("values", "flags", "bits")
+_WRITTEN = ("digits", "code", "chars")
 _PART_ROLES = ("literal", "id", "counts", "counter", "algorithm")
 
 
@@ -88,7 +89,7 @@ _FIELD_RULES = (
     _where(
         _any_of(_FORMS),
         "These are for numbers.",
-        _none_of((*_NUMERIC, *_NAMED, "size", "const", "default", "closed")),
+        _none_of((*_NUMERIC, *_NAMED, *_WRITTEN, "size", "const", "default", "closed")),
     ),
     _where(
         _type_like("ascii|bytes"),
@@ -101,6 +102,15 @@ _FIELD_RULES = (
         "These are for integers.",
         _none_of((*_NAMED, "closed", "packed")),
     ),
+    _where(
+        _type_like("byte|char|bool|float32|float64|ascii|bytes"),
+        "Only integers have digits.",
+        _none_of(_WRITTEN),
+    ),
+    {
+        "$comment": "An integer is written as digits, or as characters of a code.",
+        "not": _with("digits", "code"),
+    },
     _where(_with("switch"), "A switch has nothing to pack.", _none_of(("packed",))),
     _where(
         {**_type_like(f"{INTEGER_PATTERN}|byte|char|bool"), "required": ["type", "packed"]},

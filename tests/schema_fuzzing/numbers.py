@@ -7,6 +7,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from protogen.copying import replace
 from schema_fuzzing import forms
 from schema_fuzzing.names import SPECIAL, VALUES, several
 from schema_fuzzing.setting import Built, Setting, Size
@@ -26,6 +27,8 @@ class Kind:
     signed: bool
     size: int
     role: str = "number"
+    most: int | None = None
+    """The greatest number that its digits hold, where that is less than its bits do."""
 
     @property
     def least(self) -> int:
@@ -33,7 +36,8 @@ class Kind:
 
     @property
     def greatest(self) -> int:
-        return (1 << (self.bits - 1 if self.signed else self.bits)) - 1
+        held = (1 << (self.bits - 1 if self.signed else self.bits)) - 1
+        return held if self.most is None else min(held, self.most)
 
     def value(self) -> st.SearchStrategy[int]:
         """Raw values, the ends more often than others."""
@@ -82,7 +86,10 @@ def integer(draw: st.DrawFn, setting: Setting) -> Built:
     """An integer of any width, with whatever may be said about it."""
     kind = draw(kinds(setting))
     data: dict[str, Any] = {"type": kind.type}
-    data.update(_order(draw, setting, kind.size))
+    if setting.byte_bits == 8 and kind.role == "number" and draw(forms.one_in(6)):
+        kind = _written(draw, setting, kind, data)
+    if "digits" not in data and "code" not in data:
+        data.update(_order(draw, setting, kind.size))
     dress = draw(st.sampled_from(["none", "none", "values", "flags", "bits"]))
     if dress == "values":
         data.update(draw(_enum(kind)))
@@ -106,6 +113,30 @@ def counter(draw: st.DrawFn, setting: Setting, greatest: int) -> Built:
     data: dict[str, Any] = {"type": kind.type, **_order(draw, setting, kind.size)}
     data["range"] = [low, high]
     return Built(data, Size(kind.size, kind.size), Size(low, high))
+
+
+def _written(draw: st.DrawFn, setting: Setting, kind: Kind, data: dict[str, Any]) -> Kind:
+    """The integer written as text, where its digits fit the budget."""
+    form = draw(st.sampled_from(["base10", "base16-upper", "base16-lower", "code"]))
+    base = 10 if form == "base10" else 16
+    if form == "code":
+        bits, add = draw(st.integers(1, 7)), draw(st.integers(0, 0x80))
+        data["code"] = {"bits": bits, "add": add}
+        base = 1 << bits
+    needed = next(count for count in range(1, 65) if base**count > (1 << kind.bits) - 1)
+    fewest = needed if kind.signed else 1
+    widest = max(count for count in range(1, 65) if base**count <= 1 << 64)
+    greatest = min(setting.budget, needed + 1, widest)
+    if fewest > greatest or (kind.signed and form == "base10"):
+        data.pop("code", None)
+        return kind
+    size = draw(st.integers(fewest, greatest))
+    if form != "code":
+        data["digits"] = form
+    if size != needed or draw(st.booleans()):
+        data["chars"] = size
+    most = None if kind.signed else base**size - 1
+    return replace(kind, size=size, most=most)
 
 
 def _order(draw: st.DrawFn, setting: Setting, size: int) -> dict[str, str]:

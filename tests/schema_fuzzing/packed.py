@@ -33,7 +33,8 @@ def _numbers(draw: st.DrawFn, setting: Setting, bits: int) -> Number:
         data: dict[str, Any] = {"type": kind}
     else:
         data = draw(integer(replace(setting, budget=min(8, bits // 8), ordered=True))).data
-        data = {key: value for key, value in data.items() if key != "byte_order"}
+        unfit = ("byte_order", "digits", "code", "chars")
+        data = {key: value for key, value in data.items() if key not in unfit}
     kind = data["type"]
     return data, _BITS.get(kind) or int(kind[4:])
 

@@ -10,7 +10,7 @@ import struct
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from bit_runs import bits_of_number, bytes_of
+from bit_runs import bits_of_number, bytes_of, number_of
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
@@ -95,8 +95,27 @@ def _switch_bytes(type_: Switch, value: Any, scope: Scope) -> bytes:
 
 
 def number_bytes(type_: Integer, value: int) -> bytes:
-    """A number in groups of 7 or 8 bits."""
+    """A number in groups of 7 or 8 bits, or as digits."""
+    if type_.text is not None:
+        return _digits(value % (1 << type_.bits), type_.text.size, type_.text.alphabet)
     return _grouped(value % (1 << type_.bits), type_.size, type_.byte_bits, type_.byte_order)
+
+
+def _digits(raw: int, size: int, alphabet: bytes) -> bytes:
+    if alphabet == b"0123456789":
+        return f"{raw:0{size}d}".encode()
+    if alphabet in (b"0123456789ABCDEF", b"0123456789abcdef"):
+        form = "X" if b"A" in alphabet else "x"
+        return f"{raw:0{size}{form}}".encode()
+    bits = len(alphabet).bit_length() - 1
+    return bytes(
+        number_of(group, "msb_first") + alphabet[0]
+        for group in batched(bits_of_number(raw, size * bits, "msb_first"), bits)
+    )
+
+
+def batched(items: Sequence[int], size: int) -> Iterable[Sequence[int]]:
+    return (items[start : start + size] for start in range(0, len(items), size))
 
 
 def _float_bytes(type_: Float, value: float | str) -> bytes:

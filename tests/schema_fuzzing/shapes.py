@@ -9,7 +9,8 @@ from schema_fuzzing.frames import FramePlan
 
 _FIELD_KEYS = (
     "values", "closed", "flags", "bits", "const", "default", "range", "scale", "offset", "unit",
-    "special", "byte_order", "unknown", "switch", "packed",
+    "special", "byte_order", "unknown", "switch", "packed", "digits",
+    "code", "chars",
 )  # fmt: skip
 
 _CODES = (

@@ -33,6 +33,7 @@ from protogen.model.reading.wire import Unit
 from protogen.model.types import Field, Fixed, Float, Scalar, Text, codec
 from protogen.runtime.errors import ByteError
 from protogen.runtime.payload.bits import BitReader
+from protogen.runtime.payload.number import Number
 
 Scope = ChainMap[str, int]
 """The integers read so far, which count and select what follows."""
@@ -234,7 +235,7 @@ def _bits(item: PackedNumber, run: BitReader, base: str, offset: int) -> Row:
     index = "" if item.index is None else f"[{item.index}]"
     raw = run.take(type_.bits)
     step = replace(item.step, field=_element(item.step.field, item.index or 0))
-    value = codec(type_).value_of(raw)
+    value = Number(type_.bits, type_.signed).value_of(raw)
     row = Row(
         offset=offset + item.first // 8,
         wire=b"",

@@ -21,7 +21,6 @@ from protogen.model.framing import (
     StartSet,
 )
 from protogen.model.messages import Message
-from protogen.model.nesting import holds_whole_bytes
 from protogen.model.protocol import Link
 from protogen.model.sizes import SizeSet
 from protogen.passes.context import Context
@@ -30,12 +29,11 @@ from protogen.passes.framing import framing_words
 from protogen.passes.framing.capacity import GREATEST_FRAME, amount, payload_range
 from protogen.passes.framing.delimiters import delimiters_of, judge_delimiters
 from protogen.passes.proofs import wire_sizes
+from protogen.passes.proofs.alphabets import payload_alphabet
 from protogen.passes.proofs.codewords import occurs
 from protogen.passes.proofs.undetected import undetected_errors
 from protogen.passes.proofs.wire_code import (
-    EVERY_BYTE,
     SEVEN_BITS,
-    ByteSet,
     part_bytes,
     segments,
     wire_bytes,
@@ -242,7 +240,7 @@ class _Analysis:
             least=min((item.least for item in per_message), default=0),
             greatest=greatest,
             overhead=wire.overhead,
-            seven_bit=self._payload == SEVEN_BITS,
+            seven_bit=self._context.syntax.byte_bits == 7 and self._payload == SEVEN_BITS,
             cut_ambiguous=end is not None and not end.protected,
             self_synchronising=synchronising,
             why_synchronising=why,
@@ -288,11 +286,3 @@ def _rate(context: Context, size: int) -> Fraction | None:
     link = context.syntax.link
     bits = Link(data_bits=link.data_bits, parity=link.parity, stop_bits=link.stop_bits)
     return Fraction(link.baud, bits.bits_per_byte * size) if link.baud else None
-
-
-def payload_alphabet(byte_bits: int, messages: list[Message]) -> ByteSet:
-    """The bytes that a payload can hold."""
-    if byte_bits == 8:
-        return EVERY_BYTE
-    whole = any(holds_whole_bytes(field.type) for m in messages for field in m.fields)
-    return EVERY_BYTE if whole else SEVEN_BITS

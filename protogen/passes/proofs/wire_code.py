@@ -58,7 +58,8 @@ def part_bytes(part: Part, payload: ByteSet) -> tuple[ByteSet, ...]:
         case NumberPart():
             return _number_bytes(part, part.least, part.greatest)
         case ChecksumPart():
-            return _number_bytes(part, part.type.least, part.type.greatest)
+            least, greatest = part.algorithm.bounds
+            return _number_bytes(part, least, min(greatest, part.type.greatest))
     return (payload,)
 
 

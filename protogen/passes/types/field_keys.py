@@ -46,7 +46,7 @@ def check_keys(context: Context, name: str, item: Effective) -> None:
 def _only_for_integers(context: Context, item: Effective) -> None:
     syntax = item.syntax
     kind = "a switch" if syntax.switch else "a struct" if syntax.fields is not None else syntax.type
-    for key in VALUE_NAMES:
+    for key in (*VALUE_NAMES, "digits", "code", "chars"):
         if getattr(syntax, key) is not None:
             text = f"{key} are for integers, not for {kind}"
             context.error_at_key("PG110", item.at(key), text)

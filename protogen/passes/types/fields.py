@@ -41,6 +41,7 @@ from protogen.passes.types.packing import (
     packed_fields,
 )
 from protogen.passes.types.setting import Setting
+from protogen.passes.types.text_numbers import says_text, with_text
 from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
 from protogen.passes.types.value_names import with_names
 from protogen.problems import hint_for
@@ -127,7 +128,8 @@ class FieldBuilder:
         if found is None:
             self._context.tally.errors += 1  # Reported where names are checked.
             return UNKNOWN_TYPE
-        if found.size > 1 and layout.byte_order is None:
+        found = with_text(self._context, found, item)
+        if found.size > 1 and layout.byte_order is None and not says_text(item):
             self._no_byte_order(item.at("type"))
         return self._registered(with_names(self._context, found, item), item)
 

@@ -10,11 +10,13 @@ from protogen.problems.catalogue.framing import FRAMING_CODES
 from protogen.problems.catalogue.keys_and_names import KEY_AND_NAME_CODES
 from protogen.problems.catalogue.messages import MESSAGE_CODES
 from protogen.problems.catalogue.packing import PACKING_CODES
+from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
 
 SCHEMA_CODES: tuple[Code, ...] = (
     *KEY_AND_NAME_CODES,
     *FIELD_CODES,
     *PACKING_CODES,
+    *TEXT_NUMBER_CODES,
     *FRAME_CODES,
     *FRAMING_CODES,
     *FORM_CODES,

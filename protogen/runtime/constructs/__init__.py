@@ -24,6 +24,7 @@ from construct import (  # type: ignore[import-untyped,unused-ignore]
 from protogen.runtime.constructs.bits import Bit, Bits, Packed
 from protogen.runtime.constructs.numbers import (
     Closed,
+    Digits,
     Fixed,
     Flag01,
     Float,
@@ -44,6 +45,7 @@ __all__ = [
     "Container",
     "Count",
     "Counted",
+    "Digits",
     "Fill",
     "Fixed",
     "Flag01",

@@ -11,6 +11,7 @@ from construct import Construct  # type: ignore[import-untyped,unused-ignore]
 from protogen.runtime.constructs.pieces import Around, PayloadError, Piece, read
 from protogen.runtime.errors import ByteError
 from protogen.runtime.payload.number import ByteOrder, Number
+from protogen.runtime.payload.numerals import Numeral
 
 
 class _Codec(Protocol):
@@ -60,6 +61,15 @@ def Int(bits: int, signed: bool = False, order: ByteOrder = "little") -> Piece: 
 def SevenBit(bits: int, signed: bool = False, order: ByteOrder = "little") -> Piece:  # noqa: N802
     """An integer of 1 to 64 bits, 7 bits a byte; the top bit of each byte and padding are zero."""
     return _Scalar(Number(bits, signed, order, seven_bit=True))
+
+
+def Digits(bits: int, alphabet: bytes, size: int, signed: bool = False) -> Piece:  # noqa: N802
+    """An integer of 1 to 64 bits as text: `size` digits out of `alphabet`, the highest one first.
+
+    >>> Digits(16, b"0123456789ABCDEF", 4).build(0xC0DE)
+    b'C0DE'
+    """
+    return _Scalar(Numeral(bits, alphabet, size, signed))
 
 
 class _FloatCodec:

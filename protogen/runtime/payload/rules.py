@@ -90,7 +90,8 @@ class IntegerRule(Rule):
 
     `named` is the enum or flags class of its values. `least` and `greatest` are the range that the
     schema gives; a `special` value may be outside of it. The physical value is
-    raw x scale + offset, in `unit`.
+    raw x scale + offset, in `unit`. `holds` are the least and the greatest value that the wire can
+    hold, where that is less than the bits can.
     """
 
     def __init__(  # noqa: PLR0913 - an argument for each field
@@ -106,9 +107,11 @@ class IntegerRule(Rule):
         scale: Fraction = Fraction(1),
         offset: Fraction = Fraction(0),
         unit: str | None = None,
+        holds: tuple[int, int] | None = None,
     ) -> None:
         self.bits = bits
         self.signed = signed
+        self.holds = holds
         self.named = named
         self.closed = closed
         self.least = least
@@ -204,7 +207,9 @@ class IntegerRule(Rule):
         return f"{value} {self.unit}" if self.unit else value
 
     def _capacity(self) -> tuple[int, int]:
-        """The least and the greatest value that the bits can hold."""
+        """The least and the greatest value that the wire can hold."""
+        if self.holds is not None:
+            return self.holds
         low = -(1 << (self.bits - 1)) if self.signed else 0
         return low, (1 << (self.bits - self.signed)) - 1
 

@@ -10,6 +10,7 @@ from protogen.schema.syntax.base import (
     BitNumber,
     BitRange,
     BitRangeForm,
+    ByteNumber,
     Character,
     Count,
     Name,
@@ -102,6 +103,19 @@ Extent = Annotated[
 
 BitOrder = Literal["lsb_first", "msb_first"]
 
+DigitsName = Literal["base10", "base16-upper", "base16-lower"]
+
+Positive = Annotated[Count, Field(ge=1)]
+
+
+class CharacterCode(Syntax):
+    """How the characters of an integer come of its bits."""
+
+    bits: Annotated[Count, Field(ge=1, le=7)] = Field(
+        description="Bits of the integer in each character."
+    )
+    add: ByteNumber = Field(description="What is added to them, which is the character of zeros.")
+
 
 def _to_constant(value: Any) -> Any:
     """A number, a text (also an enum's name) or bytes; which of them fits the type is not asked."""
@@ -175,6 +189,19 @@ class FieldSyntax(Syntax):
         description="The integers of the array or struct follow each other bit by bit, without "
         "byte boundaries: lsb_first (bit 0 of each byte comes first, and of each number) or "
         "msb_first (bit 7 and the most significant bit do).",
+    )
+    digits: DigitsName | None = Field(
+        None,
+        description="The integer is written as text, the highest digit first: base10, "
+        "base16-upper or base16-lower.",
+    )
+    chars: Positive | None = Field(
+        None,
+        description="Characters of an integer that is written as text; else as many digits as "
+        "its greatest value needs.",
+    )
+    code: CharacterCode | None = Field(
+        None, description="Each character is some bits of the integer, the highest ones first."
     )
     values: ValueNames | None = Field(
         None,

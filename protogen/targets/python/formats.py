@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import lru_cache
 
+from protogen.model.numbers import Numeral
 from protogen.model.protocol import Protocol
 from protogen.model.types import (
     Array,
@@ -76,12 +77,24 @@ def type_format(type_: Type, names: Names) -> str:
 def _integer(type_: Integer) -> str:
     if type_.role == "bool":
         return "_c.Bit" if type_.packed else "_c.Flag01"
+    if type_.text is not None:
+        return call("_c.Digits", *numeral_arguments(type_, type_.text))
     if type_.packed:
         return call("_c.Bits", str(type_.bits), signed="True" if type_.signed else None)
     kind = "_c.SevenBit" if type_.byte_bits == 7 else "_c.Int"
     signed = "signed=True" if type_.signed else None
     arguments = [str(type_.bits), *([signed] if signed else [])]
     return call(kind, *arguments, order=_order(type_))
+
+
+def numeral_arguments(type_: Integer, form: Numeral) -> tuple[str, ...]:
+    """The arguments of what reads and writes an integer as digits."""
+    alphabet = octets_in_class(form.alphabet)
+    if not form.known:
+        first = form.alphabet[0]
+        alphabet = f"bytes(range(0x{first:02X}, 0x{first + form.base:02X}))"
+    signed = ["signed=True"] if type_.signed else []
+    return (str(type_.bits), alphabet, str(form.size), *signed)
 
 
 def _order(type_: Integer | Float) -> str | None:

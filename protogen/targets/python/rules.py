@@ -65,6 +65,7 @@ def _integer(type_: Integer, field: Field | None, names: Names) -> str:
         const=_const(field),
         special=_special(field),
         **(_physical(field) if field else {}),
+        holds=f"({type_.least}, {type_.greatest})" if type_.is_bound_by_text else None,
     )
 
 

@@ -16,6 +16,7 @@ from protogen.targets.c.comments import comment
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole, joined, sign_extended
 from protogen.targets.c.payload.loading import Load
+from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.records import Records
 from protogen.targets.c.spelling import Names, integer_type, unsigned_type
 from protogen.targets.naming import inside
@@ -56,7 +57,10 @@ def accessor(
         match element:
             case IntegerStep():
                 type_ = integer_type(element.type)
-                _read(element.type, body)
+                if element.type.text is None:
+                    _read(element.type, body)
+                else:
+                    body.add(f"return {Digits.of(element.type).value(helpers, 'at')};")
             case FloatStep():
                 type_ = helpers.float_type(element.type)
                 body.add(f"return {helpers.load(element.type)}(at);")

@@ -31,6 +31,7 @@ from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.checked_places import CheckedWalk
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import loaded
+from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, faults_in
 from protogen.targets.c.payload.walk import out_of_bounds, times
 from protogen.targets.c.spelling import hexadecimal, integer_type, unsigned
@@ -127,6 +128,9 @@ class Checker(CheckedWalk):
         if Check.BOOLEAN in step.checks:
             self._refuse(f"{self._byte()} > 1U", "VALUE")
             return
+        if isinstance(step, IntegerStep) and Check.DIGITS in step.checks:
+            for fault in Digits.of(step.type).faults(self.helpers, self._address()):
+                self._refuse(fault, "VALUE")
         if Check.PADDING in step.checks:
             unused = type_.byte_bits * type_.size - type_.bits
             top = type_.size - 1 if type_.byte_order == "little" else 0

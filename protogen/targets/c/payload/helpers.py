@@ -14,7 +14,7 @@ import msgspec
 
 from protogen.copying import replace
 from protogen.model.payload_plan import FloatStep
-from protogen.model.types import Float, NumberType, storage_bits
+from protogen.model.types import Float, NumberType, is_text, storage_bits
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.spelling import (
     Names,
@@ -146,7 +146,7 @@ class Helpers:
         yield
         self._is_public = False
 
-    def _helper(
+    def helper(
         self, key: str, result: str, arguments: tuple[str, ...], body: str | Iterable[str]
     ) -> str:
         """The name of a helper, which is added where it is not there yet."""
@@ -172,13 +172,13 @@ class Helpers:
         else:
             type_ = widened(type_)
             result, body = integer_type(type_), _joined(type_)
-        return self._helper(f"load_{layout_name(type_)}", result, (_AT,), body)
+        return self.helper(f"load_{layout_name(type_)}", result, (_AT,), body)
 
     def extended(self, type_: NumberType, raw: str) -> str:
         """The signed number that has these bits."""
         body = f"return {sign_extended(type_, 'raw')};"
         arguments = (f"{unsigned_type(type_.bits)} raw",)
-        name = self._helper(f"extend_s{type_.bits}", integer_type(type_), arguments, body)
+        name = self.helper(f"extend_s{type_.bits}", integer_type(type_), arguments, body)
         return f"{name}({raw})"
 
     def loads_runs(self, type_: NumberType) -> bool:
@@ -193,7 +193,7 @@ class Helpers:
         self.has_vectors = True
         body = _LOAD_RUN.format(upper=self._upper, load=self.load(type_))
         arguments = (f"{integer_type(type_)} *numbers", _AT, "size_t count")
-        return self._helper(f"load_{layout_name(type_)}_run", "void", arguments, body)
+        return self.helper(f"load_{layout_name(type_)}_run", "void", arguments, body)
 
     # --- floats ---------------------------------------------------------------------------------
 
@@ -208,7 +208,7 @@ class Helpers:
         if not from_bits:
             source, target = target, source
         body = _REINTERPRET.format(target=target)
-        return self._helper(key, target, (f"{source} given",), body)
+        return self.helper(key, target, (f"{source} given",), body)
 
     def bits_of_float(self, type_: Float) -> str:
         """The function that gives the bits of a float."""
@@ -230,7 +230,7 @@ class Helpers:
         """By the bits, which are in the order of the numbers: not every target has a double."""
         body = _FLOAT64_ORDER.format(bits=self.bits_of_float(type_), top=hexadecimal(1 << 63))
         value = f"{self.float_type(type_)} value"
-        order = self._helper("float64_order", "uint64_t", (value,), body)
+        order = self.helper("float64_order", "uint64_t", (value,), body)
         low = -inf if least is None else _nearest(least, 64, up=True)
         high = inf if greatest is None else _nearest(greatest, 64, up=False)
         bounds = _order_of(low or -0.0), _order_of(high or 0.0)
@@ -246,21 +246,31 @@ class Helpers:
         layout = _cut(type_)
         arguments = ("uint8_t *at", f"{unsigned_type(type_.bits)} value")
         body = _stored(layout)
-        return self._helper(f"store_{layout_name(layout)}", "void", arguments, body)
+        return self.helper(f"store_{layout_name(layout)}", "void", arguments, body)
 
     def write(self, type_: NumberType) -> str:
         """The function that hands an unsigned number to a writer, byte by byte."""
         layout, names = _cut(type_), self._names
         body = _written(layout, f"{names.prefix}_write({names.writing}")
         arguments = (names.writer, f"{unsigned_type(type_.bits)} value")
-        return self._helper(f"write_{layout_name(layout)}", "void", arguments, body)
+        return self.helper(f"write_{layout_name(layout)}", "void", arguments, body)
 
     def write_bytes(self) -> str:
         """The function that hands several bytes to a writer."""
         names = self._names
         body = _WRITE_BYTES.format(prefix=names.prefix, writing=names.writing)
         arguments = (names.writer, "const void *from", "size_t size")
-        return self._helper("write_bytes", "void", arguments, body)
+        return self.helper("write_bytes", "void", arguments, body)
+
+    def buffered(self, name: str, store: str, kind: str, size: int) -> str:
+        """The function that hands to a writer what `store` makes of a value: so many bytes."""
+        names = self._names
+        body = [
+            f"uint8_t text[{size}];",
+            f"{store}(text, value);",
+            f"{self.write_bytes()}({names.writing}, text, sizeof text);",
+        ]
+        return self.helper(name, "void", (names.writer, f"{kind} value"), body)
 
     # --- bytes ----------------------------------------------------------------------------------
 
@@ -271,25 +281,25 @@ class Helpers:
         warns that they don't fit into arrays as small as ours.
         """
         arguments = ("void *to", "const void *from", "size_t size")
-        return self._helper("copy", "void", arguments, _COPY)
+        return self.helper("copy", "void", arguments, _COPY)
 
     def seven_bit(self) -> str:
         """The function that says whether no byte has its most significant bit set."""
         arguments = ("const void *at", "size_t size")
-        return self._helper("is_seven_bit", "bool", arguments, _IS_SEVEN_BIT)
+        return self.helper("is_seven_bit", "bool", arguments, _IS_SEVEN_BIT)
 
     def all_bits(self, type_: NumberType) -> str:
         """The function that says which bits are set in some number of an array."""
         kind = unsigned_type(type_.bits)
         arguments = (f"const {kind} *numbers", "size_t count")
         key = f"all_bits_u{storage_bits(type_.bits)}"
-        return self._helper(key, kind, arguments, _ALL_BITS.format(kind=kind))
+        return self.helper(key, kind, arguments, _ALL_BITS.format(kind=kind))
 
     def missing(self) -> str:
         """The function that says how many bytes a payload needs at least."""
         result = f"enum {self._names.prefix}_result"
         body = _MISSING.format(upper=self._upper)
-        return self._helper("missing", result, ("size_t *need", "size_t due"), body)
+        return self.helper("missing", result, ("size_t *need", "size_t due"), body)
 
     def known(self, type_: NumberType) -> str:
         """The function that says whether a closed enum has a value."""
@@ -305,7 +315,7 @@ class Helpers:
             "}",
         ]
         argument = f"{integer_type(type_)} value"
-        return self._helper(f"is_{type_.enum.name}", "bool", (argument,), body)
+        return self.helper(f"is_{type_.enum.name}", "bool", (argument,), body)
 
 
 # --- bodies: printed where a helper is asked for the first time -----------------------------------
@@ -370,6 +380,8 @@ def _order_of(value: float) -> int:
 
 def is_plain(type_: NumberType) -> bool:
     """True if the number is a byte as it is."""
+    if is_text(type_):
+        return False
     return type_.size == 1 and (type_.bits == 8 or not type_.signed)
 
 

@@ -18,6 +18,7 @@ from protogen.model.payload_plan import (
 from protogen.model.types import Float, NumberType
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole
+from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, members_of, number_in
 from protogen.targets.c.payload.placed import PlacedWalk
 from protogen.targets.c.payload.storing import is_bytes
@@ -29,6 +30,8 @@ def loaded(helpers: Helpers, type_: NumberType, byte: str, address: str) -> str:
     """The number that lies there; `byte` is its first byte."""
     if isinstance(type_, Float):
         return f"{helpers.load(type_)}({address})"
+    if type_.text is not None:
+        return Digits.of(type_).value(helpers, address)
     if type_.role == "bool":
         return f"{byte} != 0U"
     if is_plain(type_):
@@ -50,7 +53,7 @@ class Load(PlacedWalk):
         if plan.packing is None:
             self.record(plan.steps, base)
         else:
-            self.run(plan.packing, members_of(plan.steps, base))
+            self.run(plan.packing, members_of(self.helpers, plan.steps, base))
 
     def constant(self, step: ConstantStep) -> None:
         """It was checked, and nothing keeps it."""

@@ -44,12 +44,15 @@ def groups_of(step: RepeatStep) -> Iterator[Group]:
         yield Group(1, Packing(step.packing.order, rest * bits), every[:rest])
 
 
-def members_of(steps: Iterable[AnyStep], base: str) -> list[Placed]:
+def members_of(helpers: Helpers, steps: Iterable[AnyStep], base: str) -> list[Placed]:
     """The numbers of a record whose members begin with `base`, with these members."""
     return [
-        (item, base + item.name + ("" if item.index is None else f"[{item.index}]"))
-        for item in packed_numbers(steps)
+        (item, base + helpers.member(item.name) + _index(item)) for item in packed_numbers(steps)
     ]
+
+
+def _index(item: PackedNumber) -> str:
+    return "" if item.index is None else f"[{item.index}]"
 
 
 # --- reading --------------------------------------------------------------------------------------

@@ -16,9 +16,10 @@ from protogen.model.payload_plan import (
     RepeatStep,
     RestStep,
 )
-from protogen.model.types import NumberType
+from protogen.model.types import Integer, NumberType
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers, is_plain, parted
+from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, bytes_of
 from protogen.targets.c.payload.placed import PlacedWalk
 from protogen.targets.c.payload.walk import Walk, amount
@@ -59,6 +60,10 @@ class _Output(Walk):
         """Put several bytes that lie in memory."""
         raise NotImplementedError
 
+    def _digits(self, digits: Digits, value: str) -> None:
+        """Put an integer that is written as text."""
+        raise NotImplementedError
+
     def constant(self, step: ConstantStep) -> None:
         """Its bytes."""
         for byte in step.data:
@@ -70,7 +75,9 @@ class _Output(Walk):
         if isinstance(step, FloatStep):
             place = f"{self.helpers.bits_of_float(step.type)}({place})"
             type_ = step.type.unsigned
-        if type_.size == 1:
+        if isinstance(type_, Integer) and type_.text is not None:
+            self._digits(Digits.of(type_), place)
+        elif type_.size == 1:
             self._byte(_byte_of(type_, place))
         else:
             self._number(type_, _raw_of(type_, place))
@@ -110,6 +117,10 @@ class Store(_Output, PlacedWalk):
         self.lines.add(f"{self.helpers.store(type_)}({self.address()}, {value});")
         self.skip(type_.size)
 
+    def _digits(self, digits: Digits, value: str) -> None:
+        self.lines.add(f"{digits.store(self.helpers)}({self.address()}, {digits.raw(value)});")
+        self.skip(digits.form.size)
+
     def _bytes(self, place: str, count: int | str) -> None:
         self.lines.add(f"{self.helpers.copy()}({self.address()}, {place}, {amount(count)});")
         self.skip(count)
@@ -128,6 +139,10 @@ class Put(_Output):
 
     def _number(self, type_: NumberType, value: str) -> None:
         self.lines.add(f"{self.helpers.write(type_)}({self._writing}, {value});")
+
+    def _digits(self, digits: Digits, value: str) -> None:
+        write = digits.write(self.helpers)
+        self.lines.add(f"{write}({self._writing}, {digits.raw(value)});")
 
     def _bytes(self, place: str, count: int | str) -> None:
         write = self.helpers.write_bytes()

@@ -111,7 +111,7 @@ class Walk:
         """Walk over packed numbers, as many at once as take whole bytes."""
         if isinstance(step, RecordStep):
             assert step.packing is not None
-            self.run(step.packing, members_of(step.steps, f"{place}."))
+            self.run(step.packing, members_of(self.helpers, step.steps, f"{place}."))
             return
         behind = 0
         for group in groups_of(step):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from protogen.model.numbers import Numeral
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -14,8 +15,8 @@ from protogen.model.payload_plan import (
     RecordStep,
     RepeatStep,
 )
-from protogen.model.types import NumberType, Text
-from protogen.targets.markdown.text.words import code, plural
+from protogen.model.types import Integer, NumberType, Text
+from protogen.targets.markdown.text.words import code, hex_number, plural
 
 _ORDERS = {"little": "LE", "big": "BE"}
 _BIT_ORDERS = {
@@ -48,8 +49,21 @@ def _packed(step: RecordStep | RepeatStep) -> str:
 
 @lru_cache(maxsize=1024)
 def number_text(kind: NumberType) -> str:
-    """Print a number's type with its byte order."""
+    """Print a number's type with its byte order, or with how it is written as text."""
+    if isinstance(kind, Integer) and kind.text is not None:
+        return f"{code(kind.name)} as text, {_digits_text(kind.text)}"
     return f"{code(kind.name)} {_ORDERS[kind.byte_order]}" if kind.size > 1 else code(kind.name)
+
+
+def _digits_text(form: Numeral) -> str:
+    """Print how many digits there are, and of what kind."""
+    if form.known == "base10":
+        return plural(form.size, "decimal digit")
+    if form.known:
+        letters = "upper" if form.known.endswith("upper") else "lower"
+        return f"{plural(form.size, 'hexadecimal digit')} ({letters} case)"
+    bits, first = form.base.bit_length() - 1, hex_number(form.alphabet[0], 8)
+    return f"{plural(form.size, 'character')}, each {plural(bits, 'bit')} plus {code(first)}"
 
 
 def _extended(element: str, count: Count, noun: str) -> str:

@@ -16,7 +16,7 @@ from protogen.model.payload_plan import (
     without_constant,
 )
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Float, NumberType, Struct
+from protogen.model.types import Float, NumberType, Struct, is_text
 
 UNSIGNED = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
@@ -39,6 +39,8 @@ def code_of(step: AnyStep) -> str | None:
 @lru_cache(maxsize=1024)
 def _number_code(type_: NumberType) -> str:
     """The code of a number, worked out once for all fields of a type."""
+    if is_text(type_):
+        return f"{type_.size}s"
     if isinstance(type_, Float):
         known: str | None = "f" if type_.bits == 32 else "d"
         is_known = type_.byte_bits == 8
@@ -56,7 +58,8 @@ def is_native(step: IntegerStep) -> bool:
 
 
 def _is_native(type_: NumberType) -> bool:
-    return type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64) and type_.role != "bool"
+    is_whole = type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64)
+    return is_whole and type_.role != "bool" and not is_text(type_)
 
 
 def order_of(step: AnyStep) -> str:

@@ -21,7 +21,7 @@ from protogen.model.payload_plan import (
     RestStep,
     without_constant,
 )
-from protogen.model.types import Field, Struct, Text
+from protogen.model.types import Field, Struct, Text, is_text
 from protogen.runtime.attributes import attribute
 from protogen.targets.python.engine.layout import (
     array_code,
@@ -107,12 +107,14 @@ def _is_plain(step: AnyStep) -> bool:
 def _is_narrow(step: IntegerStep) -> bool:
     """True if `struct` writes the value, but as one that may be greater."""
     type_ = step.type
-    return type_.size == 1 and not type_.signed and not is_native(step) and type_.role != "bool"
+    is_byte = type_.size == 1 and not type_.signed and not is_text(type_)
+    return is_byte and not is_native(step) and type_.role != "bool"
 
 
 def _is_looked_up(step: IntegerStep) -> bool:
     """True if a list has the bytes of each value."""
     is_byte = step.type.size == 1 and not is_native(step) and not _is_narrow(step)
+    is_byte = is_byte and not is_text(step.type)
     return step.type.role != "bool" and (is_pair(step) or is_byte)
 
 

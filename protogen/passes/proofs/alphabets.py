@@ -1,0 +1,57 @@
+"""Bytes that payloads can hold.
+
+Where fields are text, few bytes can stand for them, and a delimiter that is none of these can't
+occur in a payload. Nothing is said of other fields: each of their bytes may be any.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from protogen.model.messages import Message
+from protogen.model.nesting import holds_whole_bytes, inner_types
+from protogen.model.payload_plan import constant_bytes
+from protogen.model.types import Field, Integer, Struct, Switch, Type, is_text
+from protogen.passes.proofs.wire_code import EVERY_BYTE, SEVEN_BITS, ByteSet
+
+_NOTHING: ByteSet = frozenset()
+
+
+def payload_alphabet(byte_bits: int, messages: Sequence[Message]) -> ByteSet:
+    """The bytes that payloads of these messages can hold."""
+    fields = [field for message in messages for field in message.fields]
+    if byte_bits == 7:
+        whole = any(holds_whole_bytes(field.type) for field in fields)
+        return EVERY_BYTE if whole else SEVEN_BITS
+    if not any(map(_holds_text, (field.type for field in fields))):
+        return EVERY_BYTE
+    return _of_fields(fields)
+
+
+def _holds_text(type_: Type) -> bool:
+    return is_text(type_) or any(map(_holds_text, inner_types(type_)))
+
+
+def _of_fields(fields: Iterable[Field]) -> ByteSet:
+    return _NOTHING.union(*map(_of_field, fields))
+
+
+def _of_field(field: Field) -> ByteSet:
+    if field.const is not None:
+        return frozenset(constant_bytes(field))
+    return _of(field.type)
+
+
+def _of(type_: Type) -> ByteSet:
+    match type_:
+        case Integer(text=form) if form is not None:
+            return frozenset(form.alphabet)
+        case Integer(role="char", enum=enum) if enum is not None and enum.closed:
+            return frozenset(item.value for item in enum.values)
+        case Struct(packed=None):
+            return _of_fields(type_.fields)
+        case Switch() if type_.rest is not None:
+            return EVERY_BYTE
+        case _ if inner := inner_types(type_):
+            return _NOTHING.union(*map(_of, inner))
+    return EVERY_BYTE
