@@ -143,7 +143,7 @@ class _Reader:
         count = self._count(type_.extent, scope, constant=constant)
         if count is None:
             assert isinstance(type_.extent, Fill)
-            if self._left > type_.extent.greatest and not constant:
+            if self._left not in type_.extent.counts and not constant:
                 raise Wrong("size")
             count = self._left
         data = self._take(count)
@@ -161,6 +161,8 @@ class _Reader:
             if len(found) == type_.extent.greatest:
                 raise Wrong("size")
             found.append(self._value(type_.element, scope))
+        if len(found) < type_.extent.least:
+            raise Wrong("size")
         return found
 
     def _case(self, type_: Switch, scope: Scope) -> None:

@@ -23,6 +23,7 @@ TEXT = """\
 protocol: all_references
 endpoints: {host: Host, robot: Robot}
 byte_order: {host: little, robot: big}
+max_frame: {host: 64}
 frame:
   host: {code: {type: kind, id: true}, payload: {}}
   robot:

@@ -126,7 +126,9 @@ def check_frame(case: Case, record: Any, payload: bytes, values: Values, parts: 
     try:
         frame = case.module.encode(record, case.sender.name, **arguments(parts))
     except EncodeError as error:
-        # Its own end stands in the frame, and a decoder would cut it there.
+        # Its own end stands in the frame, and a decoder would cut it there; or it is too long.
+        if case.sender.framing.is_cut_off and "makes a frame of" in str(error):
+            return
         assert case.sender.framing.cut_ambiguous, error
         assert "decoder" in str(error), error
         return
@@ -268,7 +270,7 @@ def test_a_frame_format_can_be_embedded_and_agrees_with_encode(case: Case) -> No
         try:
             frame = case.module.encode(record, case.sender.name, **arguments(parts))
         except EncodeError:
-            assert case.sender.framing.cut_ambiguous
+            assert case.sender.framing.cut_ambiguous or case.sender.framing.is_cut_off
             continue
         data = b"\x07\x00" + frame + b"\xa5\x5a"
         parsed = own.parse(data)

@@ -291,4 +291,5 @@ def _amount(extent: Extent) -> str:
         case Counted():
             return f"{extent.least} to {extent.greatest}, as {extent.field} says"
         case Fill():
-            return f"up to {extent.greatest}, to the end"
+            amount = f"{extent.least} to" if extent.least else "up to"
+            return f"{amount} {extent.greatest}, to the end"

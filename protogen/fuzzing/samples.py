@@ -220,7 +220,8 @@ class _Sampler:
         least, greatest = lengths_of(count, 0 if count.by is None else self._number(count.by))
         if count.fills and size:
             greatest = min(greatest, max(0, self._sizes.greatest - self.size) // size)
-            least = min(greatest, -(min(0, self.size - self._sizes.least) // size))
+            needed = -(min(0, self.size - self._sizes.least) // size)
+            least = min(greatest, max(least, needed))
         return least, greatest
 
     def _case(self, step: ChooseStep, chooser: Chooser) -> Any:

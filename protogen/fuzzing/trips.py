@@ -95,7 +95,7 @@ def _trip(engine: Engine, sender: Sender, case: Case) -> Outcome:
     try:
         frame = engine.frame(case.sender, case.message, case.values, case.parts)
     except Refused as error:
-        if sender.framing.cut_ambiguous:
+        if sender.framing.cut_ambiguous or sender.framing.is_cut_off:
             return Outcome(case, refused=str(error))
         raise
     problem = _wrong_with_events(engine, sender, case, payload, frame)

@@ -158,6 +158,8 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
 
     parts: tuple[Part, ...]
     transparency: Transparency | None = None
+    limit: int | None = None
+    """Wire bytes that no frame exceeds, where the schema bounds them."""
 
     def part(self, name: str) -> Part:
         """The part called `name`; raises KeyError."""

@@ -281,6 +281,8 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     """True if a frame can be sent byte by byte, without a look at what follows."""
     cut_ambiguous: bool
     """True if an encoder has to check that a decoder cuts its frame where it ends."""
+    is_cut_off: bool = False
+    """True if parts and stuffing allow more bytes than `greatest`, so that they are counted."""
 
     # --- sizes ------------------------------------------------------------------------------------
 
@@ -307,6 +309,11 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         if not self.identity:
             return 0 if self.groups and all(g.fixed is not None for g in self.groups) else None
         return self.part(self.identity[-1].name).end if self.identity_is_early else None
+
+    @property
+    def bounds_payload(self) -> bool:
+        """True if no frame carries a payload greater than the plan's, whatever its message is."""
+        return self.length is not None or self.frame.limit is not None
 
     def room(self, payload: int) -> int:
         """Wire bytes that the frame of a payload can need."""

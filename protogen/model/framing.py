@@ -48,6 +48,8 @@ class MessageFraming(msgspec.Struct, frozen=True, kw_only=True):
     message: str
     least: int
     greatest: int
+    is_cut_off: bool = False
+    """True if the protocol's greatest frame has no room for some of its values."""
     per_second: Fraction | None
     """Frames of the greatest size per second at the link's rate; None where that is not known."""
 
@@ -69,6 +71,8 @@ class Framing(msgspec.Struct, frozen=True, kw_only=True):
     """True if every payload byte has its most significant bit clear."""
     cut_ambiguous: bool
     """True if an encoder has to check that a decoder cuts its frame where it ends."""
+    is_cut_off: bool = False
+    """True if some payload, or some way to stuff it, makes a frame longer than the greatest."""
     self_synchronising: bool
     why_synchronising: str
     finds_start: str

@@ -119,8 +119,9 @@ class Counted:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fill:
-    """As many as the payload has left, at most `greatest`."""
+    """As many as the payload has left, `least` to `greatest`."""
 
+    least: int = 0
     greatest: int
     stated: bool = dataclass_field(default=False, compare=False)
     """True if the schema bounds the number; else `greatest` is what the frame can take, in a
@@ -135,7 +136,7 @@ class Fill:
     @property
     def counts(self) -> SizeSet:
         """Possible numbers of elements."""
-        return SizeSet.between(0, self.greatest)
+        return SizeSet.between(self.least, self.greatest)
 
 
 Extent = Fixed | Counted | Fill

@@ -21,6 +21,7 @@ _STAND_INS: dict[str, Any] = {
     "protocol": "unnamed",
     "content_covers": "payload",
     "byte_order": "little",
+    "max_frame": 1 << 20,
     "messages": {},
     "frame": {},
 }

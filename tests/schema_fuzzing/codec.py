@@ -65,6 +65,10 @@ def encode(
         with pytest.raises(EncodeError, match=re.escape(str(error))):
             module.encode(made, sender.name, **arguments(parts))
         too_large = len(made.to_payload()) > sender.framing.payload.greatest
+        shown = all_parts(sender.frame, message, parts)
+        wire = frame_bytes(sender.frame, message, made.to_payload(), shown)
+        limit = sender.frame.limit
+        too_large |= limit is not None and len(wire) > limit
         assert too_large or (sender.framing.cut_ambiguous and "decoder" in str(error)), error
         return None
     assert module.encode(made, sender.name, **arguments(parts)) == frame

@@ -279,7 +279,10 @@ def _fill(draw: st.DrawFn, setting: Setting) -> Built:
     else:
         most = setting.room // each
         extent = draw(st.sampled_from(["fill", {"fill": True}]))
-    built = draw(_extended(element, extent, Size(0, most)))
+    least = 0
+    if isinstance(extent, dict) and min(most, setting.budget // each) > 2 and draw(forms.one_in(3)):
+        least = extent["min"] = draw(st.integers(0, min(most, setting.budget // each) - 2))
+    built = draw(_extended(element, extent, Size(least, most)))
     return replace(built, fills=True)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -37,7 +37,16 @@ class FramePlan:
     region: Region | None
     lenient: bool = False
     room: int | None = None
-    """The greatest payload that the length part can state."""
+    """The greatest payload that the length part and the greatest size leave."""
+    limit: int | None = None
+    """The greatest size on the wire, if that is stated."""
+    spare: int | None = None
+    """A payload that surely fits that, however it is stuffed."""
+
+    @property
+    def surely(self) -> int | None:
+        """The greatest payload of which no frame is too long; None where nothing bounds it."""
+        return self.room if self.spare is None else self.spare
 
     @property
     def opening(self) -> tuple[int, ...]:
@@ -196,7 +205,8 @@ class _Drawing:
         parts, room = self._with_length(parts)
         parts = self._with_covers(parts, region)
         lenient = self._code is not None and self._draw(forms.one_in(6))
-        return FramePlan(tuple(parts), self._code, region, lenient, room)
+        plan = FramePlan(tuple(parts), self._code, region, lenient, room)
+        return self._limited(plan) if self._draw(forms.one_in(4)) else plan
 
     # -- delimiters --------------------------------------------------------------------------
 
@@ -337,6 +347,20 @@ class _Drawing:
         part = PartPlan(parts[place].name, "length", keys, values, type=type_, bounds=bounds)
         return [*parts[:place], part, *parts[place + 1 :]], greatest - counted
 
+    # -- the greatest size -------------------------------------------------------------------
+
+    def _limited(self, plan: FramePlan) -> FramePlan:
+        """The frame with a greatest size, which has room for some payload."""
+        spare = min(self._draw(st.integers(4, 40)), 1000 if plan.room is None else plan.room)
+        least, greatest = _around(plan)
+        each_least, each_greatest = _lengths(_words(plan, "payload"), frozenset(range(256)))
+        limit = greatest + spare * each_greatest
+        if plan.code is not None and plan.code.codewords is None:
+            limit += (greatest + spare) // 254
+        room = (limit - least) // each_least
+        room = room if plan.room is None else min(room, plan.room)
+        return replace(plan, limit=limit, room=room, spare=spare)
+
     # -- checksums ---------------------------------------------------------------------------
 
     def _with_covers(self, parts: list[PartPlan], region: Region | None) -> list[PartPlan]:
@@ -375,6 +399,29 @@ class _Drawing:
         if region is None or self._code is None or self._code.codewords is not None:
             return True
         return places.isdisjoint(range(region.first, region.last + 1))
+
+
+def _words(plan: FramePlan, part: str) -> Mapping[int, bytes]:
+    """The codewords of the bytes of a part; those of COBS have the size of the bytes."""
+    if plan.region is None or plan.code is None or plan.code.codewords is None:
+        return plain()
+    inside = plan.parts[plan.region.first : plan.region.last + 1]
+    return plan.code.codewords if part in {item.name for item in inside} else plain()
+
+
+def _lengths(words: Mapping[int, bytes], values: frozenset[int]) -> tuple[int, int]:
+    """The fewest and the most bytes that stand for one of these."""
+    sizes = [len(words[value]) for value in values]
+    return min(sizes), max(sizes)
+
+
+def _around(plan: FramePlan) -> tuple[int, int]:
+    """The fewest and the most bytes on the wire around a payload that is not empty."""
+    pairs = [
+        _lengths(_words(plan, part.name), values) for part in plan.parts for values in part.values
+    ]
+    codes = int(plan.code is not None and plan.code.codewords is None)
+    return sum(low for low, _ in pairs) + codes, sum(high for _, high in pairs) + codes
 
 
 def _joined(literals: Sequence[PartPlan]) -> bytes:

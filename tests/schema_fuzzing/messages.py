@@ -138,12 +138,13 @@ class _Message:
 
     def _setting(self, *, ordered: bool) -> Setting:
         rooms = [frame.room for frame in self._frames if frame.room is not None]
+        surely = [frame.surely for frame in self._frames if frame.surely is not None]
         bounded = len(rooms) == len(self._frames)
         return Setting(
             byte_bits=self._plan.byte_bits,
             ordered=ordered or self._plan.orders.get(self._senders[0]) is not None,
             whole_bytes=self._plan.whole_bytes,
-            budget=min([*rooms, self._plan.budget]),
+            budget=min([*surely, self._plan.budget]),
             room=max(rooms) if bounded else None,
             delimited=all(frame.delimited for frame in self._frames),
             last=True,
@@ -197,7 +198,7 @@ def overload(
 ) -> Overload | None:
     """A partner for a message, where one can be made."""
     frames = [plan.frames[sender] for sender in first.senders]
-    rooms = [frame.room for frame in frames if frame.room is not None]
+    rooms = [frame.surely for frame in frames if frame.surely is not None]
     delimited = all(frame.delimited for frame in frames)
     size = first.size.greatest + 1
     by_size = (

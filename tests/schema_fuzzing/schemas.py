@@ -159,6 +159,9 @@ class _Drawing:
             data["transparency"] = self._by_sender(stuffed)
             if _SHARED in stuffed and draw(forms.one_in(4)):
                 data["transparency"] = dict.fromkeys(self._senders, stuffed[_SHARED])
+        limits = {key: frame.limit for key, frame in frames.items() if frame.limit is not None}
+        if limits:
+            data["max_frame"] = self._by_sender(limits)
         if types:
             data["types"] = {declared.name: declared.built.data for declared in types}
         data["messages"] = {message.name: message.data for message in found}

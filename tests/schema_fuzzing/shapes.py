@@ -30,7 +30,8 @@ COMMON = (
     "type: float64", "type: struct", "type: switch", "declared struct", "declared number",
     "number: fixed", "number: counted", "number: fill", "number: fill, bounded", "struct: fixed",
     "struct: counted", "struct: fill", "ascii: fixed", "ascii: counted", "bytes: counted",
-    "bytes: fill", *(f"field with {key}" for key in _FIELD_KEYS),
+    "bytes: fill", "number: fill from a least number", "bytes: fill from a least number",
+    "greatest frame", *(f"field with {key}" for key in _FIELD_KEYS),
     *(f"identity parts: {count}" for count in range(4)),
     *(f"checksums: {count}" for count in range(3)),
     *(f"transparency: {code}" for code in _CODES), *(f"start: {start}" for start in _STARTS),
@@ -86,6 +87,8 @@ def _frame(frame: FramePlan) -> Iterator[str]:
     yield from (role for role in roles if role in ("counter", "value"))
     if frame.lenient:
         yield "lenient"
+    if frame.limit is not None:
+        yield "greatest frame"
     for part in frame.parts:
         yield from _part(part.data)
 
@@ -159,5 +162,7 @@ def _extent(extent: Any) -> str:
     if isinstance(extent, int):
         return "fixed"
     if isinstance(extent, dict):
+        if extent.get("min"):
+            return "fill from a least number"
         return "fill, bounded" if "max" in extent else "fill"
     return "fill" if extent == "fill" else "counted"

@@ -251,7 +251,7 @@ def _size(extent: Extent, scope: Scope) -> st.SearchStrategy[int]:
             return st.just(extent.count)
         case Counted():
             return st.just(scope[extent.field])
-    return _count(0, extent.greatest)
+    return _count(extent.counts.least, extent.greatest)
 
 
 @st.composite

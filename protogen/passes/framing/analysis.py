@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
+from protogen.copying import replace
 from protogen.model.frame import Cobs, Frame, PayloadPart
 from protogen.model.framing import (
     AfterEnd,
@@ -69,7 +70,7 @@ class _Analysis:
         self.sender = sender
         self.frame = frame
         self.delimiters = delimiters_of(frame, self._payload)
-        self._stated = payload_range(frame)
+        self._carried = payload_range(frame)
         self.others: Sequence[_Analysis] = ()
         """Other forms of the endpoint's frames."""
 
@@ -218,9 +219,10 @@ class _Analysis:
 
     def _describe(self, start: Start, end: End | None) -> Framing | None:
         frame = self.frame
-        payload = self._payload_sizes()
+        payload = self._payload_sizes(start)
         wire = wire_sizes.WireSizes(frame, self._payload)
-        greatest = wire.frame(payload).greatest
+        longest = wire.frame(payload).greatest
+        greatest = longest if frame.limit is None else min(longest, frame.limit)
         if greatest > GREATEST_FRAME:
             if self._too_large:
                 return None  # Which was said of the message.
@@ -242,6 +244,7 @@ class _Analysis:
             overhead=wire.overhead,
             seven_bit=self._context.syntax.byte_bits == 7 and self._payload == SEVEN_BITS,
             cut_ambiguous=end is not None and not end.protected,
+            is_cut_off=greatest < longest or any(item.is_cut_off for item in per_message),
             self_synchronising=synchronising,
             why_synchronising=why,
             finds_start=framing_words.finds_start(start),
@@ -259,21 +262,36 @@ class _Analysis:
         values = range(start.least, start.greatest + 1) if isinstance(start, StartSet) else ()
         return not frozenset().union(*used).isdisjoint(values)
 
-    def _payload_sizes(self) -> SizeSet:
-        if self._stated is not None:
-            return self._stated
+    def _payload_sizes(self, start: Start) -> SizeSet:
+        # Without a length, unknown messages alone have other sizes than those that are known.
+        may_be_unknown = self.frame.identity and not isinstance(start, Anywhere)
+        if self._carried is not None and (self.frame.length is not None or may_be_unknown):
+            return self._carried
         least = min((message.sizes.least for message in self._messages), default=0)
         greatest = max((message.sizes.greatest for message in self._messages), default=0)
         return SizeSet.between(least, greatest)
 
     def _sendable(self, sizes: SizeSet) -> SizeSet:
         """Sizes of a message that this sender's frames can carry; others may send it as well."""
-        if self._stated is None:
+        if self._carried is None:
             return sizes
-        return sizes.within(self._stated.least, self._stated.greatest) or sizes
+        return sizes.within(self._carried.least, self._carried.greatest) or sizes
 
     def _message(self, wire: wire_sizes.WireSizes, message: Message) -> MessageFraming:
         sizes = wire.message(message, self._sendable(message.sizes))
+        limit = self.frame.limit
+        if limit is None:
+            return self._framing_of(message, sizes)
+        fits = self._carried is not None and message.sizes.least <= self._carried.greatest
+        if fits and sizes.least > limit:
+            text = f"a frame of `{message.name}` has at least {sizes.least} bytes on the wire"
+            text = f"{text}, and one of {self.sender} at most {limit}"
+            self._context.error_at_key("PG182", ("messages", message.name), text)
+        longest = wire.message(message, message.sizes).greatest
+        sizes = sizes.within(0, limit) or SizeSet.exactly(limit)
+        return replace(self._framing_of(message, sizes), is_cut_off=longest > limit)
+
+    def _framing_of(self, message: Message, sizes: SizeSet) -> MessageFraming:
         return MessageFraming(
             message=message.name,
             least=sizes.least,

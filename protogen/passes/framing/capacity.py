@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from protogen.model.frame import Frame, LengthPart, LiteralPart, Part
+from protogen.model.frame import Frame, LengthPart, LiteralPart, Part, PayloadPart
 from protogen.model.sizes import SizeSet
+from protogen.passes.proofs.wire_code import EVERY_BYTE, code_of, part_bytes
 
 GREATEST_FRAME = 1 << 20
 """No frame may be longer than 1 MiB: a receiver has to hold it."""
@@ -25,10 +26,54 @@ def counted_size(frame: Frame, length: LengthPart, *, empty: bool) -> int:
 
 
 def payload_range(frame: Frame) -> SizeSet | None:
-    """The payload sizes that the length part can state; None where it is missing or states none.
+    """The payload sizes that a length part or a greatest size of frames leaves; None for any.
 
-    A frame whose length part can state none at all is reported when it is built.
+    A frame that can carry none at all is reported when it is built.
     """
+    stated = stated_range(frame)
+    if frame.limit is None or (stated is None and frame.length is not None):
+        return stated
+    room = payload_room(frame, frame.limit)
+    if room is None or stated is None:
+        return None if room is None else SizeSet.between(0, room)
+    return stated.within(0, room)
+
+
+def payload_room(frame: Frame, size: int) -> int | None:
+    """The greatest payload of which some frame has at most `size` bytes; None: there is none."""
+    left = size - least_around(frame, empty=False)
+    payload = left // max(_least_wire(frame, frame.payload), 1)
+    if payload > 0:
+        return payload
+    return 0 if size >= least_around(frame, empty=True) else None
+
+
+def least_size(frame: Frame) -> int:
+    """Wire bytes of the shortest frame that its length part can state."""
+    stated = stated_range(frame)
+    payload = 0 if stated is None else stated.least
+    return least_around(frame, empty=not payload) + payload * _least_wire(frame, frame.payload)
+
+
+def least_around(frame: Frame, *, empty: bool) -> int:
+    """Wire bytes around a payload, which is empty or not, where stuffing takes the fewest."""
+    is_lenient = frame.transparency is not None and frame.transparency.lenient
+    codes = 0 if is_lenient and empty else frame.code_size
+    others = (part for part in frame.parts if not isinstance(part, PayloadPart))
+    there = (part for part in others if not (empty and part.is_optional))
+    return codes + sum(_least_wire(frame, part) for part in there)
+
+
+def _least_wire(frame: Frame, part: Part) -> int:
+    """Wire bytes of a part, or of one byte of the payload, where stuffing takes the fewest."""
+    code = code_of(frame.encoding) if part.name in frame.stuffed else None
+    if code is None:
+        return 1 if isinstance(part, PayloadPart) else part.size
+    return sum(min(len(code[byte]) for byte in values) for values in part_bytes(part, EVERY_BYTE))
+
+
+def stated_range(frame: Frame) -> SizeSet | None:
+    """The payload sizes that the length part can state; None where it is missing or states none."""
     length = frame.length
     if length is None:
         return None

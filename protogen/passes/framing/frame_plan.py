@@ -128,6 +128,7 @@ class _Planner:
             takes_whole=self._takes_whole(),
             streams=self._streams(),
             cut_ambiguous=framing.cut_ambiguous,
+            is_cut_off=framing.is_cut_off,
         )
 
     # --- parts ------------------------------------------------------------------------------------

@@ -32,7 +32,12 @@ from protogen.model.frame import (
 from protogen.model.origin import About
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
-from protogen.passes.framing.capacity import counted_size, payload_range
+from protogen.passes.framing.capacity import (
+    counted_size,
+    least_size,
+    payload_range,
+    stated_range,
+)
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.framing.written_frames import WrittenFrame
@@ -108,7 +113,7 @@ class FrameBuilder:
         if self._context.tally.errors > before or self._loc in self._context.doubtful:
             return None
         known = tuple(part for part in parts if part is not None)
-        frame = Frame(parts=known, transparency=transparency)
+        frame = Frame(parts=known, transparency=transparency, limit=self._written.limit)
         self._check(frame)
         return frame if self._context.tally.errors == before else None
 
@@ -116,12 +121,16 @@ class FrameBuilder:
         """Check what can only be asked when all parts are there."""
         _check_checksums(self._context, frame, self._loc)
         length = frame.length
-        if length is not None and payload_range(frame) is None:
+        if length is not None and stated_range(frame) is None:
             around = counted_size(frame, length, empty=True)
             besides = "1 byte" if around == 1 else f"{around} bytes"
             text = f"`{length.name}` counts {besides} besides the payload"
             text = f"{text}, and can't say more than {length.greatest}"
             self._context.error_at_key("PG137", (*self._loc, length.name), text)
+        elif frame.limit is not None and payload_range(frame) is None:
+            text = f"a frame of {self._written.endpoint} has at least {least_size(frame)} bytes"
+            loc = self._written.limit_loc
+            self._context.error("PG181", loc, f"{text}, and may have {frame.limit}")
 
     # -- parts --------------------------------------------------------------------------------
 

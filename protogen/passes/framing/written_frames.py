@@ -29,6 +29,9 @@ class WrittenFrame(msgspec.Struct, frozen=True):
     """The decision that accepts that forms above it win."""
     is_only: bool = True
     """True if the endpoint sends no other form."""
+    limit: int | None = None
+    """Wire bytes that no frame exceeds, where that is stated."""
+    limit_loc: Loc = ()
 
     def carries(self, message: MessageSyntax) -> bool:
         """True if the endpoint sends the message in this form."""
@@ -44,7 +47,7 @@ def written_frames(syntax: ProtocolSyntax) -> Iterator[tuple[str, WrittenFrame]]
     """
     if syntax.forms is not None:
         for endpoint in syntax.endpoints:
-            yield from _forms_of(syntax.forms, endpoint)
+            yield from _forms_of(syntax, syntax.forms, endpoint)
         return
     for endpoint in syntax.endpoints or (ALL_SENDERS,):
         key = endpoint if endpoint in syntax.frame else ALL_SENDERS
@@ -52,10 +55,14 @@ def written_frames(syntax: ProtocolSyntax) -> Iterator[tuple[str, WrittenFrame]]
             yield endpoint, _of_endpoint(syntax, endpoint, key)
 
 
-def _forms_of(forms: Mapping[str, FrameForm], endpoint: str) -> Iterator[tuple[str, WrittenFrame]]:
+def _forms_of(
+    syntax: ProtocolSyntax, forms: Mapping[str, FrameForm], endpoint: str
+) -> Iterator[tuple[str, WrittenFrame]]:
     own = [name for name, form in forms.items() if form.from_ is None or endpoint in form.from_]
     for name in own:
         form, loc = forms[name], ("forms", name)
+        stated = (form.max_frame, (*loc, "max_frame"))
+        limit, limit_loc = _limit(syntax, endpoint) if form.max_frame is None else stated
         yield (
             endpoint if len(own) == 1 else f"{endpoint}_{name}",
             WrittenFrame(
@@ -67,16 +74,29 @@ def _forms_of(forms: Mapping[str, FrameForm], endpoint: str) -> Iterator[tuple[s
                 form=name,
                 behind=form.behind,
                 is_only=len(own) == 1,
+                limit=limit,
+                limit_loc=limit_loc,
             ),
         )
 
 
 def _of_endpoint(syntax: ProtocolSyntax, endpoint: str, key: str) -> WrittenFrame:
     stuffing = endpoint if endpoint in syntax.transparency else ALL_SENDERS
+    limit, limit_loc = _limit(syntax, endpoint)
     return WrittenFrame(
         endpoint=endpoint,
         loc=("frame", key),
         parts=syntax.frame[key],
         transparency=syntax.transparency.get(stuffing),
         transparency_loc=("transparency", stuffing),
+        limit=limit,
+        limit_loc=limit_loc,
     )
+
+
+def _limit(syntax: ProtocolSyntax, endpoint: str) -> tuple[int | None, Loc]:
+    """The greatest frame that the root states for an endpoint, and where."""
+    limits, loc = syntax.max_frame, ("max_frame",)
+    if endpoint in limits:
+        return limits[endpoint], (*loc, endpoint)
+    return limits.get(ALL_SENDERS), loc

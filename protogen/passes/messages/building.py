@@ -10,7 +10,13 @@ from protogen.model.sizes import SizeSet
 from protogen.model.types import ByteOrder, Field, Fill, Octets, total
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
-from protogen.passes.framing.capacity import GREATEST_FRAME, amount, is_delimited, payload_range
+from protogen.passes.framing.capacity import (
+    GREATEST_FRAME,
+    amount,
+    is_delimited,
+    payload_range,
+    stated_range,
+)
 from protogen.passes.messages.identities import Identity, IdentityReader
 from protogen.passes.messages.stated_sizes import greatest_stated, least_stated
 from protogen.passes.types.fields import FieldBuilder
@@ -76,7 +82,7 @@ class _Resolution:
         self._frames = frames
         """By sender."""
         self._stated = [payload_range(frame) for frame in frames.values()]
-        """The payload sizes that each length part can state."""
+        """The payload sizes that each frame can carry."""
         self._loc: Loc = ("messages", name)
         self._fields: tuple[Field, ...] = ()
         self._sound = True
@@ -214,14 +220,14 @@ class _Resolution:
         return sizes.within(low, max(allowed.greatest for allowed in known)) or sizes
 
     def _fits(self, sizes: SizeSet, endpoint: str) -> None:
-        """Check that a length part of an endpoint can state each size that the schema insists on.
+        """Check that a frame of an endpoint can carry each size that the schema insists on.
 
         Of several forms of frame, each size needs one.
         """
         written = self._context.frames
         own = [frame for name, frame in self._frames.items() if written[name].endpoint == endpoint]
-        stated = [(frame.length, payload_range(frame)) for frame in own]
-        known = [(part, sizes) for part, sizes in stated if part is not None and sizes is not None]
+        carried = [(frame, payload_range(frame)) for frame in own]
+        known = [(frame, sizes) for frame, sizes in carried if sizes is not None]
         if len(known) < len(own):
             return
         largest, most = max(known, key=lambda item: item[1].greatest)
@@ -229,16 +235,24 @@ class _Resolution:
         greatest = max(greatest_stated(self._fields), sizes.least)
         least = self._least_unspecified() or least_stated(self._fields)
         if greatest > most.greatest:
-            self._context.error_at_key(
-                "PG137",
-                self._loc,
-                f"the payload can have {amount(greatest)} bytes, but `{largest.name}` of "
-                f"{endpoint}'s frame can't say more than {most.greatest}",
-                "make the length part wider, or bound the message",
-            )
-        elif least < fewest.least:
-            text = f"the payload can have {amount(least)} bytes, but `{smallest.name}` says at "
-            self._context.error_at_key("PG148", self._loc, f"{text}least {fewest.least}")
+            self._too_long(endpoint, largest, greatest, most.greatest)
+        elif least < fewest.least and smallest.length is not None:
+            text = f"the payload can have {amount(least)} bytes, but `{smallest.length.name}` says"
+            text = f"{text} at least {fewest.least}"
+            self._context.error_at_key("PG148", self._loc, text)
+
+    def _too_long(self, endpoint: str, frame: Frame, greatest: int, most: int) -> None:
+        """Report a payload that is longer than the frame with the most room can carry."""
+        text = f"the payload can have {amount(greatest)} bytes, "
+        stated = stated_range(frame)
+        if frame.length is not None and stated is not None and stated.greatest == most:
+            text = f"{text}but `{frame.length.name}` of {endpoint}'s frame can't say more than"
+            hint = "make the length part wider, or bound the message"
+            self._context.error_at_key("PG137", self._loc, f"{text} {most}", hint)
+        else:
+            text = f"{text}and {most} fit a frame of {endpoint}, which has at most {frame.limit}"
+            hint = "raise `max_frame`, or bound the message"
+            self._context.error_at_key("PG182", self._loc, text, hint)
 
     # -- identity -----------------------------------------------------------------------------
 

@@ -49,10 +49,25 @@ def _fill(context: Context, written: FillSyntax, loc: Loc, element: int, setting
         context.error("PG118", loc, text, "give a count, or a length part to the frame")
     elif written.max is None and setting.room is None:
         text = "nothing bounds this: the frame has no length part"
-        context.error("PG118", loc, text, "give it a bound: {fill: true, max: 64}")
-    if written.max is not None:
-        return Fill(greatest=written.max, stated=True)
-    return Fill(greatest=(setting.room or 0) // element)
+        hint = "give it a bound: {fill: true, max: 64}, or all frames: `max_frame: 256`"
+        context.error("PG118", loc, text, hint)
+    greatest = (setting.room or 0) // element if written.max is None else written.max
+    least = written.min
+    is_bounded = written.max is not None or setting.room is not None
+    if least and is_bounded and least >= greatest:
+        _no_choice(context, written, (*loc, "min"), greatest)
+        least = 0
+    return Fill(least=least, greatest=greatest, stated=written.max is not None)
+
+
+def _no_choice(context: Context, written: FillSyntax, loc: Loc, greatest: int) -> None:
+    """Report a least number that leaves nothing to the payload's size."""
+    if written.min > greatest:
+        what = "`max` allows" if written.max is not None else "the frame has room for"
+        context.error("PG180", loc, f"{written.min} are more than the {greatest} that {what}")
+    else:
+        text = f"there are always {greatest}, so nothing depends on where the payload ends"
+        context.error("PG180", loc, text, f"write the number {greatest} in place of the fill")
 
 
 def _counted_by(field: Field, element: int, room: int | None) -> Counted:

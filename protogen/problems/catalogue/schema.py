@@ -5,6 +5,7 @@ from __future__ import annotations
 from protogen.problems.catalogue.code import Code
 from protogen.problems.catalogue.fields import FIELD_CODES
 from protogen.problems.catalogue.forms import FORM_CODES
+from protogen.problems.catalogue.frame_sizes import FRAME_SIZE_CODES
 from protogen.problems.catalogue.frames import FRAME_CODES
 from protogen.problems.catalogue.framing import FRAMING_CODES
 from protogen.problems.catalogue.keys_and_names import KEY_AND_NAME_CODES
@@ -20,5 +21,6 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *FRAME_CODES,
     *FRAMING_CODES,
     *FORM_CODES,
+    *FRAME_SIZE_CODES,
     *MESSAGE_CODES,
 )

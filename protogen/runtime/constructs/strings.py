@@ -52,10 +52,13 @@ class Octets(Piece):
 
 
 class OctetsFill(Piece):
-    """All bytes that are left, at most `greatest` of them."""
+    """All bytes that are left, `least` to `greatest` of them."""
 
-    def __init__(self, greatest: int | None = None, seven_bit: bool = False) -> None:
+    def __init__(
+        self, greatest: int | None = None, seven_bit: bool = False, least: int = 0
+    ) -> None:
         super().__init__()
+        self._least = least
         self._greatest = greatest
         self._seven_bit = seven_bit
 
@@ -75,6 +78,9 @@ class OctetsFill(Piece):
         if self._greatest is not None and len(data) > self._greatest:
             problem = f"has {len(data)} bytes, at most {self._greatest} are allowed"
             raise PayloadError("size", path, offset + self._greatest, problem)
+        if len(data) < self._least:
+            problem = f"has {len(data)} bytes, at least {self._least} are needed"
+            raise PayloadError("size", path, offset + len(data), problem)
         if self._seven_bit:
             _check_seven_bits(data, path, offset)
 
@@ -139,6 +145,8 @@ def Latin1(size: Extent, seven_bit: bool = False) -> Piece:  # noqa: N802
     return _Text(Octets(size, seven_bit))
 
 
-def Latin1Fill(greatest: int | None = None, seven_bit: bool = False) -> Piece:  # noqa: N802
-    """Text that takes all bytes that are left, at most `greatest` of them."""
-    return _Text(OctetsFill(greatest, seven_bit))
+def Latin1Fill(  # noqa: N802
+    greatest: int | None = None, seven_bit: bool = False, least: int = 0
+) -> Piece:
+    """Text that takes all bytes that are left, `least` to `greatest` of them."""
+    return _Text(OctetsFill(greatest, seven_bit, least))

@@ -95,10 +95,11 @@ class Counted(Around):
 
 
 class Fill(Around):
-    """Elements to the end, at most `greatest`. A tail that is no whole element is an error."""
+    """Elements to the end, `least` to `greatest`. A tail that is no whole element is an error."""
 
-    def __init__(self, element: Construct, greatest: int | None = None) -> None:
+    def __init__(self, element: Construct, greatest: int | None = None, least: int = 0) -> None:
         super().__init__(element)
+        self._least = least
         self._greatest = greatest
         self.flagbuildnone = False
 
@@ -111,11 +112,13 @@ class Fill(Around):
             elements.append(self.subcon._parsereport(stream, context, place))
             if stream.tell() == here:
                 raise PayloadError("size", place, here, "an element of no bytes fills nothing")
+        self._check_least(len(elements), path, stream.tell())
         return elements
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
         elements = _as_list(obj, path, stream)
         self._check(len(elements), path, stream.tell())
+        self._check_least(len(elements), path, stream.tell())
         for index, element in enumerate(elements):
             self.subcon._build(element, stream, context, f"{path} -> [{index}]")
         return obj
@@ -123,6 +126,11 @@ class Fill(Around):
     def _check(self, count: int, path: str, offset: int) -> None:
         if self._greatest is not None and count > self._greatest:
             problem = f"at most {self._greatest} elements are allowed"
+            raise PayloadError("size", path, offset, problem)
+
+    def _check_least(self, count: int, path: str, offset: int) -> None:
+        if count < self._least:
+            problem = f"at least {self._least} elements are needed, and there are {count}"
             raise PayloadError("size", path, offset, problem)
 
     def _sizeof(self, context: Any, path: str) -> int:

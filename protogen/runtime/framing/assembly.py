@@ -42,6 +42,9 @@ def encode_frame(
     numbers = _value_parts(layout, given, strict)
     numbers |= {part.name: value for part, value in zip(layout.identity, identity, strict=True)}
     wire = _Assembly(layout, numbers, payload).wire()
+    if sender.frame.is_bounded and len(wire) > sender.frame.greatest:
+        problem = f"makes a frame of {len(wire)} bytes, at most {sender.frame.greatest} are allowed"
+        raise EncodeError("payload", problem)
     if sender.frame.ambiguous_cut or sender.group(identity) is None:
         check_cut(sender, wire, payload)
     return wire
@@ -145,7 +148,8 @@ class _Assembly:
     def _check_payload(self) -> None:
         greatest = self._layout.spec.greatest_payload
         # Without a length, a message's own size bounds its payload, and the frame's an unknown one.
-        if self._layout.length is not None and len(self._payload) > greatest:
+        is_bounded = self._layout.length is not None or self._layout.spec.is_bounded
+        if is_bounded and len(self._payload) > greatest:
             problem = f"has {len(self._payload)} bytes, at most {greatest} fit the frame"
             raise EncodeError("payload", problem)
         if self._layout.spec.seven_bit and not self._payload.isascii():

@@ -177,3 +177,5 @@ class FrameSpec(NamedTuple):
     is that of no message with the identity."""
     ambiguous_cut: bool = False
     """True if an encoder has to check that a decoder ends the frame where it ends."""
+    is_bounded: bool = False
+    """True if the schema says how long a frame can be, so that an encoder has to look."""

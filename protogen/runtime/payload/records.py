@@ -109,8 +109,9 @@ class ArrayRule(SeveralRule[Sequence[Any]]):
         count: int | str | None = None,
         greatest: int | None = None,
         const: Sequence[Any] | None = None,
+        least: int = 0,
     ) -> None:
-        super().__init__(count, greatest, const)
+        super().__init__(count, greatest, const, least)
         self.element = element
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> list[Any]:

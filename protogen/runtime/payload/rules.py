@@ -393,7 +393,7 @@ def _is_bit(value: Any) -> bool:
 class SeveralRule(Rule, Generic[ConstT]):
     """Base of rules for values of which there may be several: `size`, or as the field `size` says.
 
-    None: to the end of the payload, at most `greatest`.
+    None: to the end of the payload, `least` to `greatest`.
     """
 
     def __init__(
@@ -401,8 +401,10 @@ class SeveralRule(Rule, Generic[ConstT]):
         size: int | str | None = None,
         greatest: int | None = None,
         const: ConstT | None = None,
+        least: int = 0,
     ) -> None:
         self.size = size
+        self.least = least
         self.greatest = greatest
         self.const = const
 
@@ -412,6 +414,8 @@ class SeveralRule(Rule, Generic[ConstT]):
             says = f", as {self.size} says" if isinstance(self.size, str) else ""
             raise EncodeError("", f"needs exactly {exactly} {what}{says}, not {count}")
         _check_most(count, self.greatest, what)
+        if count < self.least:
+            raise EncodeError("", f"has {count} {what}, at least {self.least} are needed")
 
 
 def _check_most(count: int, greatest: int | None, what: str) -> None:
@@ -420,7 +424,7 @@ def _check_most(count: int, greatest: int | None, what: str) -> None:
 
 
 class OctetsRule(SeveralRule[bytes]):
-    """Bytes: `size` of them, or as many as the field `size` says; None: `greatest` at most."""
+    """Bytes: `size` of them, or as many as the field `size` says; None: `least` to `greatest`."""
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> bytes:
         """The bytes."""
@@ -448,7 +452,7 @@ class TextRule(SeveralRule[str]):
     """Text of one byte a character, which is ASCII; a decoder keeps whatever byte there is.
 
     `size` is a number: the text has at most so many characters, and NUL pads it. It is the name of
-    a field: exactly as many as that says. None: `greatest` at most.
+    a field: exactly as many as that says. None: `least` to `greatest`.
     """
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> str:

@@ -79,6 +79,7 @@ class Fill(Syntax):
     """As many elements or bytes as the payload has left."""
 
     fill: OnlyTrue = Field(description="To the end of the payload.")
+    min: Count = Field(0, description="The least number of elements or bytes.")
     max: Count | None = Field(None, description="The greatest number of elements or bytes.")
 
 

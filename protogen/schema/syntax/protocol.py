@@ -133,6 +133,9 @@ class FrameForm(Syntax):
     transparency: TransparencyRef | None = Field(
         None, description="What keeps delimiters out of the frame."
     )
+    max_frame: Annotated[Int, Field(ge=1)] | None = Field(
+        None, description="Bytes on the wire that no frame of the form exceeds."
+    )
     behind: Annotated[Name, Ref(Kind.DECISION, missing="PG143")] | None = Field(
         None,
         description="The decision that accepts that bytes can be a frame of this form and of one "
@@ -147,6 +150,12 @@ ALL_SENDERS = ""
 def _for_all(value: Any) -> Any:
     return {ALL_SENDERS: value} if isinstance(value, str) else value
 
+
+def _limit_for_all(value: Any) -> Any:
+    return value if isinstance(value, dict) else {ALL_SENDERS: value}
+
+
+_LimitForm = Annotated[int, Field(ge=1)]
 
 _MARKS: dict[str, frozenset[str]] = {
     "frame": frozenset({"payload"}),
@@ -216,6 +225,14 @@ class ProtocolSyntax(Syntax):
     ] = Field(
         default_factory=dict,
         description="What keeps delimiters out of the frame; for all or per sender.",
+    )
+    max_frame: Annotated[
+        dict[SenderKey, Annotated[Int, Field(ge=1)]],
+        BeforeValidator(_limit_for_all, json_schema_input_type=_LimitForm | dict[Name, _LimitForm]),
+        BySender(),
+    ] = Field(
+        default_factory=dict,
+        description="Bytes on the wire that no frame exceeds; for all or per sender.",
     )
     content_covers: PartRun | None = Field(
         None,

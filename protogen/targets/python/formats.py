@@ -30,8 +30,25 @@ from protogen.targets.python.names import Names
 def field_format(field: Field, names: Names) -> str:
     """The declaration of a field, its constant included."""
     if field.const is not None:
-        return call("_c.Fixed", type_format(field.type, names), constant(field))
+        return call("_c.Fixed", _any_size(field.type, names), constant(field))
     return _checked(field.type, names)
+
+
+def _any_size(type_: Type, names: Names) -> str:
+    """The declaration of a constant's type: more bytes or fewer are another constant."""
+    if not isinstance(type_, Text | Octets | Array) or not isinstance(type_.extent, Fill):
+        return type_format(type_, names)
+    if isinstance(type_, Array):
+        return call("_c.Fill", _checked(type_.element, names))
+    return call(f"{_string_kind(type_)}Fill", seven_bit=_seven_bit(type_))
+
+
+def _string_kind(type_: Text | Octets) -> str:
+    return "_c.Latin1" if isinstance(type_, Text) else "_c.Octets"
+
+
+def _seven_bit(type_: Text | Octets | Switch) -> str | None:
+    return "True" if type_.byte_bits == 7 else None
 
 
 def _checked(type_: Type, names: Names) -> str:
@@ -102,10 +119,11 @@ def _order(type_: Integer | Float) -> str | None:
 
 
 def _string(type_: Text | Octets) -> str:
-    kind = "_c.Latin1" if isinstance(type_, Text) else "_c.Octets"
-    seven = "True" if type_.byte_bits == 7 else None
+    kind, seven = _string_kind(type_), _seven_bit(type_)
     if isinstance(type_.extent, Fill):
-        return call(f"{kind}Fill", str(type_.extent.greatest), seven_bit=seven)
+        return call(
+            f"{kind}Fill", str(type_.extent.greatest), seven_bit=seven, least=_least(type_.extent)
+        )
     return call(kind, extent(type_.extent), seven_bit=seven)
 
 
@@ -122,17 +140,21 @@ def extent(of: Extent) -> str:
             return str(of.greatest)
 
 
+def _least(fill: Fill) -> str | None:
+    return str(fill.least) if fill.least else None
+
+
 def _array(type_: Array, names: Names) -> str:
     element = _checked(type_.element, names)
     if isinstance(type_.extent, Fill):
-        return call("_c.Fill", element, str(type_.extent.greatest))
+        return call("_c.Fill", element, str(type_.extent.greatest), least=_least(type_.extent))
     counted = call("_c.Counted", extent(type_.extent), element)
     return counted if type_.packed is None else call("_c.Packed", text(type_.packed), counted)
 
 
 def _switch(type_: Switch, names: Names) -> str:
     cases = mapping({str(case.value): _case(case, names) for case in type_.cases})
-    seven = "True" if type_.byte_bits == 7 else None
+    seven = _seven_bit(type_)
     rest = None if type_.rest is None else call("_c.OctetsFill", str(type_.rest), seven_bit=seven)
     return call("_c.Cases", text(type_.selector), cases, rest=rest)
 

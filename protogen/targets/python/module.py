@@ -314,6 +314,7 @@ def _frame(sender: Sender) -> str:
         seven_bit="True" if framing.seven_bit else None,
         rescans="True" if sender.plan.rescans else None,
         ambiguous_cut="True" if framing.cut_ambiguous else None,
+        is_bounded="True" if sender.frame.limit is not None else None,
     )
     return wrapped(expression, _INDENT + len("return "), _INDENT, after=0)
 

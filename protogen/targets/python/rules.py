@@ -118,7 +118,8 @@ def _extent(key: str, extent: Extent) -> dict[str, str | None]:
         case Counted():
             return {key: text(extent.field)}
         case Fill():
-            return {"greatest": str(extent.greatest)}
+            least = str(extent.least) if extent.least else None
+            return {"greatest": str(extent.greatest), "least": least}
 
 
 def _array(type_: Array, field: Field | None, names: Names) -> str:

@@ -28,6 +28,7 @@ def decoder_style(frame: ReceivedFrame) -> DecoderStyle:
     is_flat = (
         not frame.all_events
         and frame.plan.store is Store.CONTENT
+        and not frame.plan.is_cut_off
         and _delimiters_are_seen(frame)
         and frame.simple
         and frame.known_from > 0

@@ -30,6 +30,8 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     least_payload: int
     is_sized: bool
     """True if its identity stands for payloads of one size."""
+    is_cut_off: bool
+    """True if a decoder counts the bytes of its frames, as some can be too long."""
 
     # --- the payload ------------------------------------------------------------------------------
 
@@ -88,10 +90,15 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
         found += [f"{prefix}_looks_idle(frame, wire)"] if self.needs_idle_check else []
         return " || ".join(found)
 
+    @property
+    def too_long(self) -> str:
+        """The condition that no decoder takes so many bytes; empty if there are never as many."""
+        return f"wire > {self.decoder.plan.greatest}U" if self.is_cut_off else ""
+
     @cached_property
     def sends(self) -> bool:
         """True if the frame can be handed over byte by byte."""
-        return self.frame.plan.streams and not self.refusals
+        return self.frame.plan.streams and not (self.refusals or self.too_long)
 
     # --- parameters -------------------------------------------------------------------------------
 
@@ -116,22 +123,24 @@ class SenderFrames:
         self._frame = frame
         self._decoder = decoder
         self._plan = sender.plan
-        self._greatest = {item.message: item.greatest for item in sender.framing.messages}
+        self._framings = {item.message: item for item in sender.framing.messages}
         groups = [group for group in decoder.plan.groups if group.fixed is not None]
         self._sized = {item.name for group in groups for item in group.messages}
 
     def view(self, message: Message, view: MessageView, called: FrameNames) -> MessageFrame:
         """The frame functions of a message."""
         plan = self._plan
-        has_length = plan.length is not None
+        framing = self._framings[message.name]
+        is_bounded = plan.bounds_payload
         return MessageFrame(
             message=message,
             view=view,
             frame=self._frame,
             decoder=self._decoder,
             called=called,
-            greatest_frame=self._greatest[message.name],
-            greatest_payload=plan.payload.greatest if has_length else message.sizes.greatest,
-            least_payload=plan.payload.least if has_length else 0,
+            greatest_frame=framing.greatest,
+            greatest_payload=plan.payload.greatest if is_bounded else message.sizes.greatest,
+            least_payload=plan.payload.least if plan.length is not None else 0,
+            is_cut_off=framing.is_cut_off,
             is_sized=message.name in self._sized,
         )

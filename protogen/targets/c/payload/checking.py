@@ -48,6 +48,12 @@ def _carried(step: BytesStep | NumberStep) -> int:
     return 8 if Check.BOOLEAN in step.checks else step.type.byte_bits
 
 
+def _outside(count: Count, number: str, size: int) -> str:
+    """The condition that as many bytes are no number of elements that may fill the payload."""
+    greatest = count.greatest * size
+    return out_of_bounds(number, count.least * size, greatest, greatest + 1)
+
+
 class Checker(CheckedWalk):
     """Prints a check of the payload."""
 
@@ -250,7 +256,7 @@ class Checker(CheckedWalk):
         """A text, or bytes."""
         seven = Check.SEVEN_BIT in step.checks
         if step.fills:
-            self._filled(step.count.greatest, seven=seven)
+            self._filled(step.count, seven=seven)
             return
         self._begin(7 if seven else 8)
         if isinstance(count, int):
@@ -265,7 +271,7 @@ class Checker(CheckedWalk):
             self._refuse(f"!{self.helpers.seven_bit()}(payload + at, {count})", "ENCODING")
         self._move(count)
 
-    def _filled(self, greatest: int, *, seven: bool) -> None:
+    def _filled(self, count: Count, *, seven: bool) -> None:
         """All bytes that are left; where the size is always the same there are none."""
         self._flush()
         if self._fixed:
@@ -274,11 +280,11 @@ class Checker(CheckedWalk):
         offset = self._sum(self._offset)
         left = f"size - {offset}" if offset != "0" else "size"
         left = f"size - ({offset})" if "+" in offset else left
-        self._refuse(f"{left} > {unsigned(greatest)}", "SIZE")
+        self._refuse(_outside(count, left, 1), "SIZE")
         if seven:
             check = f"!{self.helpers.seven_bit()}({self._address()}, {left})"
             self._refuse(check, "ENCODING")
-        if greatest:
+        if count.greatest:
             self._end()
 
     def _end(self) -> None:
@@ -368,27 +374,33 @@ class Checker(CheckedWalk):
         if self._fixed:
             return
         self._settle()
-        size, greatest = step.element.sizes.fixed, step.count.greatest
+        size, count = step.element.sizes.fixed, step.count
         if size and not self._needs and not step.element.can_be_wrong:
-            self._filling_of(size, greatest)
+            self._filling_of(size, count)
             return
         index = free_name("count", self._locals)
         self._locals.add(index)
-        with self.lines.block(f"for (size_t {index} = 0; at < size; {index}++)"):
-            self._refuse(f"{index} == {unsigned(greatest)}", "SIZE")
+        begin = f"size_t {index} = 0"
+        if count.least:
+            self.lines.add(f"{begin};")
+            begin = ""
+        with self.lines.block(f"for ({begin}; at < size; {index}++)"):
+            self._refuse(f"{index} == {unsigned(count.greatest)}", "SIZE")
             self._secured = 0
             self.step(step.element, f"{place}[{index}]")
             self._settle()
+        if count.least:
+            self._refuse(f"{index} < {unsigned(count.least)}", "SIZE")
         self._ended = self._branches == 0
         self._secured = 0
 
-    def _filling_of(self, size: int, greatest: int) -> None:
+    def _filling_of(self, size: int, count: Count) -> None:
         """Check the number of elements of one size that can't be wrong.
 
         Small controllers do not divide.
         """
-        self._refuse(f"size - at > {unsigned(greatest * size)}", "SIZE")
-        if size > 1 and greatest:
+        self._refuse(_outside(count, "size - at", size), "SIZE")
+        if size > 1 and count.greatest:
             with self.lines.block("while (at < size)"):
                 self.lines.add(f"at += {size};")
             self._refuse("at != size", "SIZE")

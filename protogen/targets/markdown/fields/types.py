@@ -68,7 +68,9 @@ def _digits_text(form: Numeral) -> str:
 
 def _extended(element: str, count: Count, noun: str) -> str:
     if count.fills:
-        return f"{element} to the end, at most {plural(count.greatest, noun)}"
+        amount = plural(count.greatest, noun)
+        amount = f"{count.least} to {amount}" if count.least else f"at most {amount}"
+        return f"{element} to the end, {amount}"
     if count.field:
         return f"{element} x {code(count.field)}"
     return element if noun == "byte" else f"{element} x {count.known}"

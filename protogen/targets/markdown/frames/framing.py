@@ -25,6 +25,8 @@ _AMBIGUITY = {
     False: "None: a receiver cuts every frame where it ends.",
 }
 
+_CUT_OFF = "Encoders refuse values whose frame would be longer."
+
 
 def frame_views(protocol: Protocol) -> tuple[View, ...]:
     """Return a view for each different frame, in the order of the senders."""
@@ -84,7 +86,8 @@ def _properties(sender: Sender) -> Iterator[tuple[str, Sentences]]:
     yield "Start", (_said(framing.finds_start),)
     yield "End", (_said(framing.finds_end),)
     yield "Self-synchronising", (f"{sync} {_said(framing.why_synchronising)}".strip(),)
-    yield "Frame size", (f"{sizes} on the wire.",)
+    refused = (_CUT_OFF,) if framing.is_cut_off else ()
+    yield "Frame size", (f"{sizes} on the wire.", *refused)
     yield "Overhead", (_overhead(sender),)
     undetected = tuple(map(_said, framing.undetected)) or ("None.",)
     yield "Single-byte errors that go unnoticed", undetected

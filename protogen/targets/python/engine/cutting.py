@@ -200,7 +200,8 @@ class _Cutter(ChecksumFunction):
         size = "len(raw)"
         if self.plan.shares_delimiter:
             size += f" + {len(self.plan.start_bytes)}"
-        if self.plan.end_rule is not EndRule.IDENTITY or self.plan.has_open_groups:
+        varies = self.plan.end_rule is not EndRule.IDENTITY or self.plan.has_open_groups
+        if varies or self.plan.is_cut_off:
             self.stop_if(f"{size} > {self.plan.greatest}")
 
     def _no_start_inside(self) -> None:

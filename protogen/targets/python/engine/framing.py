@@ -272,6 +272,15 @@ class _Framer(FrameFunction):
         covered = frame.covered(part, "content", missing)
         return "payload" if self._has_payload and self._covers_payload(part, covered) else covered
 
+    @property
+    def _is_cut_off(self) -> bool:
+        """True if the frame may be longer than any that a decoder takes."""
+        framings = self.frame.sender.framing.messages
+        name = None if self.message is None else self.message.name
+        return self.plan.is_cut_off and any(
+            item.is_cut_off for item in framings if name in (item.message, None)
+        )
+
     def _return(self, bare: bool) -> None:
         frame = self.frame
         wire = self._stuffed(0 if bare else frame.behind) if frame.stuffed else "content"
@@ -279,11 +288,17 @@ class _Framer(FrameFunction):
             wire = f"{literal(frame.front)} + {wire}"
         if self.plan.end_bytes:
             wire += f" + {literal(self.plan.end_bytes)}"
-        if not self.plan.cut_ambiguous:
+        is_cut_off = self._is_cut_off
+        if not (self.plan.cut_ambiguous or is_cut_off):
             self.lines.add(f"return {wire}")
             return
-        # A decoder might end the frame elsewhere.
         self.lines.add(f"wire = {wire}")
+        if is_cut_off:
+            self.lines.refuse_if(f"len(wire) > {self.plan.greatest}")
+        if not self.plan.cut_ambiguous:
+            self.lines.add("return wire")
+            return
+        # A decoder might end the frame elsewhere.
         self.lines.add(f"return _fast.checked(wire, _cut_{self.name})")
 
     def _stuffed(self, size_behind: int) -> str:

@@ -8,6 +8,7 @@ from functools import lru_cache
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
+    Count,
     FloatStep,
     IntegerStep,
     NumberStep,
@@ -108,6 +109,13 @@ def outside(sizes: SizeSet, data: str) -> str:
         return f"len({data}) != {sizes.fixed}"
     bounds = f"not {sizes.least} <= len({data}) <= {sizes.greatest}"
     return f"{bounds} or (len({data}) - {sizes.least}) % {sizes.step}" if sizes.step > 1 else bounds
+
+
+def outside_of(count: Count, number: str) -> str:
+    """The condition that there are more or fewer than fill a payload."""
+    if count.least:
+        return f"not {count.least} <= {number} <= {count.greatest}"
+    return f"{number} > {count.greatest}"
 
 
 def holds_records(steps: Sequence[AnyStep], sizes: SizeSet) -> bool:

@@ -34,6 +34,7 @@ from protogen.targets.python.engine.layout import (
     order_of,
     outer_names,
     outside,
+    outside_of,
 )
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.packing import Record, unpack_record
@@ -272,7 +273,7 @@ class _Reader(Converter):
         start = self.place.text
         if step.fills:
             self.lines.add(f"{value} = data[{start}:]" if start != "0" else f"{value} = data")
-            self.lines.refuse_if(f"len({value}) > {step.count.greatest}")
+            self.lines.refuse_if(outside_of(step.count, f"len({value})"))
             self._move_to_end("len(data)")
         else:
             count = self._count(step.count)
@@ -372,7 +373,7 @@ class _Reader(Converter):
             return self._count(number)
         count, left = self.lines.local("n"), self.lines.local("left")
         self.lines.add(f"{count}, {left} = divmod(len(data) - {self.place.grouped}, {size})")
-        self.lines.refuse_if(f"{left} or {count} > {number.greatest}")
+        self.lines.refuse_if(f"{left} or {outside_of(number, count)}")
         return count
 
     def _elements(self, step: RepeatStep, size: int, count: str) -> str:
@@ -484,5 +485,5 @@ class _Reader(Converter):
                 self.lines.refuse_if(f"{at} == {before}")
             assert self.place.text == at
         if step.fills:
-            self.lines.refuse_if(f"len({values}) > {step.count.greatest}")
+            self.lines.refuse_if(outside_of(step.count, f"len({values})"))
         return values

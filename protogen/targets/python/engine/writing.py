@@ -33,6 +33,7 @@ from protogen.targets.python.engine.layout import (
     order_of,
     outer_names,
     outside,
+    outside_of,
 )
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.packing import Record, packed, packed_record
@@ -360,7 +361,7 @@ class _Writer:
         if count.is_fixed:
             self.lines.refuse_if(f"len({value}) != {count.known}")
         elif count.fills:
-            self.lines.refuse_if(f"len({value}) > {count.greatest}")
+            self.lines.refuse_if(outside_of(count, f"len({value})"))
         else:
             self.lines.refuse_if(f"len({value}) != {self.raw[count.field]}")
             if count.stated:
