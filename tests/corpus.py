@@ -15,12 +15,12 @@ from random import Random
 from compiled import module_at, protocol_of
 
 from protogen.fuzzing.samples import boundary_rounds, samples
-from protogen.model.frame import NumberPart
+from protogen.model.frame import ChoicePart, NumberPart
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.framing.frame import LiteralPart, StartSet
+from protogen.runtime.framing.frame import LiteralPart, StartSet, StartWords
 
 WHOLE = "whole"
 """The kind of a piece that is an undamaged frame."""
@@ -238,6 +238,8 @@ def unknown_frames(path: Path, sender: Sender) -> Iterator[bytes]:
 
 
 def _any_value(part: NumberPart, dice: Random) -> int:
+    if isinstance(part, ChoicePart):
+        return dice.choice(part.values)
     return dice.choice([part.least, part.greatest, dice.randint(part.least, part.greatest)])
 
 
@@ -253,6 +255,8 @@ def marks_of(path: Path, sender: str) -> bytes:
         found |= {value & 0xFF for value in message.IDENTITY}
     if isinstance(spec.frame.start, StartSet):
         found |= {spec.frame.start.least, spec.frame.start.greatest}
+    if isinstance(spec.frame.start, StartWords):
+        found |= set(b"".join(spec.frame.start.words))
     if spec.frame.transparency is not None:
         found |= set(spec.frame.transparency.encode(bytes(sorted(found))))
     return bytes(sorted(found))

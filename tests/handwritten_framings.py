@@ -128,6 +128,13 @@ class NumberMark:
     mark: int
 
 
+@dataclass(frozen=True, slots=True)
+class NumberIdMark:
+    number: int
+    id: int
+    mark: int
+
+
 Framing = rt.SenderSpec[Any, Any]
 ID = rt.IdentityPart("id", BYTE)
 PAYLOAD = rt.PayloadPart("payload")
@@ -382,6 +389,43 @@ def next_protected_start_ends() -> Framing:
     )
 
 
+def several_syncs() -> Framing:
+    """The same with two starts, the second of which also begins behind the first byte of one."""
+    number = rt.Number(16, order="big")
+    sync = rt.ValuePart("number", number, 0x1010, 0x1020, 0x1010, values=(0x1010, 0x1020))
+    mark = rt.ValuePart("mark", BYTE, 1, 9, values=(9, 1))
+    spec = rt.FrameSpec(
+        parts=(sync, ID, mark, PAYLOAD, XOR),
+        start=rt.StartWords((b"\x10\x10", b"\x10\x20"), protected=True),
+        end=None,
+        transparency=Substitution({0x10: b"\x10\x00"}),
+        stuffed=("id", "mark", "payload", "checksum"),
+        least=5,
+        greatest=26,
+        greatest_payload=9,
+    )
+    return rt.SenderSpec("a", spec, NumberIdMark, self_delimiting())
+
+
+def several_syncs_in_data() -> Framing:
+    """Three starts of three bytes that can also occur in the data, and an end."""
+    number = rt.Number(24, order="big")
+    words = (b"aab", b"aba", b"abb")
+    values = tuple(map(number.decode, words))
+    sync = rt.ValuePart("number", number, min(values), max(values), values=values)
+    mark = rt.ValuePart("mark", BYTE, 0x61, 0x63, values=(0x63, 0x61))
+    spec = rt.FrameSpec(
+        parts=(sync, length("payload", greatest=9), ID, PAYLOAD, mark, XOR, literal(b"ab", "end")),
+        start=rt.StartWords(words, protected=False),
+        end=rt.End(b"ab", protected=False),
+        least=9,
+        greatest=18,
+        greatest_payload=9,
+        ambiguous_cut=True,
+    )
+    return rt.SenderSpec("a", spec, NumberIdMark, every_message())
+
+
 def wire_checksum() -> Framing:
     """A checksum over the stuffed bytes, and a 7-bit counter."""
     crc = rt.ChecksumPart(
@@ -475,6 +519,8 @@ FRAMINGS: dict[str, Callable[[], Framing]] = {
     "nmea": nmea_like,
     "next start ends": next_start_ends,
     "next protected start ends": next_protected_start_ends,
+    "several syncs": several_syncs,
+    "several syncs in data": several_syncs_in_data,
     "checksum over the wire": wire_checksum,
     "lenient stuffing and a length": lenient_by_size,
     "lenient stuffing and an end": lenient_with_end,

@@ -66,6 +66,8 @@ class _Input:
 
     def is_start(self, place: int) -> bool:
         start = self.spec.start
+        if isinstance(start, rt.StartWords):
+            return any(self.data[place:].startswith(word) for word in start.words)
         if isinstance(start, rt.StartLiteral):
             return self.data[place:].startswith(start.value)
         if isinstance(start, rt.StartSet):
@@ -189,6 +191,10 @@ class _Candidate:
         self.wire = wire
         start = self.spec.start
         self.start = start.value if isinstance(start, rt.StartLiteral) else b""
+        self.marks = {self.start} - {b""}
+        if isinstance(start, rt.StartWords):
+            self.marks = {word for word in start.words if len(word) > 1}
+        self.mark_size = max(map(len, self.marks), default=0)
         self.end = self.spec.end.value if self.spec.end else b""
         parts = list(self.spec.parts)
         size = len(self.end)
@@ -232,7 +238,7 @@ class _Candidate:
     def look(self) -> None:
         self.look_for_nothing()
         protected_end = self.spec.end is not None and self.spec.end.protected
-        found, times, limit = self.search(len(self.start), self.end if protected_end else b"")
+        found, times, limit = self.search(self.mark_size, {self.end} if protected_end else set())
         content = self.unstuff(times, limit, None)
         opened = self.read_head(content)
         if self.payload is None and (opened is None or protected_end or self.measures()):
@@ -269,12 +275,12 @@ class _Candidate:
         """A protected start inside."""
         start = self.spec.start
         if (getattr(start, "protected", False) and self.start != self.end) or (
-            isinstance(start, rt.StartSet) and start.protected
+            isinstance(start, rt.StartSet | rt.StartWords) and start.protected
         ):
             place = self.start_behind(1)
             ends = opened is not None and self.ends_at_start and place >= opened
             if place < NEVER and not ends:
-                time = place + max(len(self.start), 1) - 1
+                time = place + max(self.mark_size, 1) - 1
                 self.fails(time, START, "truncated", size=place)
 
     def start_behind(self, low: int) -> int:
@@ -282,29 +288,31 @@ class _Candidate:
         found = source.next_start(low, len(self.wire))
         return NEVER if found is None else found
 
-    def search(self, low: int, delimiter: bytes) -> tuple[int | None, list[Time], int]:
-        """Where the delimiter is, when each byte in front of it is known not to begin it.
+    def search(self, low: int, delimiters: set[bytes]) -> tuple[int | None, list[Time], int]:
+        """Where a delimiter is, when each byte in front of it is known not to begin one.
 
         The last is how many bytes are known so; the others are held at the end of the input.
         """
         size = len(self.wire)
-        if not delimiter:
+        if not delimiters:
             return None, [(place, place) for place in range(size)], size
-        found = self.wire.find(delimiter, low)
+        places = [place for word in delimiters if (place := self.wire.find(word, low)) >= 0]
+        found = min(places, default=-1)
         limit = size if found < 0 else found
         times = [(place, place) for place in range(min(low, limit))]
-        last = size if found < 0 else found + len(delimiter) - 1
+        last = size if found < 0 else found + len(next(iter(delimiters))) - 1
         for place in range(low, limit):
-            free = (t for t in range(place, last) if not self.held(place, t, delimiter, low))
+            free = (t for t in range(place, last) if not self.held(place, t, delimiters, low))
             times += [(next(free, NEVER), place)]
         if found < 0:
             limit = next((i for i, time in enumerate(times) if time[0] == NEVER), limit)
         return (None if found < 0 else found), times, limit
 
-    def held(self, place: int, time: int, delimiter: bytes, low: int) -> bool:
+    def held(self, place: int, time: int, delimiters: set[bytes], low: int) -> bool:
         """Whether, with all up to `time` taken, the byte may still belong to a delimiter."""
         return any(
             delimiter.startswith(self.wire[first : time + 1])
+            for delimiter in delimiters
             for first in range(max(low, time + 2 - len(delimiter)), place + 1)
         )
 
@@ -433,6 +441,9 @@ class _Candidate:
             except ValueError as error:
                 self.fails(time, CONTENT, error.reason)  # type: ignore[attr-defined]
                 return False
+        if getattr(part, "values", ()) and self.numbers[part.name] not in part.values:
+            self.fails(time, CONTENT, "value")
+            return False
         if isinstance(part, rt.LengthPart):
             return self.read_length(part, time)
         if isinstance(part, rt.IdentityPart):
@@ -574,7 +585,7 @@ class _Candidate:
             self.look_until_start(opened)
             return
         if not protected:
-            found, times, limit = self.search(opened, self.end)
+            found, times, limit = self.search(opened, {self.end})
             content = self.unstuff(times, limit, None)
             self.look_broken(content)
         if self.spec.seven_bit and not self.tail:
@@ -597,13 +608,13 @@ class _Candidate:
 
     def look_until_start(self, opened: int) -> None:
         place = self.start_behind(opened)
-        size = max(len(self.start), 1)
+        size = max(self.mark_size, 1)
         if place == NEVER:
             place, time = len(self.wire), len(self.wire)
         else:
             time = place + size - 1
         # What is held at the end of the input is no start.
-        held_until = self.search(opened, self.start)[1]
+        held_until = self.search(opened, self.marks)[1]
         times = [(min(when, len(self.wire)), index) for when, index in held_until]
         content = self.unstuff(times, min(place, len(self.wire)), None)
         self.look_broken(content)

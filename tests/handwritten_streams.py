@@ -20,6 +20,8 @@ def telling_bytes(sender: Any) -> bytes:
             found |= set(part.value)
     for message in sender.messages:
         found |= set(message.IDENTITY)
+    if isinstance(spec.start, rt.StartWords):
+        found |= set(b"".join(spec.start.words))
     if spec.transparency is not None:
         found |= set(spec.transparency.encode(bytes(sorted(found))))
     return bytes(sorted(found))
@@ -35,7 +37,7 @@ def random_frame(sender: Any, source: random.Random) -> bytes:
     identity = source.choice([message.IDENTITY for message in sender.messages])
     if source.random() < 0.15:
         identity = tuple(source.choice(telling) for _ in identity)
-    parts = {part.name: source.choice(telling) for part in sender.layout.values}
+    parts = {part.name: source.choice(part.values or telling) for part in sender.layout.values}
     try:
         return encode_frame(sender, identity, payload, parts, strict=False)
     except rt.EncodeError:

@@ -20,7 +20,7 @@ from typing import Any
 
 from corpus import Stream
 
-from protogen.runtime.framing.frame import AfterEnd, FrameSpec, StartLiteral, StartSet
+from protogen.runtime.framing.frame import AfterEnd, FrameSpec, StartLiteral, StartMark
 
 
 class Fate(StrEnum):
@@ -64,7 +64,7 @@ def is_due(spec: FrameSpec, before: bytes) -> bool:
 
 def is_protected(spec: FrameSpec) -> bool:
     """True if what a frame begins behind or with occurs nowhere inside of a valid frame."""
-    if isinstance(spec.start, StartLiteral | StartSet):
+    if isinstance(spec.start, StartMark):
         return spec.start.protected
     return isinstance(spec.start, AfterEnd) and spec.end is not None and spec.end.protected
 

@@ -93,6 +93,12 @@ KINDS: dict[str, Data] = {
 """Fields of the message, which ends with a byte `z`."""
 
 
+PARTS: dict[str, Data] = {
+    "choice of literals": {"literal": {"any_of": [0x10, 0x20], "default": 0x10}},
+}
+"""The part `number` of the frame, around the fields of `uint8`."""
+
+
 class Pair(NamedTuple):
     kind: str
     name: str
@@ -355,6 +361,37 @@ def of_bits_and_digits() -> Iterator[Pair]:
     yield Pair("run", "as number", number, "PASS", "the same bit, shown otherwise")
 
 
+def of_parts() -> Iterator[Pair]:
+    def number(**part: object) -> Edit:
+        return lambda data: data["frame"].update(number=part)
+
+    def several(literals: list[int], default: int) -> Edit:
+        return number(literal={"any_of": literals, "default": default})
+
+    edits: list[tuple[str, str, Edit, str, str]] = [
+        ("choice of literals", "more", several([0x10, 0x20, 0x30], 0x10), "WIRE",
+         "old receivers refuse the third"),
+        ("choice of literals", "less", several([0x10, 0x30], 0x10), "WIRE",
+         "new receivers refuse the second"),
+        ("choice of literals", "order", several([0x20, 0x10], 0x10), "PASS",
+         "an order of literals in a list"),
+        ("choice of literals", "default", several([0x10, 0x20], 0x20), "PASS",
+         "receivers take both"),
+        ("choice of literals", "larger", number(literal={"any_of": [[0x10, 0], [0x20, 0]]}), "WIRE",
+         "the payload moves"),
+        ("choice of literals", "number", number(type="uint8", default=0x10), "WIRE",
+         "old receivers refuse other numbers"),
+        ("choice of literals", "one", number(literal=0x10), "WIRE",
+         "new receivers refuse the other"),
+        ("uint8", "several starts", lambda d: (
+            d["frame"]["start"].update(literal={"any_of": [0xAA, 0xAC]}),
+            d["transparency"]["escape"].update(of=[0xAA, 0xAB, 0xAC]),
+         ), "WIRE", "old receivers find no start at the second"),
+    ]  # fmt: skip
+    for kind, name, edit, verdict, reason in edits:
+        yield Pair(kind, f"part {name}", edit, verdict, reason)
+
+
 PAIRS = [
     *(pair for kind in KINDS for pair in of_every_kind(kind)),
     *of_types(),
@@ -362,6 +399,7 @@ PAIRS = [
     *of_names(),
     *of_quantities(),
     *of_frames(),
+    *of_parts(),
 ]
 
 
@@ -380,7 +418,10 @@ def test_there_are_300_pairs() -> None:
 @pytest.mark.parametrize("pair", PAIRS, ids=lambda pair: f"{pair.kind}, {pair.name}")
 def test_the_gate_says_what_decoding_shows(pair: Pair, tmp_path: Path) -> None:
     before = copy.deepcopy(BASE)
-    fields(before).update(copy.deepcopy(KINDS[pair.kind]), z={"type": "uint8"})
+    if pair.kind in PARTS:
+        before["frame"]["number"] = copy.deepcopy(PARTS[pair.kind])
+    kind = KINDS.get(pair.kind, KINDS["uint8"])
+    fields(before).update(copy.deepcopy(kind), z={"type": "uint8"})
     after = copy.deepcopy(before)
     pair.edit(after)
     old, new = compiled(tmp_path / "old.yaml", before), compiled(tmp_path / "new.yaml", after)

@@ -38,7 +38,7 @@ def tail(offset: int, absent: int = 0) -> Place:
 def test_rn1_brain_is_one_byte_of_a_set_and_a_payload_whose_size_it_tells():
     plan = plan_of("rn1", "brain")
     assert (plan.start, plan.start_is_unique) == (StartRule.SET, True)
-    assert plan.start_set == range(0x80, 0xFF)
+    assert plan.start_set == tuple(range(0x80, 0xFF))
     assert (plan.end_rule, plan.end_bytes) == (EndRule.IDENTITY, b"")
     assert [(item.name, item.offset, item.size) for item in plan.head] == [("start", 0, 1)]
     assert (plan.tail, plan.checksums, plan.length, plan.region) == ((), (), None, None)

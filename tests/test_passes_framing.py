@@ -22,6 +22,10 @@ def framing(protocol: str, sender: str) -> Framing:
     return repository_protocol(protocol).sender(sender).framing
 
 
+def every_byte(first: int, last: int) -> tuple[bytes, ...]:
+    return tuple(bytes((byte,)) for byte in range(first, last + 1))
+
+
 def around(protocol: str, sender: str) -> tuple[int, int]:
     """Bytes in front of the payload, and behind it without the end."""
     plan = repository_protocol(protocol).sender(sender).plan
@@ -34,7 +38,7 @@ class TestRn1:
     def test_a_start_byte_is_no_data_byte(self) -> None:
         for sender in ("host", "brain"):
             start = framing("rn1", sender).start
-            assert start == StartSet(least=0x80, greatest=0xFE, protected=True)
+            assert start == StartSet(words=every_byte(0x80, 0xFE), protected=True)
             assert framing("rn1", sender).seven_bit
             assert framing("rn1", sender).self_synchronising
 
@@ -220,7 +224,7 @@ class TestOtherShapes:
         )
         messages = "messages: {gyro: {id: 0xF1, from: robot, fields: {angle: uint14}}}\n"
         found = framing_of(HEAD + frame + messages)
-        assert found.start == StartSet(least=0xF0, greatest=0xF7, protected=True)
+        assert found.start == StartSet(words=every_byte(0xF0, 0xF7), protected=True)
         assert found.payload == SizeSet.between(0, 127)
         assert (found.least, found.greatest) == (4, 2 + 127)
 
@@ -235,7 +239,7 @@ class TestOtherShapes:
         )
         messages = "messages: {gyro: {id: 0xF1, from: robot, fields: {raw: byte}}}\n"
         found = framing_of(HEAD + frame + messages)
-        assert found.start == StartSet(least=0xF0, greatest=0xF7, protected=False)
+        assert found.start == StartSet(words=every_byte(0xF0, 0xF7), protected=False)
         assert not found.seven_bit
 
     def test_what_the_payload_may_hold_is_searched_in_structs_arrays_and_switches(self) -> None:

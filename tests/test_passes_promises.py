@@ -74,8 +74,8 @@ def test_protected_delimiters_stand_nowhere_else(name: str) -> None:
                 assert wire.startswith(start.bytes)
                 assert wire.find(start.bytes, 1) == -1
             if isinstance(start, StartSet) and start.protected:
-                assert start.least <= wire[0] <= start.greatest
-                assert not any(start.least <= byte <= start.greatest for byte in wire[1:])
+                assert wire.startswith(start.words)
+                assert not any(word in wire[1:] for word in start.words)
             if end is not None and end.protected:
                 assert wire.find(end.bytes) == len(wire) - len(end.bytes)
 

@@ -36,7 +36,7 @@ from hypothesis import strategies as st
 from recovery_oracle import Fate, fates, is_protected
 
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.framing.frame import AfterEnd, FrameSpec, StartLiteral, StartSet
+from protogen.runtime.framing.frame import AfterEnd, FrameSpec, StartMark
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 SEEDS = range(max(10, settings().max_examples // 6))
@@ -251,7 +251,7 @@ def test_a_torrent_of_noise_fills_no_memory(path: Path) -> None:
 WITH_STARTS = [
     (path, sender)
     for path, sender in senders()
-    if isinstance(spec_of(path, sender).start, StartLiteral | StartSet)
+    if isinstance(spec_of(path, sender).start, StartMark)
 ]
 
 

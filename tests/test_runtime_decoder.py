@@ -103,7 +103,8 @@ def test_memory_is_bounded(sender: Any) -> None:
     for _ in range(30):
         for byte in streams.random_stream(sender, source):
             decoder.feed(bytes((byte,)))
-            assert decoder.pending <= sender.frame.greatest
+            beginning = max(0, sender.layout.start_size - 2)
+            assert decoder.pending <= sender.frame.greatest + beginning
     decoder.flush()
     assert decoder.pending == 0
 

@@ -10,6 +10,7 @@ from protogen.evolution.shapes import are_crossed, encoding_shape
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
     ChecksumPart,
+    ChoicePart,
     CounterPart,
     Encoding,
     Escape,
@@ -98,6 +99,10 @@ class _Frames:
         if _layout(old.type) != _layout(new.type):
             words = named(old.type.label, new.type.label)
             yield self._change("frame-part-type", old.name, words)
+        elif isinstance(old, ChoicePart) and isinstance(new, ChoicePart):
+            if set(old.words) != set(new.words):
+                words = named(_alternatives(old), _alternatives(new))
+                yield self._change("frame-value-range", old.name, words)
         elif (old.least, old.greatest) != (new.least, new.greatest):
             yield self._range(old, new)
         if isinstance(old, LengthPart) and isinstance(new, LengthPart):
@@ -195,9 +200,15 @@ def _sum(algorithm: ChecksumSpec) -> object:
 
 def _kind(part: Part) -> str:
     name = type(part).__name__.removesuffix("Part").lower()
+    if isinstance(part, ChoicePart):
+        return f"one of the literals {_alternatives(part)}"
     if isinstance(part, NumberPart | ChecksumPart):
         return f"{name}, {part.type.label}"
     return f"{name} {part.bytes.hex(' ').upper()}" if isinstance(part, LiteralPart) else name
+
+
+def _alternatives(part: ChoicePart) -> str:
+    return " or ".join(word.hex(" ").upper() for word in part.words)
 
 
 def _listed(names: tuple[str, ...]) -> str:

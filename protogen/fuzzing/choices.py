@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from protogen.model.frame import CounterPart, ValuePart
+from protogen.model.frame import ChoicePart, CounterPart, ValuePart
 from protogen.model.messages import Message
 from protogen.model.payload_plan import (
     AnyStep,
@@ -51,6 +51,8 @@ class Choices(msgspec.Struct, frozen=True):
 
 def part_choices(part: CounterPart | ValuePart) -> Choices:
     """Choices for a part of the frame that the caller gives."""
+    if isinstance(part, ChoicePart):
+        return Choices(part.values, lambda random: random.choice(part.values))
     least, greatest = part.least, part.greatest
     return Choices((least, greatest), lambda random: random.randint(least, greatest))
 

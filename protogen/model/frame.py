@@ -94,6 +94,25 @@ class ValuePart(NumberPart, frozen=True, kw_only=True):
     default: int | None = None
 
 
+class ChoicePart(ValuePart, frozen=True, kw_only=True):
+    """One of several literals of one size: the caller chooses, and the receiver hands it on."""
+
+    words: tuple[bytes, ...]
+    """The literals, in the order of the schema."""
+    unprotected: str | None = None
+    """The decision that accepts that they can also occur inside the frame."""
+
+    @property
+    def values(self) -> tuple[int, ...]:
+        """The literals as numbers, in the same order."""
+        return tuple(map(codec(self.type).decode, self.words))
+
+    @property
+    def is_bounded(self) -> bool:
+        """True, as receivers refuse whatever is none of the literals."""
+        return True
+
+
 class PayloadPart(Part, frozen=True, kw_only=True):
     """The message's fields."""
 

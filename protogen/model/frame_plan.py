@@ -15,6 +15,7 @@ from protogen.model.frame import (
     FULL_GROUP,
     Base16,
     ChecksumPart,
+    ChoicePart,
     Cobs,
     CounterPart,
     Encoding,
@@ -34,7 +35,7 @@ class StartRule(Enum):
 
     LITERAL = auto()
     SET = auto()
-    """A first byte of a range of its own."""
+    """One of several words, or a first byte of a range of its own."""
     AFTER_END = auto()
     """The end of the frame before, or the start of the stream."""
     ANYWHERE = auto()
@@ -241,8 +242,8 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     start: StartRule
     start_bytes: bytes
     """The start literal; empty where something else marks the start."""
-    start_set: range
-    """First bytes of a frame, where a set marks the start; else empty."""
+    start_words: tuple[bytes, ...]
+    """What a frame starts with, in order and of one size; empty where nothing marks the start."""
     start_is_unique: bool
     """True if a start occurs nowhere else in a frame."""
     end_rule: EndRule
@@ -356,15 +357,19 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
 
     @property
     def bounded(self) -> tuple[PlacedPart, ...]:
-        """The parts in front of the payload whose values a receiver holds to their bounds.
+        """The parts whose values a receiver holds to their bounds.
 
-        Where a frame can start inside a failed candidate, the sooner one fails the better.
+        These are literals of which there are several, and numbers in front of the payload where a
+        frame can start inside a failed candidate: the sooner one fails the better.
         """
         kinds = CounterPart | ValuePart
-        return tuple(
+        early = tuple(
             item
             for item in self.head
             if self.rescans and isinstance(item.part, kinds) and item.part.is_bounded
+        )
+        return tuple(
+            item for item in self.placed if item in early or isinstance(item.part, ChoicePart)
         )
 
     @property
@@ -397,16 +402,34 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return self.end_is_unique and self.start_bytes == self.end_bytes
 
     @property
+    def start_size(self) -> int:
+        """Bytes of what marks the start; 0 where nothing does."""
+        return len(self.start_words[0]) if self.start_words else 0
+
+    @property
+    def mark_size(self) -> int:
+        """Bytes in front of a frame that no end is looked for in.
+
+        Where one of several bytes marks the start, it is looked at as any other is.
+        """
+        return self.start_size if self.start_size > 1 else len(self.start_bytes)
+
+    @cached_property
+    def start_set(self) -> tuple[int, ...]:
+        """First bytes of a frame, where one of several bytes marks the start; else empty."""
+        if self.start is not StartRule.SET or self.start_size > 1:
+            return ()
+        return tuple(word[0] for word in self.start_words)
+
+    @property
     def end_begins_start(self) -> bool:
         """True if a start may seem to begin inside of an end that belongs to the frame before."""
         if self.shares_delimiter:
             return False
-        start, end = self.start_bytes, self.end_bytes
-        endings = [end[place:] for place in range(len(end))]
-        if self.start is StartRule.SET:
-            return any(byte in self.start_set for byte in end)
-        begins = any(item.startswith(start) or start.startswith(item) for item in endings)
-        return bool(start) and (begins or end in start[1:])
+        end = self.end_bytes
+        if self.start is StartRule.SET and not end:
+            return False
+        return any(_begins_inside(start, end) for start in self.start_words)
 
     @property
     def store(self) -> Store:
@@ -456,3 +479,10 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
             return True
         value = message.identity[self.identity.index(first)]
         return first.encode(value).startswith(self.end_bytes)
+
+
+def _begins_inside(start: bytes, end: bytes) -> bool:
+    """True if a start may seem to begin inside of an end."""
+    endings = [end[place:] for place in range(len(end))]
+    begins = any(item.startswith(start) or start.startswith(item) for item in endings)
+    return begins or end in start[1:]

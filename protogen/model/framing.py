@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 import msgspec
 
 from protogen.model.sizes import SizeSet
+
+
+def are_run(numbers: Sequence[int]) -> bool:
+    """True if numbers that are in order are all from the first to the last."""
+    return len(numbers) == numbers[-1] - numbers[0] + 1
 
 
 class StartLiteral(msgspec.Struct, frozen=True, kw_only=True):
@@ -17,11 +23,18 @@ class StartLiteral(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class StartSet(msgspec.Struct, frozen=True, kw_only=True):
-    """A frame starts with one of these bytes. Protected: no other byte of a frame is one."""
+    """A frame starts with one of these words, which are in order and of one size.
 
-    least: int
-    greatest: int
+    Protected: they occur nowhere else in a valid frame.
+    """
+
+    words: tuple[bytes, ...]
     protected: bool
+
+    @property
+    def is_run(self) -> bool:
+        """True if the words are single bytes, all from the first to the last."""
+        return len(self.words[0]) == 1 and are_run([word[0] for word in self.words])
 
 
 class AfterEnd(msgspec.Struct, frozen=True, kw_only=True):

@@ -22,6 +22,7 @@ from protogen.runtime.framing.frame import (
     PayloadPart,
     StartLiteral,
     StartSet,
+    StartWords,
     ValuePart,
 )
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
@@ -91,6 +92,7 @@ __all__ = [
     "Sizes",
     "StartLiteral",
     "StartSet",
+    "StartWords",
     "StructRule",
     "SwitchRule",
     "TextRule",

@@ -93,9 +93,8 @@ def check_frame(sender: Sender, message: Message, frame: bytes) -> None:
         if start.protected:
             assert _places(frame, start.bytes) <= ends | {0}
     if isinstance(start, StartSet):
-        marks = [start.least <= byte <= start.greatest for byte in frame]
-        assert marks[0]
-        assert not (start.protected and any(marks[1:]))
+        assert frame.startswith(start.words)
+        assert not (start.protected and any(word in frame[1:] for word in start.words))
 
 
 def _places(data: bytes, literal: bytes) -> set[int]:
@@ -141,6 +140,8 @@ def _most_kept(sender: Sender) -> int:
     """
     start = sender.framing.start
     beginning = len(start.bytes) - 2 if isinstance(start, StartLiteral) else 0
+    if isinstance(start, StartSet):
+        beginning = len(start.words[0]) - 2
     return sender.framing.greatest + max(0, beginning)
 
 

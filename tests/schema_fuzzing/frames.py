@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +14,7 @@ from schema_fuzzing.codes import BYTE, Code, codes, plain
 from schema_fuzzing.delimiters import Delimited, Stretch
 from schema_fuzzing.parts import Maker, PartPlan
 
-STARTS = ("literal", "literal", "two literals", "set", "none")
+STARTS = ("literal", "literal", "two literals", "choice", "set", "none")
 ENDS = ("literal", "two literals", "none", "none")
 _EVERY_COBS_BYTE = frozenset(bytes((byte,)) for byte in range(1, 256))
 
@@ -51,7 +51,10 @@ class FramePlan:
     @property
     def opening(self) -> tuple[int, ...]:
         """The literals that the frame starts with, outside of the region."""
-        return tuple(self._literals_from(0, 1, None if self.region is None else self.region.first))
+        edge = None if self.region is None else self.region.first
+        if self.parts[0].role == "choice":
+            return () if edge == 0 else (0,)
+        return tuple(self._literals_from(0, 1, edge))
 
     @property
     def closing(self) -> tuple[int, ...]:
@@ -78,9 +81,10 @@ class FramePlan:
         covered = self.region is not None and self.region.first == 0
         return not self.opening and "range" in self.parts[0].data and not covered
 
-    def literal_of(self, places: Sequence[int]) -> bytes:
-        """Literals that stand side by side, joined."""
-        return b"".join(self.parts[index].literal for index in places)
+    def words_at(self, places: Sequence[int]) -> tuple[bytes, ...]:
+        """Literals that stand side by side, joined; or each that there is a choice of."""
+        first = self.parts[places[0]]
+        return first.words or (b"".join(self.parts[index].literal for index in places),)
 
     # -- what depends on the messages --------------------------------------------------------
 
@@ -88,9 +92,8 @@ class FramePlan:
         """The frame whose length says at least what the smallest payload needs, less `slack`."""
         return replace(self, parts=tuple(_with_least(part, least, slack) for part in self.parts))
 
-    def stretches(self, payload: frozenset[int]) -> Iterator[Stretch]:
+    def stretches(self, payload: frozenset[int], own: Sequence[int]) -> Iterator[Stretch]:
         """Bytes of the frame on the wire, where the payload holds such bytes."""
-        own = {*self.opening, *self.closing}
         for index, part in enumerate(self.parts):
             inside = self.region is not None and self.region.first <= index <= self.region.last
             if inside and self.code is not None and self.code.codewords is None:
@@ -105,10 +108,12 @@ class FramePlan:
 
     def with_unprotected(self, payload: frozenset[int], decision: str) -> FramePlan:
         """The frame with `unprotected` on the delimiters that can occur in the data."""
-        automaton = Delimited(self.stretches(payload))
         parts = list(self.parts)
+        has_choice = any(self.parts[place].words for place in self.opening)
         for places in (self.opening, self.closing):
-            if places and automaton.holds(self.literal_of(places)):
+            own = places if has_choice else (*self.opening, *self.closing)
+            automaton = Delimited(self.stretches(payload, own))
+            if places and any(map(automaton.holds, self.words_at(places))):
                 parts[places[-1]] = parts[places[-1]].adding(unprotected=decision)
         return replace(self, parts=tuple(parts))
 
@@ -151,6 +156,9 @@ def _stretches_of(
         yield Stretch(frozenset(words[byte] for byte in payload), repeated=True)
     elif part.role == "literal":
         yield Stretch(frozenset({b"".join(words[byte] for byte in part.literal)}), own=own)
+    elif part.role == "choice":
+        found = (b"".join(words[byte] for byte in literal) for literal in part.words)
+        yield Stretch(frozenset(found), own=own)
     else:
         for values in part.values:
             found = frozenset(words[byte] for byte in values)
@@ -212,10 +220,15 @@ class _Drawing:
 
     def _delimiters(self) -> tuple[list[PartPlan], list[PartPlan]]:
         opening = [self._literal() for _ in range(_literals(self._start))]
+        if self._start == "choice":
+            opening = [self._choice(self._delimiter_byte)]
         closing = [self._literal() for _ in range(_literals(self._end))]
-        alike = len(opening) == len(closing) == 1 and self._draw(forms.one_in(3))
+        sizes = (len(opening), len(closing))
+        alike = sizes == (1, 1) and not opening[0].words and self._draw(forms.one_in(3))
         if alike:
             closing = [self._maker.literal(opening[0].literal)]
+        if self._start == "choice":
+            return opening, closing
         if _joined(opening) == _joined(closing) and not self._is_never_empty():
             return opening, []  # Nothing could stand between them, and that is no frame.
         return opening, closing
@@ -223,6 +236,19 @@ class _Drawing:
     def _literal(self) -> PartPlan:
         size = self._draw(st.sampled_from([1, 1, 1, 2, 2, 3]))
         return self._maker.literal(bytes(self._delimiter_byte() for _ in range(size)))
+
+    def _choice(self, byte: Callable[[], int]) -> PartPlan:
+        """A choice of two to four literals of such bytes."""
+        size = self._draw(st.sampled_from([1, 1, 1, 2, 2, 3]))
+        count = self._draw(st.integers(2, 4))
+        drawn = dict.fromkeys(bytes(byte() for _ in range(size)) for _ in range(count))
+        if len(drawn) < 2:
+            (only,) = drawn
+            drawn[only[:-1] + bytes((only[-1] ^ 0x11,))] = None
+        return self._maker.choice(tuple(drawn))
+
+    def _any_byte(self) -> int:
+        return self._draw(BYTE)
 
     def _delimiter_byte(self) -> int:
         """Mostly a byte that is kept out of the data, where there is one."""
@@ -296,6 +322,10 @@ class _Drawing:
         if self._draw(forms.one_in(8)) and head:
             place = self._draw(st.integers(1, len(head)))
             head.insert(place, self._maker.literal(self._draw(st.binary(min_size=1, max_size=2))))
+        if self._draw(forms.one_in(10)) and head:
+            head.insert(self._draw(st.integers(1, len(head))), self._choice(self._any_byte))
+        if self._draw(forms.one_in(12)) and tail:
+            tail.insert(0, self._choice(self._any_byte))
         if self._draw(forms.one_in(10)) and tail:
             tail.insert(0, self._maker.literal(self._draw(st.binary(min_size=1, max_size=2))))
 

@@ -62,6 +62,8 @@ class PartPlan:
     optional: bool = False
     type: PartType | None = None
     bounds: tuple[int, int] = (0, 0)
+    words: tuple[bytes, ...] = ()
+    """The literals of a choice."""
 
     @property
     def size(self) -> int:
@@ -99,6 +101,15 @@ class Maker:
         written = {"literal": self._draw(forms.octets(data)), **self._draw(forms.about())}
         values = tuple(frozenset({byte}) for byte in data)
         return PartPlan(self.name(), "literal", written, values)
+
+    def choice(self, words: Sequence[bytes]) -> PartPlan:
+        """Several literals of one size, of which a frame has one."""
+        written = {"any_of": [self._draw(forms.octets(word)) for word in words]}
+        if self._draw(st.booleans()):
+            written["default"] = self._draw(forms.octets(self._draw(st.sampled_from(words))))
+        keys = {"literal": written, **self._draw(forms.about())}
+        values = tuple(map(frozenset, zip(*words, strict=True)))
+        return PartPlan(self.name(), "choice", keys, values, words=tuple(words))
 
     def payload(self) -> PartPlan:
         return PartPlan("payload", "payload", self._draw(forms.about()))

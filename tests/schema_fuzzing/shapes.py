@@ -24,7 +24,8 @@ COMMON = (
     "byte order: None", "byte order: big", "byte order: little", "byte order: each sender",
     "byte order of a message", "byte order of a part", "field with byte_order", "lenient",
     "size: by the end", "size: by the message", "size: length", "size: length with a range",
-    "counter", "value", "checksum over wire", "checksum when payload", "algorithm: parameters",
+    "counter", "value", "choice", "start: choice", "checksum over wire", "checksum when payload",
+    "algorithm: parameters",
     "overload by size", "overload by undecidable", "unspecified payload", "empty message",
     "type: ascii", "type: bytes", "type: bool", "type: byte", "type: char", "type: float32",
     "type: float64", "type: struct", "type: switch", "declared struct", "declared number",
@@ -84,7 +85,9 @@ def _frame(frame: FramePlan) -> Iterator[str]:
     yield f"size: {_size(frame)}"
     yield f"identity parts: {roles.count('id')}"
     yield f"checksums: {roles.count('checksum')}"
-    yield from (role for role in roles if role in ("counter", "value"))
+    yield from (role for role in roles if role in ("counter", "value", "choice"))
+    if frame.opening and frame.parts[0].role == "choice":
+        yield "start: choice"
     if frame.lenient:
         yield "lenient"
     if frame.limit is not None:

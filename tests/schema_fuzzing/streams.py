@@ -105,7 +105,7 @@ def _hideable(framing: Framing) -> int:
     if isinstance(start, StartLiteral) and start.protected:
         return len(start.bytes)
     if isinstance(start, StartSet) and start.protected:
-        return 1
+        return len(start.words[0])
     if isinstance(start, AfterEnd) and framing.end is not None and framing.end.protected:
         return 1
     return 1 << 30

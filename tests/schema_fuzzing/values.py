@@ -10,7 +10,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from protogen.model.frame import CounterPart, Frame, ValuePart
+from protogen.model.frame import ChoicePart, CounterPart, Frame, ValuePart
 from protogen.model.messages import Message
 from protogen.model.types import (
     Array,
@@ -50,7 +50,11 @@ def values_of(draw: st.DrawFn, message: Message) -> dict[str, Any]:
 def parts_of(draw: st.DrawFn, frame: Frame) -> dict[str, int]:
     """Values for counters and values of a frame; one with a default is left out sometimes."""
     return {
-        part.name: draw(_between(part.least, part.greatest))
+        part.name: draw(
+            st.sampled_from(part.values)
+            if isinstance(part, ChoicePart)
+            else _between(part.least, part.greatest)
+        )
         for part in frame.caller_parts
         if part.default is None or draw(st.booleans())
     }

@@ -15,6 +15,7 @@ from protogen.model.checksums import checksum_of
 from protogen.model.frame import (
     FULL_GROUP,
     ChecksumPart,
+    ChoicePart,
     IdentityPart,
     LengthPart,
     LiteralPart,
@@ -152,6 +153,9 @@ class _Frame:
         self._numbers[part.name] = value
         fits = part.least <= value <= part.greatest
         fault = "" if fits else f"must be from {part.least} to {part.greatest}"
+        if isinstance(part, ChoicePart):
+            words = " or ".join(word.hex(" ").upper() for word in part.words)
+            fault = "" if value in part.values else f"must be {words}"
         meaning = character(value) if part.type.role == "char" else ""
         if isinstance(part, LengthPart):
             meaning = f"bytes of {', '.join(part.counts)}"

@@ -93,12 +93,14 @@ class _Analysis:
 
     def _end(self) -> End | None:
         tail = self.delimiters.tail
-        return None if tail is None else End(bytes=tail.bytes, protected=tail.protected)
+        return None if tail is None else End(bytes=tail.words[0], protected=tail.protected)
 
     def _start(self, end: End | None) -> Start | None:
         head = self.delimiters.head
+        if head is not None and len(head.words) > 1:
+            return StartSet(words=head.words, protected=head.protected)
         if head is not None:
-            return StartLiteral(bytes=head.bytes, protected=head.protected)
+            return StartLiteral(bytes=head.words[0], protected=head.protected)
         marked = self._start_set()
         if marked is not None:
             return marked
@@ -135,7 +137,8 @@ class _Analysis:
         told = protected or self.frame.length is not None or self._always_checked()
         if not told or others <= values:
             return None
-        return StartSet(least=min(values), greatest=max(values), protected=protected)
+        words = tuple(bytes((value,)) for value in sorted(values))
+        return StartSet(words=words, protected=protected)
 
     # -- what a receiver can tell -------------------------------------------------------------
 
@@ -175,7 +178,7 @@ class _Analysis:
     def _only_end(self) -> None:
         """A frame that holds nothing is no frame to a receiver, but a line that is idle."""
         head, tail = self.delimiters.head, self.delimiters.tail
-        if tail is None or (head is not None and head.bytes != tail.bytes):
+        if tail is None or (head is not None and head.words != tail.words):
             return
         if isinstance(self.frame.encoding, Cobs):
             return  # It makes a byte of nothing.
@@ -255,12 +258,14 @@ class _Analysis:
 
     def can_hold(self, start: Start) -> bool:
         """True if the start of another form's frame may stand in these."""
+        words = start.words if isinstance(start, StartSet) else ()
         if isinstance(start, StartLiteral):
-            stretches = segments(self.frame, self._payload, ())
-            return occurs(start.bytes, b"", stretches, b"") is not None
-        used = (used for _, used in wire_bytes(self.frame, self._payload))
-        values = range(start.least, start.greatest + 1) if isinstance(start, StartSet) else ()
-        return not frozenset().union(*used).isdisjoint(values)
+            words = (start.bytes,)
+        if all(len(word) == 1 for word in words):
+            used = frozenset().union(*(used for _, used in wire_bytes(self.frame, self._payload)))
+            return not used.isdisjoint(b"".join(words))
+        stretches = segments(self.frame, self._payload, ())
+        return any(occurs(word, b"", stretches, b"") is not None for word in words)
 
     def _payload_sizes(self, start: Start) -> SizeSet:
         # Without a length, unknown messages alone have other sizes than those that are known.

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import product
 
-from protogen.model.frame import Frame, LengthPart, LiteralPart, Part, PayloadPart
+from protogen.model.frame import ChoicePart, Frame, LengthPart, LiteralPart, Part, PayloadPart
 from protogen.model.sizes import SizeSet
 from protogen.passes.proofs.wire_code import EVERY_BYTE, code_of, part_bytes
 
@@ -90,9 +91,12 @@ def tail_literals(frame: Frame) -> tuple[LiteralPart, ...]:
     return tuple(_literals(reversed(frame.parts), stuffed))[::-1]
 
 
-def head_literals(frame: Frame) -> tuple[LiteralPart, ...]:
-    """The literals that open the frame, outside the transparency."""
+def head_literals(frame: Frame) -> tuple[LiteralPart, ...] | tuple[ChoicePart]:
+    """The literals that open the frame, outside the transparency: many, or a choice of them."""
     stuffed = frame.transparency.first if frame.transparency else None
+    first = frame.parts[0]
+    if isinstance(first, ChoicePart) and first.name != stuffed:
+        return (first,)
     return tuple(_literals(frame.parts, stuffed))
 
 
@@ -102,6 +106,12 @@ def _literals(parts: Iterable[Part], stuffed: str | None) -> Iterator[LiteralPar
         if not isinstance(part, LiteralPart) or part.name == stuffed:
             return
         yield part
+
+
+def joined_words(parts: Iterable[LiteralPart | ChoicePart]) -> tuple[bytes, ...]:
+    """Byte strings that literals can be together, in order."""
+    choices = (part.words if isinstance(part, ChoicePart) else (part.bytes,) for part in parts)
+    return tuple(sorted(map(b"".join, product(*choices))))
 
 
 def is_delimited(frame: Frame) -> bool:

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 
 import msgspec
 
-from protogen.model.frame import Frame, LiteralPart
+from protogen.model.frame import ChoicePart, Frame, LiteralPart
 from protogen.passes.context import Context, Loc
-from protogen.passes.framing.capacity import head_literals, tail_literals
+from protogen.passes.framing.capacity import head_literals, joined_words, tail_literals
 from protogen.passes.proofs.codewords import occurs
 from protogen.passes.proofs.wire_code import ByteSet, segments
 
@@ -17,14 +17,11 @@ from protogen.passes.proofs.wire_code import ByteSet, segments
 class Delimiter(msgspec.Struct, frozen=True):
     """Literals that stand together at one end of a frame."""
 
-    parts: tuple[LiteralPart, ...]
+    parts: tuple[LiteralPart | ChoicePart, ...]
+    words: tuple[bytes, ...]
+    """Bytes of the literals together: one word, or several where there is a choice."""
     witness: tuple[bytes, int] | None
-    """A frame that has the delimiter in another place, and where; None: there is none."""
-
-    @property
-    def bytes(self) -> bytes:
-        """Bytes of the literals together."""
-        return b"".join(part.bytes for part in self.parts)
+    """A frame that has a word in another place, and where; None: there is none."""
 
     @property
     def protected(self) -> bool:
@@ -40,13 +37,23 @@ class Delimiters(msgspec.Struct, frozen=True):
 
 
 def delimiters_of(frame: Frame, payload: ByteSet) -> Delimiters:
-    """The delimiters of a frame whose payload is of such bytes."""
-    head, tail = head_literals(frame), tail_literals(frame)
-    stretches = segments(frame, payload, (part.name for part in (*head, *tail)))
+    """The delimiters of a frame whose payload is of such bytes.
 
-    def delimiter(parts: tuple[LiteralPart, ...]) -> Delimiter | None:
-        literal = b"".join(part.bytes for part in parts)
-        return Delimiter(parts, occurs(literal, b"", stretches, b"")) if parts else None
+    An end may be the start of the next frame as well where both are one literal alone: a receiver
+    of several could not tell which of them a byte is.
+    """
+    head, tail = head_literals(frame), tail_literals(frame)
+    is_choice = any(isinstance(part, ChoicePart) for part in head)
+
+    def delimiter(parts: tuple[LiteralPart | ChoicePart, ...]) -> Delimiter | None:
+        if not parts:
+            return None
+        own = parts if is_choice else (*head, *tail)
+        stretches = segments(frame, payload, (part.name for part in own))
+        words = joined_words(parts)
+        found = (occurs(word, b"", stretches, b"") for word in words)
+        witness = next((item for item in found if item is not None), None)
+        return Delimiter(parts, words, witness)
 
     return Delimiters(delimiter(head), delimiter(tail))
 
@@ -85,7 +92,7 @@ def _needless_inside(context: Context, frame: Frame, found: Delimiters, loc: Loc
     """A literal that marks neither end needs no protection."""
     ends = [*(found.head.parts if found.head else ()), *(found.tail.parts if found.tail else ())]
     for part in frame.parts:
-        accepted = isinstance(part, LiteralPart) and part.unprotected is not None
+        accepted = isinstance(part, LiteralPart | ChoicePart) and part.unprotected is not None
         if accepted and part not in ends:
             text = f"no receiver looks for `{part.name}`, so nothing needs to be accepted"
             _needless(context, (*loc, part.name), text)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 
-from protogen.model.frame import LengthPart, LiteralPart, PayloadPart
+from protogen.model.frame import ChoicePart, LengthPart, LiteralPart, PayloadPart
 from protogen.model.framing import AfterEnd, Framing, StartLiteral, StartSet
 from protogen.passes.context import Context
 from protogen.passes.draft import Draft
 from protogen.passes.proofs.wire_code import EVERY_BYTE, ByteSet, part_bytes
 
-_HELD = LiteralPart | LengthPart
+_HELD = LiteralPart | ChoicePart | LengthPart
 """Parts of which a receiver takes no other values than the schema allows."""
 
 

@@ -107,7 +107,7 @@ class _Planner:
             frame=self._frame,
             start=_START_RULES[type(self._start)],
             start_bytes=self._start_bytes,
-            start_set=self._start_set(),
+            start_words=self._start_words(),
             start_is_unique=self._unique_start,
             end_rule=self._end_rule(),
             end_bytes=self._end_bytes,
@@ -161,9 +161,11 @@ class _Planner:
 
     # --- start and end ----------------------------------------------------------------------------
 
-    def _start_set(self) -> range:
+    def _start_words(self) -> tuple[bytes, ...]:
         start = self._start
-        return range(start.least, start.greatest + 1) if isinstance(start, StartSet) else range(0)
+        if isinstance(start, StartSet):
+            return start.words
+        return tuple(filter(None, (self._start_bytes,)))
 
     def _end_rule(self) -> EndRule:
         if self._unique_end:

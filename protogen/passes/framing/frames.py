@@ -22,14 +22,12 @@ from protogen.model.frame import (
     Frame,
     IdentityPart,
     LengthPart,
-    LiteralPart,
     NumberPart,
     Part,
     PartType,
     PayloadPart,
     ValuePart,
 )
-from protogen.model.origin import About
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.capacity import (
@@ -38,6 +36,7 @@ from protogen.passes.framing.capacity import (
     payload_range,
     stated_range,
 )
+from protogen.passes.framing.literals import literal_of
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.framing.written_frames import WrittenFrame
@@ -142,7 +141,7 @@ class FrameBuilder:
         if role == PAYLOAD:
             return PayloadPart(name=name, about=text)
         if role == "literal":
-            return self._literal(name, item, text)
+            return literal_of(self._context, (*self._loc, name), name, item, text)
         type_ = self._type(name, item)
         if type_ is None:
             return None
@@ -196,17 +195,6 @@ class FrameBuilder:
         if name == PAYLOAD:
             return PAYLOAD
         return next((role for role in _ROLES if role in written), None)
-
-    def _literal(self, name: str, item: PartSyntax, text: About) -> LiteralPart:
-        if not item.literal:
-            loc = (*self._loc, name, "literal")
-            self._context.error("PG147", loc, "the literal has no bytes")
-        return LiteralPart(
-            name=name,
-            bytes=item.literal or b"\0",
-            unprotected=item.unprotected,
-            about=text,
-        )
 
     def _type(self, name: str, item: PartSyntax) -> PartType | None:
         if item.type is None:

@@ -18,9 +18,9 @@ def finds_start(start: Start) -> str:
                 "given up when the frame does not check, and its bytes are read again"
             )
         case StartSet(protected=True):
-            return f"at a byte {_span(start)}, which occurs nowhere else in a frame"
+            return f"at {_any(start)}, which occurs nowhere else in a frame"
         case StartSet():
-            return f"at a byte {_span(start)}, which can also occur inside a frame"
+            return f"at {_any(start)}, which can also occur inside a frame"
         case AfterEnd():
             return "behind the end of the frame before, or at the start of the stream"
         case Anywhere():
@@ -83,5 +83,13 @@ def _hex(data: bytes) -> str:
     return data.hex(" ").upper()
 
 
-def _span(start: StartSet) -> str:
-    return f"{start.least:02X} to {start.greatest:02X}"
+def span(start: StartSet) -> str:
+    """What a frame starts with: `80 to FE`, or `C8 or EA`."""
+    *words, last = map(_hex, start.words)
+    if start.is_run:
+        return f"{words[0] if words else last} to {last}"
+    return f"{', '.join(words)} or {last}"
+
+
+def _any(start: StartSet) -> str:
+    return f"a byte {span(start)}" if start.is_run else span(start)

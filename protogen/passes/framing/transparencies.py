@@ -13,7 +13,7 @@ from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.proofs.codewords import ambiguity, prefix_clash
 from protogen.passes.proofs.wire_code import code_of
-from protogen.schema.syntax.parts import EscapeSyntax, TransparencySyntax
+from protogen.schema.syntax.parts import EscapeSyntax, LiteralChoice, TransparencySyntax
 from protogen.schema.syntax.parts import Part as PartSyntax
 
 SLIP = Substitution(table=((0xC0, b"\xdb\xdc"), (0xDB, b"\xdb\xdd")))
@@ -109,11 +109,17 @@ class _Reader:
 
 
 def _between_literals(parts: Mapping[str, PartSyntax]) -> tuple[str, ...]:
-    """Everything between the literals that open and those that close the frame."""
+    """Everything between the literals that open and those that close the frame.
+
+    A choice of literals opens a frame, if it is its first part.
+    """
     names = list(parts)
-    while names and parts[names[0]].literal is not None:
-        names.pop(0)
-    while names and parts[names[-1]].literal is not None:
+    if names and isinstance(parts[names[0]].literal, LiteralChoice):
+        del names[0]
+    else:
+        while names and isinstance(parts[names[0]].literal, bytes):
+            names.pop(0)
+    while names and isinstance(parts[names[-1]].literal, bytes):
         names.pop()
     return tuple(names)
 

@@ -17,7 +17,7 @@ from protogen.model.messages import Contradiction, Example, Exchange, Message, S
 from protogen.model.types import Array, Field, Octets, Struct, Switch, Type, is_integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
-from protogen.passes.framing.capacity import head_literals
+from protogen.passes.framing.capacity import head_literals, joined_words
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.types.constants import named_raw_value
 from protogen.problems import hint_for
@@ -117,8 +117,7 @@ def _sender(
 
 def _begins(frame: Frame, data: bytes | None) -> bool:
     """True if a frame can begin as these bytes do."""
-    literals = head_literals(frame)
-    return data is not None and data.startswith(b"".join(part.bytes for part in literals))
+    return data is not None and data.startswith(joined_words(head_literals(frame)))
 
 
 def _endpoint(context: Context, message: Message, item: ExampleSyntax, loc: Loc) -> str | None:

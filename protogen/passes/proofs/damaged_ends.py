@@ -12,7 +12,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from random import Random
 
-from protogen.model.frame import Base16, Cobs, Frame, LiteralPart, PayloadPart
+from protogen.model.frame import Base16, ChoicePart, Cobs, Frame, LiteralPart, PayloadPart
 from protogen.model.framing import End, Start, StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.passes.framing.capacity import tail_literals
@@ -94,6 +94,8 @@ def _frame(frame: Frame, payload: ByteSet, dice: Random) -> dict[str, bytes]:
     for part in frame.parts:
         if isinstance(part, LiteralPart):
             parts[part.name] = part.bytes
+        elif isinstance(part, ChoicePart):
+            parts[part.name] = dice.choice(part.words)
         else:
             size = dice.randrange(3, 9) if isinstance(part, PayloadPart) else part.size
             parts[part.name] = bytes(dice.choices(sorted(payload), k=size))

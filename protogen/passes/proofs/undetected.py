@@ -7,11 +7,13 @@ What is left is said in one sentence each.
 from __future__ import annotations
 
 from collections import defaultdict
+from itertools import combinations
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
+    ChoicePart,
     Cobs,
     Frame,
     IdentityPart,
@@ -24,6 +26,7 @@ from protogen.model.framing import End, Start, StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.passes.framing.capacity import payload_range
+from protogen.passes.framing.framing_words import span
 from protogen.passes.proofs.damaged_ends import joined_frames
 from protogen.passes.proofs.wire_code import SEVEN_BITS, ByteSet
 
@@ -60,7 +63,18 @@ def _part(
         return _identity(frame, part, end, messages)
     if isinstance(part, PayloadPart):
         return f"a wrong byte in the payload{_inside(frame, payload)}: nothing checks it"
+    if isinstance(part, ChoicePart):
+        return _other_literal(part)
     return f"a wrong `{part.name}`: no checksum covers it"
+
+
+def _other_literal(part: ChoicePart) -> str:
+    """Sentence on a byte that makes another literal of one."""
+    pairs = combinations(part.words, 2)
+    differences = (sum(map(int.__ne__, one, other)) for one, other in pairs)
+    if 1 not in differences:
+        return ""
+    return f"a wrong `{part.name}` that makes it another of its literals: no checksum covers it"
 
 
 def _sometimes(part: Part, covering: list[ChecksumPart], messages: list[Message]) -> str:
@@ -98,7 +112,7 @@ def _false_start(frame: Frame, start: Start) -> str:
         case StartLiteral():
             what = f"makes {start.bytes.hex(' ').upper()}, the start"
         case StartSet():
-            what = f"makes a start, {start.least:02X} to {start.greatest:02X}"
+            what = f"makes a start, {span(start)}"
         case _:
             return ""
     return f"a wrong byte that {what}, where the bytes behind it happen to be a whole frame"

@@ -11,6 +11,7 @@ from functools import cache
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
+    ChoicePart,
     Cobs,
     Encoding,
     Escape,
@@ -55,6 +56,8 @@ def part_bytes(part: Part, payload: ByteSet) -> tuple[ByteSet, ...]:
     match part:
         case LiteralPart():
             return tuple(frozenset({byte}) for byte in part.bytes)
+        case ChoicePart():
+            return tuple(map(frozenset, zip(*part.words, strict=True)))
         case NumberPart():
             return _number_bytes(part, part.least, part.greatest)
         case ChecksumPart():
@@ -93,9 +96,10 @@ def _part_segments(
     part: Part, payload: ByteSet, code: Mapping[int, bytes] | None, own: frozenset[str]
 ) -> Iterable[Segment]:
     assert code is not None
-    if isinstance(part, LiteralPart):
-        word = b"".join(code[byte] for byte in part.bytes)
-        yield Segment(frozenset({word}), 1, 1, part.name in own)
+    if isinstance(part, LiteralPart | ChoicePart):
+        literals = part.words if isinstance(part, ChoicePart) else (part.bytes,)
+        words = frozenset(b"".join(code[byte] for byte in literal) for literal in literals)
+        yield Segment(words, 1, 1, part.name in own)
         return
     for values in part_bytes(part, payload):
         words = frozenset(code[byte] for byte in values)

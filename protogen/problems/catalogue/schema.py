@@ -11,6 +11,7 @@ from protogen.problems.catalogue.framing import FRAMING_CODES
 from protogen.problems.catalogue.keys_and_names import KEY_AND_NAME_CODES
 from protogen.problems.catalogue.messages import MESSAGE_CODES
 from protogen.problems.catalogue.packing import PACKING_CODES
+from protogen.problems.catalogue.parts import PART_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
 
 SCHEMA_CODES: tuple[Code, ...] = (
@@ -23,4 +24,5 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *FORM_CODES,
     *FRAME_SIZE_CODES,
     *MESSAGE_CODES,
+    *PART_CODES,
 )

@@ -107,8 +107,8 @@ def _part_value(part: ValuePart, given: int | None, strict: bool) -> int:
         number = as_integer(value)
     except EncodeError as error:
         raise error.inside(part.name) from None
-    if strict and not part.least <= number <= part.greatest:
-        raise EncodeError(part.name, f"{number} is not in {part.least}..{part.greatest}")
+    if strict and not part.holds(number):
+        raise EncodeError(part.name, f"{number} is not {part.allowed}")
     return number
 
 

@@ -141,9 +141,8 @@ class Content:
             self._identify()
 
     def _check_bounds(self, part: ValuePart, number: int) -> None:
-        if not part.least <= number <= part.greatest:
-            problem = f"{part.name} is {number}, which is not in {part.least}..{part.greatest}"
-            raise Rejected("value", problem)
+        if not part.holds(number):
+            raise Rejected("value", f"{part.name} is {number}, which is not {part.allowed}")
 
     # --- how large the payload is ---------------------------------------------------------------
 

@@ -15,8 +15,7 @@ from protogen.runtime.framing.frame import (
     LiteralPart,
     NumberPart,
     Part,
-    StartLiteral,
-    StartSet,
+    StartMark,
 )
 from protogen.runtime.framing.layout import Place
 from protogen.runtime.framing.machine import Failure, wrong_sum
@@ -38,7 +37,7 @@ def judge_of(sender: SenderSpec[Any, Any]) -> Judge | None:
     is_told = layout.length is not None or layout.early_identity
     if not (sums_alone and is_told) or layout.has_wire_checksum or layout.shares_delimiter:
         return None
-    if not isinstance(frame.start, StartLiteral | StartSet):
+    if not isinstance(frame.start, StartMark):
         return None
     if not frame.start.protected:
         return None if layout.stuffed or layout.end else SizeJudge(sender)
@@ -50,7 +49,7 @@ def _is_stuffed_plainly(sender: SenderSpec[Any, Any]) -> bool:
     """True if nothing is stuffed, or all between start and end, in one way only."""
     layout, stuffing = sender.layout, sender.frame.transparency
     if stuffing is None or not layout.stuffed:
-        return len(layout.start) <= 1
+        return layout.start_size <= 1
     before = sum(part.size for part in layout.parts[: layout.stuffed[0]])
     is_whole = before == len(layout.start) > 0 and layout.stuffed[-1] == len(layout.parts) - 1
     if not is_whole or not isinstance(stuffing, Substitution | Escape) or stuffing.lenient:
@@ -86,7 +85,7 @@ class Judge:
         self._literals = [
             (item.part.value, slice(item.start, item.end))
             for item in head
-            if isinstance(item.part, LiteralPart) and item.start >= len(layout.start)
+            if isinstance(item.part, LiteralPart) and item.start >= layout.start_size
         ]
         self._checked = [
             (item.part, slice(item.start, item.end))
@@ -147,7 +146,7 @@ class Judge:
         except ByteError:
             return None
         bounded = self._layout.bounded
-        is_right = all(part.least <= numbers[part.name] <= part.greatest for part in bounded)
+        is_right = all(part.holds(numbers[part.name]) for part in bounded)
         return numbers if is_right else None
 
     def _fits(self, size: int, numbers: dict[str, int]) -> bool:

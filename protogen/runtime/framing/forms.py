@@ -12,7 +12,7 @@ from typing import Any
 
 from protogen.runtime.errors import PayloadFault
 from protogen.runtime.events import Event
-from protogen.runtime.framing.frame import AfterEnd, Start, StartLiteral, StartSet
+from protogen.runtime.framing.frame import AfterEnd, Start, StartLiteral, StartMark
 from protogen.runtime.framing.machine import Candidate, Cut, Failure
 from protogen.runtime.framing.sender import SenderSpec
 from protogen.runtime.framing.starts import Starts, starts_of
@@ -104,7 +104,7 @@ class FormsCandidate:
         self._verdicts[index] = verdict
 
     def _is_begun_by_now(self, index: int) -> bool:
-        return self._begun[index] or self._size > len(self._senders[index].layout.start)
+        return self._begun[index] or self._size > self._senders[index].layout.start_size
 
     def _verdict(self) -> Cut | Failure | None:
         """The verdict, as soon as no form can change it."""
@@ -192,7 +192,7 @@ def check_together(senders: Senders) -> None:
 def _kind_of_start(sender: SenderSpec[Any, Any]) -> object:
     """What has to be the same in all forms."""
     start, layout = sender.frame.start, sender.layout
-    if isinstance(start, StartLiteral | StartSet):
+    if isinstance(start, StartMark):
         return start if layout.shares_delimiter else StartLiteral
     return sender.frame.end if isinstance(start, AfterEnd) else type(start)
 
@@ -207,19 +207,13 @@ def cutter_of(senders: Senders, starts: FormStarts) -> FormsCutter | None:
 
 def _are_clear(starts: Sequence[Start]) -> bool:
     """True if two starts are equal, or never found in one place."""
-    return all(isinstance(item, StartLiteral | StartSet) for item in starts) and all(
-        one == other or _are_apart(one, other) for one, other in combinations(starts, 2)
+    marks = [item for item in starts if isinstance(item, StartMark)]
+    return len(marks) == len(starts) and all(
+        one == other or _are_apart(one, other) for one, other in combinations(marks, 2)
     )
 
 
-def _are_apart(one: Start, other: Start) -> bool:
-    if isinstance(one, StartLiteral) and isinstance(other, StartLiteral):
-        return not (one.value.startswith(other.value) or other.value.startswith(one.value))
-    return _first_bytes(one).isdisjoint(_first_bytes(other))
-
-
-def _first_bytes(start: Start) -> frozenset[int]:
-    if isinstance(start, StartLiteral):
-        return frozenset(start.value[:1])
-    assert isinstance(start, StartSet)
-    return frozenset(range(start.least, start.greatest + 1))
+def _are_apart(one: StartMark, other: StartMark) -> bool:
+    words, others = one.words, other.words
+    begun = (word.startswith(others) for word in words)
+    return not any(begun) and not any(word.startswith(words) for word in others)

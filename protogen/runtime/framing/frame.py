@@ -59,18 +59,33 @@ class LengthPart(NamedTuple):
 
 
 class ValuePart(NamedTuple):
-    """A number that the caller gives, from `least` to `greatest`, and that a receiver hands on."""
+    """A number that the caller gives, from `least` to `greatest`, and that a receiver hands on.
+
+    With `values`, it is one of these: a literal of which there are several.
+    """
 
     name: str
     number: Number
     least: int
     greatest: int
     default: int | None = None
+    values: tuple[int, ...] = ()
 
     @property
     def size(self) -> int:
         """Bytes before any stuffing."""
         return self.number.size
+
+    def holds(self, value: int) -> bool:
+        """True if the value is one that the part can have."""
+        return value in self.values if self.values else self.least <= value <= self.greatest
+
+    @property
+    def allowed(self) -> str:
+        """Values that the part can have, in words."""
+        if self.values:
+            return f"one of {', '.join(f'0x{value:02X}' for value in self.values)}"
+        return f"in {self.least}..{self.greatest}"
 
 
 class CounterPart(ValuePart):
@@ -115,6 +130,11 @@ class StartLiteral(NamedTuple):
     value: bytes
     protected: bool
 
+    @property
+    def words(self) -> tuple[bytes, ...]:
+        """The byte strings that a frame starts with."""
+        return (self.value,)
+
 
 class StartSet(NamedTuple):
     """A frame starts with a byte from `least` to `greatest`.
@@ -124,6 +144,21 @@ class StartSet(NamedTuple):
 
     least: int
     greatest: int
+    protected: bool
+
+    @property
+    def words(self) -> tuple[bytes, ...]:
+        """The byte strings that a frame starts with."""
+        return tuple(bytes((value,)) for value in range(self.least, self.greatest + 1))
+
+
+class StartWords(NamedTuple):
+    """A frame starts with one of these words, which are of one size.
+
+    Protected: they occur nowhere else in a valid frame.
+    """
+
+    words: tuple[bytes, ...]
     protected: bool
 
 
@@ -139,7 +174,8 @@ class Anywhere(Frozen):
     __slots__ = ()
 
 
-Start = StartLiteral | StartSet | AfterEnd | Anywhere
+StartMark = StartLiteral | StartSet | StartWords
+Start = StartMark | AfterEnd | Anywhere
 
 
 class End(NamedTuple):

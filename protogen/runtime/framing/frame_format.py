@@ -25,7 +25,7 @@ class FrameFormat(Piece):
     def __init__(self, sender: SenderSpec[Any, Any]) -> None:
         super().__init__()
         self._sender = sender
-        self._start_size = len(sender.layout.start) or 1
+        self._start_size = sender.layout.start_size or 1
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
         start = stream.tell()

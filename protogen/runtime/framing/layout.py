@@ -15,7 +15,7 @@ from protogen.runtime.framing.frame import (
     Part,
     PayloadPart,
     StartLiteral,
-    StartSet,
+    StartMark,
     ValuePart,
 )
 
@@ -67,7 +67,8 @@ class Layout:
         self.early_identity = bool(self.identity) and self.identity[-1] in self.head
         """True if there is an identity, and all of it in front of the payload."""
         self.values = tuple(part for part in spec.parts if isinstance(part, ValuePart))
-        self.bounded = tuple(part for part in self.values if spec.rescans and part in self.head)
+        early = self.head if spec.rescans else ()
+        self.bounded = tuple(part for part in self.values if part in early or part.values)
         """The values that a receiver holds to their bounds."""
         self.shown = tuple(
             part.name for part in self.parts if isinstance(part, IdentityPart | ValuePart)
@@ -76,11 +77,17 @@ class Layout:
         self.checksums = tuple(part for part in self.parts if isinstance(part, ChecksumPart))
         self.has_wire_checksum = any(part.over_wire for part in self.checksums)
         self.start = spec.start.value if isinstance(spec.start, StartLiteral) else b""
+        self.start_words = spec.start.words if isinstance(spec.start, StartMark) else ()
+        """What a frame starts with; empty where nothing marks the start."""
+        self.start_size = len(self.start_words[0]) if self.start_words else 0
+        self.mark_size = self.start_size if self.start_size > 1 else len(self.start)
+        """Bytes in front of a frame that no end is looked for in."""
         self.end = b"" if spec.end is None else spec.end.value
         is_unique = spec.end is not None and spec.end.protected
         self.shares_delimiter = is_unique and self.start == self.end
         """True if the end of a frame may be the start of the next as well, as with SLIP's flag."""
-        self.start_bytes = self._start_bytes()
+        own = () if self.shares_delimiter else self.start_words
+        self.start_bytes = frozenset(word[-1] for word in own)
         """Bytes that complete a start. None where the same literal ends frames."""
         self.empty_frame = self._empty_frame()
         """A start and an end with nothing between them, which is never a frame."""
@@ -88,12 +95,6 @@ class Layout:
         self.stuffed = tuple(
             index for index, part in enumerate(self.parts) if part.name in spec.stuffed
         )
-
-    def _start_bytes(self) -> frozenset[int]:
-        start = self.spec.start
-        if isinstance(start, StartSet):
-            return frozenset(range(start.least, start.greatest + 1))
-        return frozenset() if self.shares_delimiter else frozenset(self.start[-1:])
 
     def _empty_frame(self) -> bytes:
         if isinstance(self.spec.start, AfterEnd):

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from protogen.runtime.errors import Reason
 from protogen.runtime.framing.content import Content, Rejected
-from protogen.runtime.framing.frame import AfterEnd, Anywhere, ChecksumPart, StartLiteral, StartSet
+from protogen.runtime.framing.frame import AfterEnd, Anywhere, ChecksumPart, StartMark
 from protogen.runtime.framing.layout import Slice
 from protogen.runtime.framing.sender import SenderSpec
 from protogen.runtime.transparency import TransparencyError, Unstuffer
@@ -46,7 +46,7 @@ class Candidate:
         self._content = Content(sender)
         self._cut: Cut | None = None
         # A delimiter is looked for: bytes that may begin it are held back until that is clear.
-        self._delimiter = self._protected_end()
+        self._delimiters = self._protected_ends()
         self._held = b""
         self._end_left = 0  # Bytes still to come of an end that stands in a known place.
         self._ends_at_start = False  # The next start ends the frame, and nothing else does.
@@ -104,9 +104,9 @@ class Candidate:
 
     # --- where the frame ends -------------------------------------------------------------------
 
-    def _protected_end(self) -> bytes:
+    def _protected_ends(self) -> tuple[bytes, ...]:
         end = self._spec.end
-        return end.value if end is not None and end.protected else b""
+        return (end.value,) if end is not None and end.protected else ()
 
     def _take(self, byte: int) -> None:
         start = self._start_inside() if byte in self._layout.start_bytes else 0
@@ -114,7 +114,7 @@ class Candidate:
             self._meet_start(start)
         elif len(self._wire) == self._layout.empty_size and self._is_empty():
             self._reject_empty()
-        elif self._delimiter and len(self._wire) > len(self._layout.start):
+        elif self._delimiters and len(self._wire) > self._layout.mark_size:
             self._search(byte)
         else:
             self._pass(byte)
@@ -122,10 +122,10 @@ class Candidate:
     def _start_inside(self) -> int:
         """The size of a start that the wire ends with and that ends this candidate, or 0."""
         start = self._spec.start
-        assert isinstance(start, StartLiteral | StartSet)
-        size = len(self._layout.start) or 1
+        assert isinstance(start, StartMark)
+        size = self._layout.start_size
         before = len(self._wire) - size
-        if before <= 0 or not self._wire.endswith(self._layout.start):
+        if before <= 0 or not self._wire.endswith(self._layout.start_words):
             return 0
         ends_it = start.protected or (self._ends_at_start and before >= self._open_from)
         return size if ends_it else 0
@@ -149,11 +149,11 @@ class Candidate:
     def _search(self, byte: int) -> None:
         """Look for the delimiter; let pass what can't begin it."""
         self._held += bytes((byte,))
-        if self._held == self._delimiter:
+        if self._held in self._delimiters:
             self._held = b""
             self._close()
             return
-        while not self._delimiter.startswith(self._held):
+        while not any(item.startswith(self._held) for item in self._delimiters):
             first, self._held = self._held[0], self._held[1:]
             self._pass(first)
 
@@ -220,21 +220,21 @@ class Candidate:
             self._cross_region()
         if self._content.is_full and not self._empty_left:
             self._meet_full()
-        elif self._content.is_open and not self._delimiter:
+        elif self._content.is_open and not self._delimiters:
             self._open()
 
     def _open(self) -> None:
         """From now on only a delimiter can tell where the frame ends."""
         if isinstance(self._spec.start, Anywhere):
             raise Rejected("size", "the identity is unknown, and nothing else gives a size")
-        self._delimiter = self._layout.end
-        if not self._delimiter and not self._ends_at_start:
+        self._delimiters = tuple(filter(None, (self._layout.end,)))
+        if not self._delimiters and not self._ends_at_start:
             self._ends_at_start = True
             self._open_from = len(self._wire)
-            self._delimiter = self._layout.start
+            self._delimiters = self._layout.start_words if self._layout.mark_size else ()
 
     def _meet_full(self) -> None:
-        if self._delimiter:
+        if self._delimiters:
             return
         if self._layout.end:
             self._end_left = len(self._layout.end)
@@ -248,7 +248,7 @@ class Candidate:
         if not self._region_begun and self._content.index >= first:
             self._begin_region()
         if self._unstuffer is not None and self._content.index > last and not self._empty_left:
-            ends_at_delimiter = self._content.is_full and self._delimiter
+            ends_at_delimiter = self._content.is_full and self._delimiters
             if not ends_at_delimiter:
                 self._finish_region(surplus=True)
 

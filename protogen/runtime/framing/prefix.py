@@ -13,13 +13,11 @@ from operator import and_
 from typing import Any
 
 from protogen.runtime.framing.frame import (
-    AfterEnd,
     Anywhere,
     LiteralPart,
     NumberPart,
     Part,
-    StartLiteral,
-    StartSet,
+    StartMark,
 )
 from protogen.runtime.framing.layout import Layout
 from protogen.runtime.framing.machine import Candidate
@@ -74,7 +72,7 @@ class Prefix:
         frame, layout = sender.frame, sender.layout
         self._has_end, self._greatest = bool(layout.end), frame.greatest
         self._starts = starts_of(frame)
-        self._start_size = 0 if isinstance(frame.start, AfterEnd) else len(layout.start) or 1
+        self._start_size = layout.start_size
         self._mask = self._telling_bits()
         self._head_size = len(self._mask)
         is_sought = frame.end is not None and frame.end.protected
@@ -113,8 +111,8 @@ class Prefix:
     def _plain(self, codes: dict[bytes, bytes]) -> bytes:
         frame, layout = self._sender.frame, self._sender.layout
         special = {*self._sought[:1], *b"".join(codes), *(code[0] for code in codes.values())}
-        if isinstance(frame.start, StartLiteral | StartSet) and frame.start.protected:
-            special |= {*layout.start[:1]} or layout.start_bytes
+        if isinstance(frame.start, StartMark) and frame.start.protected:
+            special |= {word[0] for word in layout.start_words}
         return bytes({*range(0x80 if frame.seven_bit else 0x100)} - special)
 
     def wanted(self, data: bytes, at: int) -> int:
@@ -152,7 +150,7 @@ class Prefix:
         None where there is a delimiter, or what an encoder would not make.
         """
         layout = self._sender.layout
-        first = len(layout.start)
+        first = layout.mark_size
         if self._starts.find(wire, 1, len(wire)) > 0:
             return None
         if self._sought and self._sought in wire[first:]:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from protogen.runtime.errors import DecodeError, PayloadFault
 from protogen.runtime.events import FrameEvent, frame_event
-from protogen.runtime.framing.frame import StartLiteral, StartSet
 from protogen.runtime.framing.layout import Layout
 from protogen.runtime.framing.machine import Candidate, Cut, Failure, verdict_on
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
@@ -46,10 +45,7 @@ def _read_as(
 
 def may_start(layout: Layout, data: bytes) -> bool:
     """True if the first bytes of a frame can be these."""
-    start = layout.spec.start
-    if isinstance(start, StartLiteral):
-        return data.startswith(start.value)
-    return not isinstance(start, StartSet) or (data != b"" and data[0] in layout.start_bytes)
+    return not layout.start_words or data.startswith(layout.start_words)
 
 
 def _cut(sender: SenderSpec[MessageT_co, PartsT_co], data: bytes) -> Cut:

@@ -125,11 +125,37 @@ RawRange = Annotated[
 """The least and the greatest raw value, both included."""
 
 
+class LiteralChoice(Syntax):
+    """Several literals, of which a frame has one."""
+
+    any_of: Annotated[tuple[Annotated[Octets, at_most(8)], ...], Field(strict=False)] = Field(
+        description="The literals, all of one size: at most 8 bytes."
+    )
+    default: Annotated[Octets, at_most(8)] | None = Field(
+        None, description="The one that an encoder writes where the caller gives none."
+    )
+
+
+def _kind_of_literal(value: Any) -> str:
+    keys = {"any_of", "default"} & value.keys() if isinstance(value, dict) else ()
+    return "choice of literals" if keys or isinstance(value, LiteralChoice) else "bytes"
+
+
+Literals = Annotated[
+    Annotated[Octets, at_most(64), Tag("bytes")]
+    | Annotated[LiteralChoice, Tag("choice of literals")],
+    Discriminator(_kind_of_literal),
+]
+"""Fixed bytes, or several literals of which a frame has one."""
+
+
 class Part(Syntax):
     """One item of a frame. Its keys give its role; the part called `payload` holds the fields."""
 
-    literal: Annotated[Octets, at_most(64)] | None = Field(
-        None, description="Fixed bytes that open, close or mark."
+    literal: Literals | None = Field(
+        None,
+        description="Fixed bytes that open, close or mark; `{any_of: [BYTES, ...]}` where there "
+        "are several, of which a frame has one.",
     )
     unprotected: Annotated[Name, Ref(Kind.DECISION, missing="PG143")] | None = Field(
         None,

@@ -127,6 +127,9 @@ def _of_sender(names: Names, sender: Sender, start: str) -> Iterator[tuple[NameT
         yield names.others, f"{start}_{word}"
     for word in _MACROS_OF_A_SENDER.split():
         yield names.others, f"{start}_{word}".upper()
+    if sender.plan.mark_size and len(sender.plan.start_words) > 1:
+        for word in ("begun", "begun_byte"):
+            yield names.others, f"{start}_{word}"
 
 
 def is_stateless(protocol: Protocol) -> bool:

@@ -6,6 +6,7 @@ from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
+    ChoicePart,
     Cobs,
     CounterPart,
     Encoding,
@@ -40,7 +41,9 @@ def part(item: Part) -> str:
         case CounterPart() | ValuePart():
             kind = "_rt.CounterPart" if isinstance(item, CounterPart) else "_rt.ValuePart"
             default = None if item.default is None else str(item.default)
-            return call(kind, name, _number(item.type), **_bounds(item), default=default)
+            values = tuple_of(map(str, item.values)) if isinstance(item, ChoicePart) else None
+            given = {**_bounds(item), "default": default, "values": values}
+            return call(kind, name, _number(item.type), **given)
         case ChecksumPart():
             return _checksum_part(item)
         case PayloadPart():
@@ -143,9 +146,12 @@ def start(item: Start) -> str:
     match item:
         case StartLiteral():
             return call("_rt.StartLiteral", octets(item.bytes), protected=str(item.protected))
-        case StartSet():
-            bounds = (f"0x{item.least:02X}", f"0x{item.greatest:02X}")
+        case StartSet() if item.is_run:
+            bounds = (f"0x{word[0]:02X}" for word in (item.words[0], item.words[-1]))
             return call("_rt.StartSet", *bounds, protected=str(item.protected))
+        case StartSet():
+            listed = tuple_of(map(octets, item.words))
+            return call("_rt.StartWords", listed, protected=str(item.protected))
         case AfterEnd():
             return "_rt.AfterEnd()"
         case Anywhere():

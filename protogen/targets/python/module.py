@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from protogen.model.frame import CounterPart, IdentityPart, ValuePart
+from protogen.model.frame import ChoicePart, CounterPart, IdentityPart, ValuePart
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.attributes import argument, attribute
@@ -179,6 +179,8 @@ def _role(part: IdentityPart | CounterPart | ValuePart) -> str:
             return "Tells which message this is"
         case CounterPart():
             return "Counts what the sender sends"
+        case ChoicePart():
+            return "Which of several literals it is"
         case ValuePart():
             return "A number that the sender chooses"
 
@@ -196,12 +198,22 @@ def _arguments_doc(protocol: Protocol) -> str:
     sentences: dict[str, str] = {}
     for sender in protocol.senders:
         for part in sender.frame.caller_parts:
-            bounds = f"`{argument(part.name)}` ({part.least}..{part.greatest})"
-            default = f"is {part.default} if not given" if part.default is not None else None
+            bounds = f"`{argument(part.name)}` ({_allowed(part)})"
+            default = f"is {_default(part)} if not given" if part.default is not None else None
             counted = isinstance(part, CounterPart)
             missing = "has to be given" + ("; an `Encoder` counts by itself" if counted else "")
             sentences.setdefault(part.name, f"{bounds} {default or missing}.")
     return " ".join(sentences.values())
+
+
+def _default(part: CounterPart | ValuePart) -> str:
+    return f"0x{part.default:02X}" if isinstance(part, ChoicePart) else str(part.default)
+
+
+def _allowed(part: CounterPart | ValuePart) -> str:
+    if isinstance(part, ChoicePart):
+        return ", ".join(f"0x{value:02X}" for value in part.values)
+    return f"{part.least}..{part.greatest}"
 
 
 # --- senders ----------------------------------------------------------------------------------

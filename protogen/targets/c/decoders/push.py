@@ -294,22 +294,22 @@ class PushDecoder(PushStates, frozen=True, dict=True):
 
     def follow(self, at: str) -> str:
         """Bytes of the tracked literal that the input ends with behind a byte."""
-        if len(self.matches) == 1:
-            return f"({at} == {byte(self.matches[0])}) ? (uint8_t)1U : (uint8_t)0U"
+        if len(self.matches[0]) == 1:
+            return f"({at} == {byte(self.matches[0][0])}) ? (uint8_t)1U : (uint8_t)0U"
         name = "end" if self.plan.start is StartRule.AFTER_END else "start"
         return f"{self.prefix}_follow_{name}(decoder->match, {at})"
 
     @property
     def tracks(self) -> bool:
         """True if a candidate's bytes are looked at for a start."""
-        return self.keeps_match and (bool(self.plan.start_bytes) or not self.keeps_wire)
+        return self.keeps_match and (bool(self.marks) or not self.keeps_wire)
 
     @property
     def start(self) -> str:
         """The condition that a start ends with this byte."""
-        if self.plan.start is StartRule.SET or not self.keeps_match:
+        if self.plan.start_set or not self.keeps_match:
             return self.is_start("byte")
-        return f"decoder->match == {self.start_size}U"
+        return self.is_whole("decoder->match")
 
     @property
     def behind_start(self) -> str:
@@ -391,13 +391,22 @@ class PushDecoder(PushStates, frozen=True, dict=True):
 
     @property
     def start_arguments(self) -> tuple[str, ...]:
-        """The bytes of a start that was seen."""
+        """The bytes of a start that was seen; `state` is that of the search for several."""
+        if len(self.marks) > 1:
+            return tuple(self.start_byte("state", f"{i}U") for i in range(self.start_size))
         return tuple(map(byte, self.plan.start_bytes)) or ("byte",)
+
+    @property
+    def start_seen(self) -> tuple[str, str]:
+        """What tells the start that was seen, as a parameter and as an argument behind others."""
+        if self.plan.start_set:
+            return ", uint8_t byte", ", byte"
+        return (", uint8_t state", ", decoder->match") if len(self.marks) > 1 else ("", "")
 
     @property
     def counts_held_start(self) -> bool:
         """True if the first bytes of a start become noise when no more of it comes."""
-        return bool(self.plan.start_bytes) and self.all_events and self.keeps_match
+        return bool(self.marks) and self.all_events and self.keeps_match
 
     @property
     def opening(self) -> Iterator[tuple[str, str]]:
@@ -411,7 +420,7 @@ class PushDecoder(PushStates, frozen=True, dict=True):
             "limit": self.unlimited if not self.simple else "",
             "flags": "0" if self.has_flags else "",
             "behind": "0" if self.keeps_behind else "",
-            "match": "0" if self.keeps_match and self.plan.start_bytes else "",
+            "match": "0" if self.keeps_match and self.marks else "",
             "shared": "0" if self.plan.shares_delimiter else "",
             "held": "0" if self.searches and self.holds_delimiter else "",
             "end_left": "0" if self.awaits_end else "",

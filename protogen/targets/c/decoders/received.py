@@ -13,7 +13,7 @@ import msgspec
 from protogen.model.frame_plan import FramePlan, PlacedPart, StartRule, Store
 from protogen.targets.c.decoders.groups import GroupView, key_from, key_type
 from protogen.targets.c.frame.checksums import ChecksumView, checksums_of
-from protogen.targets.c.frame.expressions import byte
+from protogen.targets.c.frame.expressions import among, byte
 from protogen.targets.c.frame.numbers import (
     LengthView,
     LiteralView,
@@ -105,8 +105,8 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
 
     @property
     def start_size(self) -> int:
-        """Bytes of the start literal."""
-        return len(self.plan.start_bytes)
+        """Bytes of the start literal, or of each where there are several."""
+        return self.plan.mark_size
 
     @property
     def end_size(self) -> int:
@@ -135,16 +135,13 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def first_head(self) -> int:
         """Bytes of a start."""
-        return self.start_size if self.plan.start is StartRule.LITERAL else 1
+        return self.plan.start_size or 1
 
     def is_start(self, at: str) -> str:
         """The condition that a byte is a start of one byte."""
         if self.plan.start_bytes:
             return f"{at} == {byte(self.plan.start_bytes[0])}"
-        first, last = self.plan.start_set[0], self.plan.start_set[-1]
-        found = [f"{at} >= {byte(first)}"] if first > 0 else []
-        found += [f"{at} <= {byte(last)}"] if last < 255 else []
-        return " && ".join(found)
+        return among(self.plan.start_set, at)
 
     # --- what is kept -----------------------------------------------------------------------------
 
@@ -334,4 +331,4 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     def gives_up_high_bytes(self) -> bool:
         """True if a high byte is either the identity of a frame, or ends what goes before it."""
         all_end = self.identity_is_start and self.plan.seven_bit and not self.plan.end_bytes
-        return all_end and self.plan.start_set.start == 128
+        return all_end and self.plan.start_set[0] == 128

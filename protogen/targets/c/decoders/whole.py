@@ -7,7 +7,7 @@ import msgspec
 from protogen.model.frame_plan import StartRule
 from protogen.targets.c.decoders.groups import GroupView
 from protogen.targets.c.decoders.received import ReceivedFrame
-from protogen.targets.c.frame.expressions import equals
+from protogen.targets.c.frame.expressions import differs, equals
 from protogen.targets.c.frame.numbers import NumberView
 from protogen.targets.c.frame.stuffing import Code, StuffingKind
 
@@ -24,6 +24,7 @@ class WholeFrames(ReceivedFrame, frozen=True, dict=True):
         assert self.stuffing is not None
         root = self.stuffing.nodes[0]
         starts = set(self.plan.start_bytes[:1] or self.never_passed)
+        starts |= {word[0] for word in self.plan.start_words}
         taken = {branch.byte for branch in root.branches} | set(root.refused)
         return tuple(sorted(taken | starts | set(self.plan.end_bytes[:1])))
 
@@ -35,6 +36,17 @@ class WholeFrames(ReceivedFrame, frozen=True, dict=True):
         spare = any(item.seven_bit or item.padding for item in self.head_numbers)
         is_told = plan.seven_bit and self.known_by_identity
         return self.all_events and is_bare and is_told and not spare
+
+    @property
+    def is_no_start(self) -> str:
+        """The condition that no start stands at the beginning of `data`."""
+        words = self.plan.start_words
+        if self.plan.start_set:
+            return f"!({self.is_start('data[0]')})"
+        return " && ".join(
+            differs(word, "data") if len(words) == 1 else f"({differs(word, 'data')})"
+            for word in words
+        )
 
     def is_alone(self, group: GroupView) -> bool:
         """True if an identity is that of one message with a payload of one size."""

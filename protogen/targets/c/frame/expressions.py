@@ -7,7 +7,7 @@ writes a fragment gives its C.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import msgspec
 
@@ -65,6 +65,26 @@ def byte_at(data: bytes, index: str) -> str:
         return last
     chosen = "".join(f"{index} == {i}U ? {byte(value)} : " for i, value in enumerate(data[:-1]))
     return f"({chosen}{last})"
+
+
+def among(values: Sequence[int], at: str) -> str:
+    """The condition that a byte is one of these, which are in order."""
+    runs: list[tuple[int, int]] = []
+    for value in values:
+        if runs and runs[-1][1] == value - 1:
+            runs[-1] = (runs[-1][0], value)
+        else:
+            runs.append((value, value))
+    found = [_in_run(first, last, at) for first, last in runs]
+    return found[0] if len(found) == 1 else f"({' || '.join(f'({item})' for item in found)})"
+
+
+def _in_run(first: int, last: int, at: str) -> str:
+    if first == last:
+        return f"{at} == {byte(first)}"
+    found = [f"{at} >= {byte(first)}"] if first > 0 else []
+    found += [f"{at} <= {byte(last)}"] if last < 255 else []
+    return " && ".join(found)
 
 
 def differs(data: Iterable[int | str], array: str, at: int | str = 0) -> str:

@@ -14,6 +14,7 @@ import msgspec
 from protogen.copying import replace
 from protogen.model.frame import (
     ChecksumPart,
+    ChoicePart,
     CounterPart,
     IdentityPart,
     LengthPart,
@@ -26,6 +27,7 @@ from protogen.model.frame_plan import FramePlan, PlacedPart, Side
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
 from protogen.targets.c.frame.expressions import Index, byte, less_absent, wire_bytes
+from protogen.targets.c.frame.numbers import none_of
 from protogen.targets.c.frame.stuffing import Stuffing
 from protogen.targets.c.spelling import Names, unsigned_type
 
@@ -328,5 +330,7 @@ def _argument(part: IdentityPart | CounterPart | ValuePart, names: Names) -> Arg
         conditions.append(f"{name} < {part.least}U")
     if part.greatest < (1 << bits) - 1:
         conditions.append(f"{name} > {part.greatest}U")
+    if isinstance(part, ChoicePart):
+        conditions = [none_of(part, name)]
     type_, refused = unsigned_type(part.type.bits), " || ".join(conditions)
     return Argument(name, part.name, type_, part.about.doc, refused)

@@ -6,11 +6,11 @@ from collections.abc import Iterable
 
 import msgspec
 
-from protogen.model.frame import IdentityPart, LengthPart, LiteralPart, NumberPart
+from protogen.model.frame import ChoicePart, IdentityPart, LengthPart, LiteralPart, NumberPart
 from protogen.model.frame_plan import FramePlan, PlacedPart
 from protogen.model.types import storage_bits
 from protogen.targets.c.frame.expressions import byte, less_absent, number_of
-from protogen.targets.c.spelling import unsigned_type
+from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
 class NumberView(msgspec.Struct, frozen=True):
@@ -91,13 +91,14 @@ def _number(plan: FramePlan, item: PlacedPart) -> NumberView:
     less = less_absent(item.place, "decoder->payload")
     value = number_of(type_, "content", item.offset, less)
     spare = type_.byte_bits * type_.size - type_.bits
+    starts = isinstance(part, ChoicePart) and item.in_head and item.end <= plan.start_size
     is_last = isinstance(part, IdentityPart) and part is plan.identity[-1]
     return NumberView(
         last=item.end - 1,
         value=value,
         seven_bit=tuple(range(item.offset, item.end)) if type_.byte_bits == 7 else (),
         padding=f"{value} >> {type_.bits}" if spare else "",
-        bounds=_out_of_bounds(part, value) if item in plan.bounded else "",
+        bounds=_out_of_bounds(part, value) if item in plan.bounded and not starts else "",
         is_length=isinstance(part, LengthPart),
         identifies=is_last and plan.identity_is_early and plan.length is None,
         tells_sizes=item.in_head and item.end == plan.sizes_told_at,
@@ -105,10 +106,17 @@ def _number(plan: FramePlan, item: PlacedPart) -> NumberView:
 
 
 def _out_of_bounds(part: NumberPart, value: str) -> str:
+    if isinstance(part, ChoicePart):
+        return none_of(part, value)
     conditions = [f"{value} < {part.least}U"] if part.least > part.type.least else []
     if part.greatest < part.type.greatest:
         conditions.append(f"{value} > {part.greatest}U")
     return " || ".join(conditions)
+
+
+def none_of(part: ChoicePart, value: str) -> str:
+    """The condition that a number is none of the literals."""
+    return " && ".join(f"{value} != {hexadecimal(item)}" for item in part.values)
 
 
 def literals_of(items: Iterable[PlacedPart]) -> tuple[LiteralView, ...]:

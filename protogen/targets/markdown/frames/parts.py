@@ -10,6 +10,7 @@ from protogen.model.frame import (
     FULL_GROUP,
     Base16,
     ChecksumPart,
+    ChoicePart,
     Cobs,
     CounterPart,
     Encoding,
@@ -63,6 +64,8 @@ def part_value(part: Part) -> str:
     match part:
         case LiteralPart():
             return literal_text(part.bytes)
+        case ChoicePart():
+            return listed([literal_text(word) for word in part.words], "or")
         case NumberPart():
             return "..".join(_part_number(bound, part) for bound in (part.least, part.greatest))
         case _:
@@ -116,6 +119,7 @@ _ROLE_WORDS: tuple[tuple[type[Part], str], ...] = (
     (IdentityPart, "Identity."),
     (LengthPart, "Length."),
     (CounterPart, "Counter."),
+    (ChoicePart, "One of several literals."),
     (ValuePart, "Given by the sender."),
     (ChecksumPart, "Checksum."),
     (PayloadPart, "Payload."),
@@ -126,7 +130,7 @@ _ROLE_WORDS: tuple[tuple[type[Part], str], ...] = (
 def _roles(part: Part) -> tuple[str, ...]:
     match part:
         case LiteralPart(unprotected=str(decision)):
-            return (f"Can also occur inside a frame: {decision_link(decision)}.",)
+            return (_unprotected(decision),)
         case LiteralPart():
             return ("Fixed.",)
         case NumberPart():
@@ -139,12 +143,25 @@ def _roles(part: Part) -> tuple[str, ...]:
             return ("The fields of the message.",)
 
 
+def _unprotected(decision: str) -> str:
+    return f"Can also occur inside a frame: {decision_link(decision)}."
+
+
+def _choice_roles(part: ChoicePart) -> tuple[str, ...]:
+    words = dict(zip(part.values, part.words, strict=True))
+    default = "" if part.default is None else f"{literal_text(words[part.default])} by default."
+    accepted = "" if part.unprotected is None else _unprotected(part.unprotected)
+    return ("One of these, which the sender chooses.", default, accepted)
+
+
 def _number_roles(part: NumberPart) -> tuple[str, ...]:
     match part:
         case LengthPart():
             return (f"Number of bytes of {part_names(part.counts)}.",)
         case CounterPart():
             return ("Counts frames and wraps.", _default(part.default, part.type))
+        case ChoicePart():
+            return _choice_roles(part)
         case ValuePart():
             return ("The sender gives it.", _default(part.default, part.type))
         case _:

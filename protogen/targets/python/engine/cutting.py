@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import LiteralPart, NumberPart
+from protogen.model.frame import ChoicePart, LiteralPart, NumberPart
 from protogen.model.frame_plan import EndRule, LengthPlan, StartRule
+from protogen.model.framing import are_run
 from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.targets.python.engine import identities
 from protogen.targets.python.engine.checksums import ChecksumFunction
@@ -116,8 +117,7 @@ class _Cutter(ChecksumFunction):
             # Nothing in front of an end is no frame, even where frames begin with the same bytes.
             self.stop_if(f"data.startswith({literal(plan.end_bytes)}, at)")
         elif plan.start is StartRule.SET and not self._identity_starts:
-            first, starts = f"data[{self._place(0)}]", plan.start_set
-            self.stop_if(f"not 0x{starts[0]:02X} <= {first} <= 0x{starts[-1]:02X}")
+            self.stop_if(self._is_no_start())
         elif plan.start is StartRule.LITERAL:
             begins = f"data.startswith({literal(plan.start_bytes)}, at)"
             if plan.shares_delimiter:
@@ -127,6 +127,16 @@ class _Cutter(ChecksumFunction):
                 self.stop_if(f"data[{self._place(0)}] != 0x{plan.start_bytes[0]:02X}")
             else:
                 self.stop_if(f"not {begins}")
+
+    def _is_no_start(self) -> str:
+        """The condition that no word stands here that frames start with."""
+        first, starts = f"data[{self._place(0)}]", self.plan.start_set
+        if not starts:
+            words = tuple_of(map(literal, self.plan.start_words))
+            return f"not data.startswith({words}, at)"
+        if are_run(starts):
+            return f"not 0x{starts[0]:02X} <= {first} <= 0x{starts[-1]:02X}"
+        return f"{first} not in {literal(bytes(starts))}"
 
     @property
     def _identity_starts(self) -> bool:
@@ -145,13 +155,13 @@ class _Cutter(ChecksumFunction):
                 self.lines.add("return at")
             else:
                 self.lines.add("end = size")
-        if len(self.plan.start_bytes) > 1:
+        if self.plan.start_size > 1:
             # Two starts that overlap.
-            self.stop_if(f"end < at + {len(self.plan.start_bytes)}")
+            self.stop_if(f"end < at + {self.plan.start_size}")
         self._raw()
 
     def _until_end(self) -> None:
-        begun = "begun" if self.plan.shares_delimiter else self._place(len(self.plan.start_bytes))
+        begun = "begun" if self.plan.shares_delimiter else self._place(self.plan.mark_size)
         self.lines.add(f"end = data.find({literal(self.plan.end_bytes)}, {begun}{self._bound})")
         self.stop_if("end < 0")
         self.lines.add(f"end += {len(self.plan.end_bytes)}")
@@ -405,7 +415,10 @@ class _Cutter(ChecksumFunction):
             part = item.part
             assert isinstance(part, NumberPart)
             number = self.number(self.content, part)
-            self.stop_if(f"not {part.least} <= {number} <= {part.greatest}")
+            if not isinstance(part, ChoicePart):
+                self.stop_if(f"not {part.least} <= {number} <= {part.greatest}")
+            elif item.end > self.plan.start_size:
+                self.stop_if(f"{number} not in {tuple_of(map(str, part.values))}")
 
     # --- the event --------------------------------------------------------------------------------
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from protogen.model.frame import (
     ChecksumPart,
+    ChoicePart,
     CounterPart,
     IdentityPart,
     LiteralPart,
@@ -29,7 +30,7 @@ from protogen.targets.python.engine.writing import (
     payload_writer,
 )
 from protogen.targets.python.literals import octets_in_class as literal
-from protogen.targets.python.literals import text
+from protogen.targets.python.literals import text, tuple_of
 
 
 def framer(frame: EngineFrame, of_caller: tuple[str, ...], constants: Constants) -> tuple[str, ...]:
@@ -182,7 +183,10 @@ class _Framer(FrameFunction):
                 self.lines.add(f"if {part.name}_ is None:")
                 self.lines.add(f"    {part.name}_ = {part.default}")
             least, greatest = part.least, part.greatest
-            if not _is_plain(part.type) or (least, greatest) != (0, part.type.greatest):
+            if isinstance(part, ChoicePart):
+                values = tuple_of(map(str, part.values))
+                self.lines.refuse_if(f"{part.name}_ not in {values}")
+            elif not _is_plain(part.type) or (least, greatest) != (0, part.type.greatest):
                 self.lines.refuse_if(f"not {least} <= {part.name}_ <= {greatest}")
             if not _is_plain(part.type):
                 integers.append(f"{part.name}_")

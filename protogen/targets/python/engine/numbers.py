@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from protogen.model.frame import ChecksumPart, NumberPart
+from protogen.model.framing import are_run
 from protogen.model.types import Integer
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.frames import EngineFrame
@@ -21,10 +22,15 @@ class FrameFunction:
         self.name = frame.sender.name
 
     def starts(self) -> str:
-        """The search for a byte of the start set."""
-        starts = self.plan.start_set
-        pattern = f'rb"[\\x{starts[0]:02x}-\\x{starts[-1]:02x}]"'
-        return self.lines.constants.named("STARTS", f"_re.compile({pattern}).search")
+        """The search for one of the words that frames start with."""
+        return self.lines.constants.named("STARTS", f"_re.compile({self._pattern()}).search")
+
+    def _pattern(self) -> str:
+        words = ["".join(f"\\x{byte:02x}" for byte in word) for word in self.plan.start_words]
+        if self.plan.start_size > 1:
+            return f'rb"{"|".join(words)}"'
+        is_run = are_run(self.plan.start_set)
+        return f'rb"[{words[0]}-{words[-1]}]"' if is_run else f'rb"[{"".join(words)}]"'
 
     @property
     def is_seen_by_bits(self) -> bool:
@@ -32,7 +38,8 @@ class FrameFunction:
         plan = self.plan
         alone = plan.head_size == 1 and not plan.tail and plan.region is None
         outside = not any(byte in plan.start_set for byte in plan.end_bytes)
-        return plan.seven_bit and plan.start_set[0] >= 0x80 and alone and outside
+        high = bool(plan.start_set) and plan.start_set[0] >= 0x80
+        return plan.seven_bit and high and alone and outside
 
     def number(self, source: str, part: NumberPart, base: str | None = None) -> str:
         """The value of a part of the head, in the content or, with a base, in the data.
