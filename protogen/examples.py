@@ -16,7 +16,7 @@ import msgspec
 
 from protogen.live.codec import module_of
 from protogen.model.frame import Frame, LiteralPart
-from protogen.model.messages import Example, Message
+from protogen.model.messages import Example, Message, given_parts
 from protogen.model.protocol import Protocol
 from protogen.problems import Problems
 from protogen.runtime.attributes import arguments
@@ -68,7 +68,7 @@ class _Verification:
         self._message = message
         self._example = example
         self._problems = problems
-        self._chosen = [part.name for part in self._frame.caller_parts]
+        self._chosen = [part.name for part in given_parts(self._frame, message)]
         self._reading = _Reading("")
 
     def run(self) -> None:
@@ -132,9 +132,10 @@ class _Verification:
 
     def _numbers(self) -> dict[str, int]:
         """Identity, counters and values of the parts that the example does not print."""
-        numbers = dict(
-            zip((p.name for p in self._frame.identity), self._message.identity, strict=True)
-        )
+        numbers = {
+            part.name: self._example.parts.get(part.name, value)
+            for part, value in zip(self._frame.identity, self._message.identity, strict=True)
+        }
         for part in self._frame.caller_parts:
             default = part.default if part.default is not None else part.least
             numbers[part.name] = self._example.parts.get(part.name, default)

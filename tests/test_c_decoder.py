@@ -28,6 +28,7 @@ from vectors import ExpectedEvent, Stream, Vector, VectorFile
 from protogen.copying import replace
 from protogen.fuzzing.c_calls import OK, CEvent, Step
 from protogen.live.codec import module_of
+from protogen.model.messages import Message, given_parts
 from protogen.model.protocol import Sender
 from protogen.passes.selection import select
 from protogen.targets.c.options import COptions
@@ -225,7 +226,8 @@ def is_of_one_form(file: VectorFile, sender: str) -> bool:
 def test_a_frame_by_hand_is_made_and_read(file: VectorFile, item: Vector) -> None:
     process = process_of(file.schema)
     message = message_of(module_at(file.schema), item)
-    parts = parts_of(protocol_of(file.schema).sender(item.sender), item.parts)
+    protocol = protocol_of(file.schema)
+    parts = parts_of(protocol.sender(item.sender), protocol.message(item.message), item.parts)
     if not message.violations():
         call = process.calls.frame(item.sender, item.message, message.to_dict(), parts)
         made = process.do(call)
@@ -237,9 +239,14 @@ def test_a_frame_by_hand_is_made_and_read(file: VectorFile, item: Vector) -> Non
     assert agrees(item.values, event.values)
 
 
-def parts_of(sender: Sender, given: Any) -> dict[str, int]:
+def parts_of(sender: Sender, message: Message, given: Any) -> dict[str, int]:
     """The given parts, and what the others are where nobody says."""
-    defaults = {part.name: part.default for part in sender.frame.caller_parts}
+    defaults: dict[str, Any] = {
+        part.name: value
+        for part, value in zip(sender.frame.identity, message.identity, strict=True)
+        if part in given_parts(sender.frame, message)
+    }
+    defaults |= {part.name: part.default for part in sender.frame.caller_parts}
     return {name: given.get(name, default or 0) for name, default in defaults.items()}
 
 

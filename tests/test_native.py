@@ -278,7 +278,8 @@ def drawn_frames(data: st.DataObject, module: Any, sender: Sender) -> list[bytes
     frames = []
     for message in sender.messages:
         for _ in range(data.draw(st.integers(1, 3))):
-            values, parts = data.draw(values_of(message)), data.draw(parts_of(sender.frame))
+            values = data.draw(values_of(message))
+            parts = data.draw(parts_of(sender.frame, message))
             made = codec.check_payload(module, message, values)
             frame = made and codec.encode(module, sender, message, made, parts)
             frames += [frame] if frame else []

@@ -244,7 +244,7 @@ def test_a_torrent_of_noise_fills_no_memory(path: Path) -> None:
     held, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     # 18,000 bytes went through; what stays is less than a few frames with what Python needs.
-    assert held < 6_000
+    assert held < 7_000
     assert peak < 60_000
 
 

@@ -25,7 +25,7 @@ from schema_fuzzing.reference import frame_bytes, payload_bytes
 from schema_fuzzing.values import all_parts, parts_of, values_of
 
 from protogen.fuzzing.samples import boundary_rounds, samples
-from protogen.model.messages import Message
+from protogen.model.messages import Message, given_parts
 from protogen.model.protocol import Sender
 from protogen.passes.framing.capacity import payload_range
 from protogen.runtime.attributes import arguments, attribute
@@ -107,7 +107,7 @@ def test_boundary_values_come_back(case: Case) -> None:
 @given(data=st.data())
 def test_values_come_back(case: Case, data: st.DataObject) -> None:
     values = as_text(data.draw(values_of(case.message)))
-    check_values(case, values, data.draw(parts_of(case.sender.frame)))
+    check_values(case, values, data.draw(parts_of(case.sender.frame, case.message)))
 
 
 def check_values(case: Case, values: Values, parts: Values) -> None:
@@ -199,7 +199,7 @@ def test_any_payload_that_is_accepted_comes_back(case: Case, data: st.DataObject
             payload[place] = data.draw(any_byte)
     if data.draw(st.booleans()):
         payload = bytearray(data.draw(st.lists(any_byte, max_size=12)))
-    check_payload(case, bytes(payload), data.draw(parts_of(case.sender.frame)))
+    check_payload(case, bytes(payload), data.draw(parts_of(case.sender.frame, case.message)))
 
 
 def plain_payloads(case: Case) -> list[bytes]:
@@ -222,10 +222,8 @@ def check_payload(case: Case, payload: bytes, parts: Mapping[str, int] | None = 
         assert event.kind == "invalid" or len(payload) not in case.message.sizes
         return
     assert event.payload == payload
-    given = {
-        part.name: getattr(event.parts, attribute(part.name))
-        for part in case.sender.frame.caller_parts
-    }
+    chosen = given_parts(case.sender.frame, case.message)
+    given = {part.name: getattr(event.parts, attribute(part.name)) for part in chosen}
     again = case.module.encode(event.message, case.sender.name, False, **arguments(given))
     assert again == frame or has_nan(event.message.to_dict())
     line = event.as_json()

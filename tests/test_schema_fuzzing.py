@@ -204,7 +204,7 @@ def _check_values(
 def _check_frame(
     data: st.DataObject, module: ModuleType, sender: Sender, message: Message, made: Any
 ) -> bytes | None:
-    parts = data.draw(parts_of(sender.frame))
+    parts = data.draw(parts_of(sender.frame, message))
     frame = codec.encode(module, sender, message, made, parts)
     event("frame" if frame is not None else "the end would stand in the data")
     if frame is None:

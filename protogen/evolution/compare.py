@@ -14,6 +14,7 @@ from protogen.evolution.compare_reserved import compare_reserved
 from protogen.evolution.rules import BY_NAME, Category
 from protogen.evolution.shapes import shape
 from protogen.model.frame_plan import EndRule, FramePlan
+from protogen.model.identities import Identities
 from protogen.model.messages import Message
 from protogen.model.protocol import Link, Protocol, Sender
 
@@ -98,7 +99,7 @@ def _unskippable(
     """A message whose frames an old receiver can't pass over: it would look for frames inside."""
     for sender in old.senders:
         other = _counterpart(sender, new, endpoints)
-        is_known = any(item.identity == message.identity for item in sender.messages)
+        is_known = any(item.told_by.covers(message.told_by) for item in sender.messages)
         if other is None or not other.sends(message) or is_known:
             continue
         words = _obstacle(message, sender.plan, other.plan)
@@ -131,7 +132,7 @@ def _senders(
     for sender, name in names.items():
         if name in other.senders:
             continue
-        if (name, message.identity) in _reserved(new):
+        if _is_reserved(new, name, message.told_by):
             words = f"{sender} does not send it any more, {_identity(message)} is reserved"
             yield _change("message-reserved", message, words)
         else:
@@ -139,13 +140,15 @@ def _senders(
             yield replace(_change("message-sender-deleted", message, words), sender=sender)
 
 
-def _reserved(protocol: Protocol) -> set[tuple[str, tuple[int, ...]]]:
-    return {(item.sender, item.identity) for item in protocol.reserved.identities}
+def _is_reserved(protocol: Protocol, sender: str, identities: Identities) -> bool:
+    """True if nobody can use these identities again."""
+    own = [item.told_by for item in protocol.reserved.identities if item.sender == sender]
+    return all(any(item.covers(run) for item in own) for run in identities.each_run())
 
 
 def _deleted(message: Message, new: Protocol, endpoints: dict[str, str]) -> Change:
     senders = [endpoints.get(item, item) for item in message.senders]
-    if all((sender, message.identity) in _reserved(new) for sender in senders):
+    if all(_is_reserved(new, sender, message.told_by) for sender in senders):
         return _change("message-reserved", message, f"{_identity(message)} is reserved")
     return _change("message-deleted", message, f"{_identity(message)} is free for another meaning")
 
@@ -154,21 +157,59 @@ def _identities(
     old: Sender, new: Sender, protocol: Protocol, messages: dict[str, str]
 ) -> Iterator[Change]:
     after = {message.name: message for message in new.messages}
-    owners: dict[tuple[int, ...], list[str]] = {}
-    for message in new.messages:
-        owners.setdefault(message.identity, []).append(message.name)
+    owners, before = _Owners(new.messages), _Owners(old.messages)
     for message in old.messages:
         name = messages.get(message.name)
-        if name in after and after[name].identity != message.identity:
-            words = named(_shown(message.identity), _shown(after[name].identity))
-            yield replace(_change("message-identity", message, words), sender=old.name)
-        taken = [item for item in owners.get(message.identity, ()) if item != name]
-        mine = {messages.get(m.name) for m in old.messages if m.identity == message.identity}
-        taken = [item for item in taken if item not in mine]
+        if name in after:
+            found = _other_identity(message, after[name], protocol, new.endpoint)
+            yield from (replace(item, sender=old.name) for item in found)
+        mine = {messages.get(item) for item in before.of(message.told_by)} | {name}
+        taken = [item for item in owners.of(message.told_by) if item not in mine]
         if taken:
-            words = f"{_shown(message.identity)} was {message.name}, is {', '.join(taken)}"
+            words = f"{_shown(message)} was {message.name}, is {', '.join(taken)}"
             change = _change("identity-reused", message, words)
             yield replace(change, sender=old.name, taken_by=tuple(taken))
+
+
+def _other_identity(
+    old: Message, new: Message, protocol: Protocol, endpoint: str
+) -> Iterator[Change]:
+    """Changes of a message's identities: more are unknown to old receivers, fewer to new ones."""
+    before, after = old.told_by, new.told_by
+    words = named(_shown(old), _shown(new))
+    if not after.covers(before):
+        gone = [run for run in before.each_run() if not after.covers(run)]
+        kept = all(_is_reserved(protocol, endpoint, run) for run in gone)
+        if kept and before.covers(after):
+            yield _change("message-reserved", old, f"{words}, and the others are reserved")
+        else:
+            yield _change("message-identity", old, words)
+    elif not before.covers(after):
+        yield _change("message-identity-added", old, words)
+    elif old.identity != new.identity:
+        yield _change("frame-part-default", old, words)
+
+
+class _Owners:
+    """Names of messages by their identities."""
+
+    def __init__(self, messages: Iterable[Message]) -> None:
+        self._alone: dict[Identities, list[str]] = {}
+        self._several: list[Message] = []
+        for message in messages:
+            if message.identities is None:
+                self._alone.setdefault(message.told_by, []).append(message.name)
+            else:
+                self._several.append(message)
+
+    def of(self, identities: Identities) -> list[str]:
+        """The messages that have one of these identities."""
+        found = self._alone.get(identities, [])
+        if identities.count > 1:
+            known = self._alone.items()
+            found = [name for item, own in known if item.meet(identities) for name in own]
+        several = (item for item in self._several if item.told_by.meet(identities) is not None)
+        return [*found, *(item.name for item in several)]
 
 
 def _overloads(old: Sender, new: Sender, messages: dict[str, str]) -> Iterator[Change]:
@@ -179,7 +220,7 @@ def _overloads(old: Sender, new: Sender, messages: dict[str, str]) -> Iterator[C
             words = named(before[identity] or "told by size", after[identity] or "told by size")
             yield Change(
                 rule="message-overload",
-                place=f"{old.name} {_shown(identity)}",
+                place=f"{old.name} {Identities.only(identity)}",
                 text=words,
                 sender=old.name,
             )
@@ -190,11 +231,11 @@ def _change(rule: str, message: Message, text: str) -> Change:
 
 
 def _identity(message: Message) -> str:
-    return f"identity {_shown(message.identity)}" if message.identity else "without an identity"
+    return f"identity {_shown(message)}" if message.identity else "without an identity"
 
 
-def _shown(identity: tuple[int, ...]) -> str:
-    return " ".join(f"0x{value:02X}" for value in identity) or "none"
+def _shown(message: Message) -> str:
+    return str(message.told_by) or "none"
 
 
 # --- what belongs together ------------------------------------------------------------------------
@@ -238,7 +279,7 @@ def _paired_messages(old: Protocol, new: Protocol, endpoints: dict[str, str]) ->
             continue
         senders = {endpoints.get(item, item) for item in message.senders}
         for other in fresh:
-            same = (set(other.senders), other.identity) == (senders, message.identity)
+            same = (set(other.senders), other.told_by) == (senders, message.told_by)
             if same and _layout(other) == _layout(message) and message.identity:
                 pairs[message.name] = other.name
                 fresh.remove(other)

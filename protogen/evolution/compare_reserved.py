@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from protogen.evolution.change import Change
+from protogen.model.identities import Identities
 from protogen.model.meanings import Enum
 from protogen.model.messages import Message
 from protogen.model.nesting import fields_inside
@@ -32,12 +33,36 @@ def compare_reserved(
     kept = {(entry.place, entry.what) for entry in _entries(new, {}, {})}
     used = _used(new)
     for entry in _entries(old, endpoints, messages):
-        key = entry.place, entry.what
-        if key in used:
-            words = f"{entry.words} is {used[key]}"
+        user = _user_of(used, entry)
+        if user:
+            words = f"{entry.words} is {user}"
             yield Change(rule="reserved-reused", place=f"reserved {entry.place}", text=words)
-        elif key not in kept and entry.place in there:
+        elif not _is_kept(kept, entry) and entry.place in there:
             yield Change(rule="reserved-deleted", place=f"reserved {entry.place}", text=entry.words)
+
+
+def _user_of(used: Mapping[tuple[str, object], str], entry: _Entry) -> str | None:
+    """Name of what uses the thing that was reserved."""
+    if not isinstance(entry.what, Identities):
+        return used.get((entry.place, entry.what))
+    return next(
+        (
+            name
+            for (place, what), name in used.items()
+            if place == entry.place
+            and isinstance(what, Identities)
+            and what.meet(entry.what) is not None
+        ),
+        None,
+    )
+
+
+def _is_kept(kept: Iterable[tuple[str, object]], entry: _Entry) -> bool:
+    """True if the thing is still reserved."""
+    if not isinstance(entry.what, Identities):
+        return (entry.place, entry.what) in kept
+    own = [what for place, what in kept if place == entry.place and isinstance(what, Identities)]
+    return all(any(item.covers(run) for item in own) for run in entry.what.each_run())
 
 
 def _entries(
@@ -45,9 +70,8 @@ def _entries(
 ) -> Iterator[_Entry]:
     reserved = protocol.reserved
     for item in reserved.identities:
-        shown = " ".join(f"0x{value:02X}" for value in item.identity)
         place = endpoints.get(item.sender, item.sender)
-        yield _Entry(place, item.identity, f"identity {shown} of {item.sender}")
+        yield _Entry(place, item.told_by, f"identity {item.told_by} of {item.sender}")
     for names in reserved.fields:
         place = messages.get(names.message, names.message)
         for name in names.names:
@@ -64,7 +88,7 @@ def _used(protocol: Protocol) -> dict[tuple[str, object], str]:
     used: dict[tuple[str, object], str] = {}
     for message in protocol.messages:
         for sender in message.senders:
-            used[sender, message.identity] = message.name
+            used[sender, message.told_by] = message.name
         for path, field in _fields(message):
             used[message.name, path] = f"a field of {message.name}"
             used |= _values(f"{message.name}.{path}", field.type)

@@ -75,6 +75,12 @@ RULES: tuple[Rule, ...] = (
     Rule("message-deleted", _W, "a message is gone", "reserve its identity"),
     Rule("message-reserved", _N, "a message is gone and its identity reserved", "nothing"),
     Rule("message-renamed", _S, "a message has another name", _RENAME),
+    Rule(
+        "message-identity-added",
+        _N,
+        "a message has further identities",
+        "old receivers report frames of these as unknown",
+    ),
     Rule("message-identity", _W, "a message has another identity", _NEW_ID),
     Rule(
         "identity-reused",

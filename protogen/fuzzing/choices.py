@@ -13,6 +13,7 @@ from typing import Any
 import msgspec
 
 from protogen.model.frame import ChoicePart, CounterPart, ValuePart
+from protogen.model.identities import Runs
 from protogen.model.messages import Message
 from protogen.model.payload_plan import (
     AnyStep,
@@ -55,6 +56,12 @@ def part_choices(part: CounterPart | ValuePart) -> Choices:
         return Choices(part.values, lambda random: random.choice(part.values))
     least, greatest = part.least, part.greatest
     return Choices((least, greatest), lambda random: random.randint(least, greatest))
+
+
+def run_choices(runs: Runs) -> Choices:
+    """Choices for an identity part of which a message has several values."""
+    ends = tuple(dict.fromkeys(end for run in runs for end in run))
+    return Choices(ends, lambda random: random.randint(*random.choice(runs)))
 
 
 def unspecified_choices(message: Message, sizes: SizeSet) -> Choices:

@@ -21,6 +21,7 @@ from protogen.fuzzing.choices import (
     lengths_of,
     needs_of,
     part_choices,
+    run_choices,
     scalar_choices,
     unspecified_choices,
 )
@@ -139,6 +140,9 @@ def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, V
         if sampler.size not in sizes:
             return None
     parts = {part.name: chooser.choose(part_choices(part)) for part in frame.caller_parts}
+    for index, part in enumerate(frame.identity):
+        if message.chooses(index):
+            parts[part.name] = chooser.choose(run_choices(message.told_by.runs[index]))
     return fields, parts
 
 

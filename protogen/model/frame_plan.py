@@ -26,8 +26,12 @@ from protogen.model.frame import (
     Part,
     ValuePart,
 )
+from protogen.model.identities import Identities
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
+
+_FEW = 256
+"""So many identities are looked at one by one."""
 
 
 class StartRule(Enum):
@@ -218,9 +222,12 @@ class IdentityGroup(msgspec.Struct, frozen=True, kw_only=True):
     """Messages that a receiver may find behind one identity: one, or more told apart by size."""
 
     identity: tuple[int, ...]
+    """The identity, or that of several which stands for all."""
     key: int
     """Values of the identity parts as one number, the first part in its highest bits."""
     messages: tuple[Message, ...]
+    identities: Identities | None = None
+    """Where there are several."""
 
     @property
     def fixed(self) -> int | None:
@@ -477,8 +484,12 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         first = behind[0] if behind else None
         if not isinstance(first, IdentityPart) or first.size < len(self.end_bytes):
             return True
-        value = message.identity[self.identity.index(first)]
-        return first.encode(value).startswith(self.end_bytes)
+        index = self.identity.index(first)
+        if message.told_by.values(index) > _FEW:
+            return True
+        runs = message.told_by.runs[index]
+        values = (value for least, most in runs for value in range(least, most + 1))
+        return any(first.encode(value).startswith(self.end_bytes) for value in values)
 
 
 def _begins_inside(start: bytes, end: bytes) -> bool:

@@ -7,6 +7,8 @@ from typing import Any
 
 import msgspec
 
+from protogen.model.frame import Frame, NumberPart
+from protogen.model.identities import Identities, Identity
 from protogen.model.origin import NOTHING, About
 from protogen.model.payload_builder import plan_of
 from protogen.model.payload_plan import PayloadPlan
@@ -46,12 +48,14 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     senders: tuple[str, ...]
     """The endpoints that send it."""
     identity: tuple[int, ...]
-    """Raw value of each identity part, in wire order."""
+    """Raw value of each identity part, in wire order; of several, those that encoders write."""
     fields: tuple[Field, ...]
     sizes: SizeSet
     """Payload sizes."""
     unspecified: bool = False
     """The document does not say what the payload holds: one field `data` of bytes."""
+    identities: Identities | None = None
+    """Where it has several."""
     examples: tuple[Example, ...] = ()
     spec_hash: str = ""
     """SHA-256, in hex, of identity, layout and meaning of values."""
@@ -66,6 +70,27 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     def plan(self) -> PayloadPlan:
         """The steps that read, check and write the payload."""
         return plan_of(self.fields)
+
+    @property
+    def told_by(self) -> Identities:
+        """All identities that it has."""
+        return self.identities or Identities.only(self.identity)
+
+    def is_told_by(self, identity: Identity) -> bool:
+        """True if it is one of its identities."""
+        if self.identities is None:
+            return identity == self.identity
+        return identity in self.identities
+
+    def chooses(self, index: int) -> bool:
+        """True if the identity part of this index has several values."""
+        return self.identities is not None and self.identities.values(index) > 1
+
+
+def given_parts(frame: Frame, message: Message) -> tuple[NumberPart, ...]:
+    """The parts of a message's frames that a caller gives: identities first, if it has several."""
+    chosen = (part for index, part in enumerate(frame.identity) if message.chooses(index))
+    return (*chosen, *frame.caller_parts)
 
 
 class Overload(msgspec.Struct, frozen=True, kw_only=True):

@@ -7,9 +7,10 @@ from functools import cached_property
 
 import msgspec
 
-from protogen.model.frame import Frame
+from protogen.model.frame import Frame, IdentityPart, NumberPart
 from protogen.model.frame_plan import FramePlan
 from protogen.model.framing import Framing
+from protogen.model.identities import Identities
 from protogen.model.meanings import Enum, Flags
 from protogen.model.messages import Exchange, Message, Overload
 from protogen.model.origin import NOTHING, About, Source
@@ -81,6 +82,20 @@ class Sender(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return message.name in self._sent
 
     @cached_property
+    def given_identity(self) -> tuple[IdentityPart, ...]:
+        """The identity parts of which some message has several values, so that callers choose."""
+        return tuple(
+            part
+            for index, part in enumerate(self.frame.identity)
+            if any(message.chooses(index) for message in self.messages)
+        )
+
+    @property
+    def given_parts(self) -> tuple[NumberPart, ...]:
+        """The parts whose values callers give, of some message at least."""
+        return (*self.given_identity, *self.frame.caller_parts)
+
+    @cached_property
     def _sent(self) -> frozenset[str]:
         return frozenset(message.name for message in self.messages)
 
@@ -104,7 +119,14 @@ class ReservedIdentity(msgspec.Struct, frozen=True, kw_only=True):
 
     sender: str
     identity: tuple[int, ...]
+    identities: Identities | None = None
+    """Where several are reserved together."""
     doc: str = ""
+
+    @property
+    def told_by(self) -> Identities:
+        """All identities that are reserved."""
+        return self.identities or Identities.only(self.identity)
 
 
 class ReservedNames(msgspec.Struct, frozen=True, kw_only=True):

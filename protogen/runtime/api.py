@@ -26,6 +26,7 @@ from protogen.runtime.framing.frame import (
     ValuePart,
 )
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
+from protogen.runtime.identities import Identities
 from protogen.runtime.lazy import importer, lazily
 from protogen.runtime.payload.enums import Flags, OpenEnum
 from protogen.runtime.payload.message import Message, Record, Sizes
@@ -67,6 +68,7 @@ __all__ = [
     "FrameFormat",
     "FrameSpec",
     "Frozen",
+    "Identities",
     "IdentityPart",
     "IntegerRule",
     "InvalidEvent",

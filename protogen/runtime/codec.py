@@ -186,9 +186,18 @@ def _encode(
 ) -> bytes:
     """The frame in the first form that fits."""
     payload = build_payload(message, strict)
-    return first_that_fits(
-        senders, lambda item: encode_frame(item, message.IDENTITY, payload, parts, strict)
-    )
+    return first_that_fits(senders, lambda item: _frame(item, message, payload, parts, strict))
+
+
+def _frame(
+    sender: SenderSpec[Any, Any],
+    message: Message,
+    payload: bytes,
+    parts: Mapping[str, int | None],
+    strict: bool,
+) -> bytes:
+    identity, given = sender.choose_identity(type(message), parts)
+    return encode_frame(sender, identity, payload, given, strict)
 
 
 class Encoder:

@@ -86,19 +86,69 @@ def _identified(draw: st.DrawFn, plan: Plan, found: list[MessagePlan]) -> list[M
         values = st.tuples(*(st.integers(*part.bounds) for part in scheme))
         count = len(members) if scheme else 0
         drawn = draw(st.lists(values, min_size=count, max_size=count, unique=True))
+        several = _Several(draw, scheme, drawn)
         for index, identity in zip(members, drawn, strict=False):
-            written = {"id": draw(_written_identity(scheme, identity))}
+            runs = several.beside(identity)
+            written = {"id": draw(_written_identity(scheme, identity, runs))}
             result[index] = replace(result[index], data={**written, **result[index].data})
     return result
 
 
+class _Several:
+    """Draws further identities of messages, none of which is another's."""
+
+    def __init__(
+        self, draw: st.DrawFn, scheme: Sequence[PartPlan], drawn: Sequence[Sequence[int]]
+    ) -> None:
+        self._draw = draw
+        self._scheme = scheme
+        self._taken: list[tuple[Runs, ...]] = [
+            tuple(((value, value),) for value in identity) for identity in drawn
+        ]
+
+    def beside(self, identity: Sequence[int]) -> tuple[Runs, ...]:
+        """The values of each part that are its identities, its own first; mostly no others."""
+        runs: list[Runs] = [((value, value),) for value in identity]
+        if not self._draw(forms.one_in(4)):
+            return tuple(runs)
+        own = tuple(runs)
+        for index, part in enumerate(self._scheme):
+            for _ in range(self._draw(st.sampled_from([0, 1, 1, 2]))):
+                first = self._draw(st.integers(*part.bounds))
+                most = min(part.bounds[1], first + self._draw(st.sampled_from([0, 0, 1, 5, 3000])))
+                run = (first, most)
+                found = [*runs]
+                found[index] = (*runs[index], run)
+                if self._is_free(tuple(found), own) and not _meets(runs[index], (run,)):
+                    runs = found
+        self._taken[self._taken.index(own)] = tuple(runs)
+        return tuple(runs)
+
+    def _is_free(self, runs: tuple[Runs, ...], own: tuple[Runs, ...]) -> bool:
+        others = (taken for taken in self._taken if taken != own)
+        return not any(all(map(_meets, runs, taken)) for taken in others)
+
+
+Runs = tuple[tuple[int, int], ...]
+
+
+def _meets(one: Runs, other: Runs) -> bool:
+    return any(a[0] <= b[1] and b[0] <= a[1] for a in one for b in other)
+
+
 @st.composite
-def _written_identity(draw: st.DrawFn, scheme: Sequence[PartPlan], identity: Sequence[int]) -> Any:
-    written = {}
-    for part, value in zip(scheme, identity, strict=True):
+def _written_identity(
+    draw: st.DrawFn, scheme: Sequence[PartPlan], identity: Sequence[int], several: Sequence[Runs]
+) -> Any:
+    written: dict[str, Any] = {}
+    for part, value, runs in zip(scheme, identity, several, strict=True):
         assert part.type is not None
         character = part.type.type == "char"
-        written[part.name] = draw(forms.raw_number(value, character=character))
+        found: list[Any] = [draw(forms.raw_number(value, character=character))]
+        for first, last in runs[1:]:
+            is_one = first == last and draw(st.booleans())
+            found.append(first if is_one else {"range": [first, last]})
+        written[part.name] = found if len(found) > 1 or draw(forms.one_in(9)) else found[0]
     if len(written) == 1 and not draw(forms.one_in(4)):
         return next(iter(written.values()))
     return dict(draw(st.permutations(list(written.items()))))

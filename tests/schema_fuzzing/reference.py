@@ -146,7 +146,7 @@ class _Assembly:
         self._frame = frame
         self._payload = payload
         names = [part.name for part in frame.identity]
-        self._numbers = {**given, **dict(zip(names, message.identity, strict=True))}
+        self._numbers = {**dict(zip(names, message.identity, strict=True)), **given}
 
     def wire(self) -> bytes:
         return self._wire(part.name for part in self._present())

@@ -26,7 +26,8 @@ COMMON = (
     "size: by the end", "size: by the message", "size: length", "size: length with a range",
     "counter", "value", "choice", "start: choice", "checksum over wire", "checksum when payload",
     "algorithm: parameters",
-    "overload by size", "overload by undecidable", "unspecified payload", "empty message",
+    "several identities", "overload by size", "overload by undecidable", "unspecified payload",
+    "empty message",
     "type: ascii", "type: bytes", "type: bool", "type: byte", "type: char", "type: float32",
     "type: float64", "type: struct", "type: switch", "declared struct", "declared number",
     "number: fixed", "number: counted", "number: fill", "number: fill, bounded", "struct: fixed",
@@ -130,6 +131,10 @@ def _part(data: dict[str, Any]) -> Iterator[str]:
 
 
 def _message(data: dict[str, Any]) -> Iterator[str]:
+    identity = data.get("id")
+    values = identity.values() if isinstance(identity, dict) else [identity]
+    if any(isinstance(item, list) and len(item) > 1 for item in values):
+        yield "several identities"
     yield "several senders" if isinstance(data["from"], list) and data["from"][1:] else "one sender"
     if "byte_order" in data:
         yield "byte order of a message"

@@ -47,9 +47,14 @@ def values_of(draw: st.DrawFn, message: Message) -> dict[str, Any]:
 
 
 @st.composite
-def parts_of(draw: st.DrawFn, frame: Frame) -> dict[str, int]:
-    """Values for counters and values of a frame; one with a default is left out sometimes."""
-    return {
+def parts_of(draw: st.DrawFn, frame: Frame, message: Message) -> dict[str, int]:
+    """Values for counters, values and identities to choose; left out sometimes if they may be."""
+    chosen = {
+        part.name: draw(_between(*draw(st.sampled_from(message.told_by.runs[index]))))
+        for index, part in enumerate(frame.identity)
+        if message.chooses(index) and draw(st.booleans())
+    }
+    return chosen | {
         part.name: draw(
             st.sampled_from(part.values)
             if isinstance(part, ChoicePart)
@@ -66,7 +71,7 @@ def all_parts(frame: Frame, message: Message, given: dict[str, int]) -> dict[str
     shown: dict[str, int] = {}
     for part in frame.parts:
         if part.name in identity:
-            shown[part.name] = identity[part.name]
+            shown[part.name] = given.get(part.name, identity[part.name])
         elif isinstance(part, CounterPart | ValuePart):
             default = part.default if part.default is not None else -1
             shown[part.name] = given.get(part.name, default)

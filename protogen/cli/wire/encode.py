@@ -14,7 +14,7 @@ from protogen.cli.options import SchemaFile
 
 if TYPE_CHECKING:
     from protogen.cli.wire.codec import Codec
-    from protogen.model.frame import Frame
+    from protogen.model.frame import Part
     from protogen.model.messages import Message
     from protogen.model.protocol import Sender
 
@@ -93,6 +93,7 @@ def _encode_message(
     from protogen.cli.schemas import find_message
     from protogen.cli.wire.hints import hint_at
     from protogen.cli.wire.values import raw_values, split_assignment, tree_of
+    from protogen.model.messages import given_parts
     from protogen.runtime.attributes import arguments
     from protogen.runtime.codec import Encoder
     from protogen.runtime.errors import EncodeError
@@ -101,7 +102,7 @@ def _encode_message(
     forms = _forms_of(codec, message, sender, form)
     given = [split_assignment(text) for text in written]
     fields = raw_values(message.plan.steps, tree_of(item for item in given if item[0][0] != "@"))
-    parts = _parts([item.frame for item in forms], given)
+    parts = _parts([part for item in forms for part in given_parts(item.frame, message)], given)
     try:
         specs = [codec.runtime.sender(item.name) for item in forms]
         kind = specs[0].named(name)
@@ -139,10 +140,10 @@ def _all_of(names: Iterable[str]) -> str:
     return " or ".join(names)
 
 
-def _parts(frames: Iterable[Frame], given: Iterable[tuple[str, str]]) -> dict[str, int]:
+def _parts(known: Iterable[Part], given: Iterable[tuple[str, str]]) -> dict[str, int]:
     from protogen.problems import hint_for
 
-    names = list(dict.fromkeys(part.name for frame in frames for part in frame.caller_parts))
+    names = list(dict.fromkeys(part.name for part in known))
     parts: dict[str, int] = {}
     for written, text in given:
         name = written.removeprefix("@")

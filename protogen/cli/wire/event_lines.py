@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from protogen.model.messages import given_parts
 from protogen.model.reading.readings import readings
 from protogen.runtime.attributes import attribute
 from protogen.runtime.values import as_dict
@@ -33,9 +34,10 @@ class EventLines:
 
     def __init__(self, protocol: Protocol, *, show_sender: bool) -> None:
         self._plans = {message.name: message.plan for message in protocol.messages}
-        self._caller_parts = {
-            _key(sender): [part.name for part in sender.frame.caller_parts]
+        self._given_parts = {
+            (_key(sender), message.name): [p.name for p in given_parts(sender.frame, message)]
             for sender in protocol.senders
+            for message in sender.messages
         }
         names = [*self._plans, "unknown", "invalid"]
         self._name_width = max(map(len, names))
@@ -61,7 +63,7 @@ class EventLines:
     def _message(self, event: Any) -> Iterator[Segment]:
         name = event.message.NAME
         yield self._name(name, "bold cyan")
-        for part in self._caller_parts[event.sender, event.form]:
+        for part in self._given_parts[(event.sender, event.form), name]:
             yield from _value(f"@{part}", str(getattr(event.parts, attribute(part))))
         for field, text in readings(self._plans[name], event.message.to_dict()):
             yield from _value(field, text)

@@ -27,7 +27,7 @@ from typing import Any
 import msgspec
 
 from protogen.copying import replace
-from protogen.model.messages import Message
+from protogen.model.messages import Message, given_parts
 from protogen.model.names import unit_suffix
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import (
@@ -244,7 +244,7 @@ def _frame_columns(parts: Iterable[tuple[str, Integer]], taken: Iterable[str]) -
 
 def _message_table(message: Message, sender: Sender, facts: Mapping[str, str]) -> Table:
     columns = tuple(_message_columns(message.fields))
-    parts = [(part.name, part.type) for part in sender.frame.caller_parts]
+    parts = [(part.name, part.type) for part in given_parts(sender.frame, message)]
     identity = {
         part.name: value
         for part, value in zip(sender.frame.identity, message.identity, strict=True)

@@ -225,8 +225,8 @@ class _Frame:
         return next(iter((*yielded, *fitting, *candidates)), None)
 
     def _candidates(self) -> list[Message]:
-        identity = tuple(self._numbers.get(part.name) for part in self._sender.frame.identity)
-        return [message for message in self._sender.messages if message.identity == identity]
+        identity = tuple(self._numbers.get(part.name, -1) for part in self._sender.frame.identity)
+        return [message for message in self._sender.messages if message.is_told_by(identity)]
 
     # --- what is left -----------------------------------------------------------------------
 

@@ -34,6 +34,7 @@ from protogen.model.frame_plan import (
     StuffedRegion,
 )
 from protogen.model.framing import AfterEnd, Anywhere, Framing, StartLiteral, StartSet
+from protogen.model.identities import Identities
 from protogen.model.messages import Message, Overload
 from protogen.passes.framing.capacity import counted_size, tail_literals
 
@@ -62,14 +63,20 @@ def identity_groups(
 
     Of messages that nothing tells apart, it yields the one that the overload names.
     """
-    found: dict[tuple[int, ...], list[Message]] = {}
+    found: dict[Identities, list[Message]] = {}
     hidden = set().union(*(overload.hidden for overload in overloads))
     for message in messages:
         if message.name not in hidden:
-            found.setdefault(message.identity, []).append(message)
-    return tuple(
-        IdentityGroup(identity=identity, key=_key(frame, identity), messages=tuple(group))
-        for identity, group in found.items()
+            found.setdefault(message.told_by, []).append(message)
+    return tuple(_group(frame, identities, group) for identities, group in found.items())
+
+
+def _group(frame: Frame, identities: Identities, messages: Sequence[Message]) -> IdentityGroup:
+    return IdentityGroup(
+        identity=identities.first,
+        key=_key(frame, identities.first),
+        messages=tuple(messages),
+        identities=identities if identities.count > 1 else None,
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from protogen.model.frame import Frame
+from protogen.model.identities import Identities
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.model.types import ByteOrder, Field, Fill, Octets, total
@@ -17,7 +18,7 @@ from protogen.passes.framing.capacity import (
     payload_range,
     stated_range,
 )
-from protogen.passes.messages.identities import Identity, IdentityReader
+from protogen.passes.messages.identity_reader import IdentityReader
 from protogen.passes.messages.stated_sizes import greatest_stated, least_stated
 from protogen.passes.types.fields import FieldBuilder
 from protogen.passes.types.setting import Setting
@@ -102,10 +103,10 @@ class _Resolution:
         """Add the message."""
         syntax = self._syntax
         self._fields = draft.named.settled(self._fields)
-        identity = self._identity()
+        identities = self._identities()
         sizes = self._sizes(draft)
         self._leave_out(draft, sizes)
-        if identity is None:
+        if identities is None:
             draft.unidentified.add(self._name)
         draft.messages[self._name] = Message(
             name=self._name,
@@ -113,7 +114,8 @@ class _Resolution:
             summary=syntax.summary or "",
             senders=syntax.from_,
             forms=syntax.forms or (),
-            identity=identity or (),
+            identity=identities.first if identities else (),
+            identities=identities if identities and identities.count > 1 else None,
             fields=self._fields,
             sizes=sizes,
             unspecified=isinstance(syntax.fields, str),
@@ -256,15 +258,15 @@ class _Resolution:
 
     # -- identity -----------------------------------------------------------------------------
 
-    def _identity(self) -> Identity | None:
+    def _identities(self) -> Identities | None:
         reader = IdentityReader(self._context, self._loc, f"`{self._name}`")
         found = [reader.read(self._syntax.id, frame) for frame in self._frames.values()]
-        known = [identity for identity in found if identity is not None]
+        known = [identities for identities in found if identities is not None]
         if len(known) < len(found):
             return None
         return known[0] if self._is_one(known) else None
 
-    def _is_one(self, identities: Sequence[Identity]) -> bool:
+    def _is_one(self, identities: Sequence[Identities]) -> bool:
         if len(set(identities)) == 1:
             return True
         text = f"the frames of `{self._name}`'s senders have the identity parts in different orders"

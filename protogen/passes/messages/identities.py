@@ -3,79 +3,48 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
+from itertools import combinations
 
-from protogen.model.frame import Frame
+from protogen.model.identities import Identities
 from protogen.model.messages import Message
 from protogen.model.messages import Overload as OverloadModel
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
-from protogen.problems import hint_for
 from protogen.schema.syntax.messages import Overload
-
-Identity = tuple[int, ...]
-"""Raw value of each identity part, in wire order."""
-
-_ONLY = ""
-"""Stands for the frame's only identity part, where `id` is one value."""
-
-
-class IdentityReader:
-    """Reads the `id` of what stands at `loc`, which problems call `name`."""
-
-    def __init__(self, context: Context, loc: Loc, name: str) -> None:
-        self._context = context
-        self._loc = loc
-        self._name = name
-
-    def read(self, written: Mapping[str, int] | None, frame: Frame) -> Identity | None:
-        """The identity in this frame, or None where it is not whole, or out of range."""
-        parts = {part.name: part for part in frame.identity}
-        given = dict(written or {})
-        if set(given) == {_ONLY} and len(parts) == 1:
-            given = dict.fromkeys(parts, given[_ONLY])
-        if not self._names_parts(set(given), list(parts)):
-            return None
-        fits = True
-        for name, part in parts.items():
-            if not part.least <= given[name] <= part.greatest:
-                text = f"{given[name]} is no value of `{name}`: {part.least} to {part.greatest}"
-                self._context.error("PG152", (*self._loc, "id"), text)
-                fits = False
-        return tuple(given[name] for name in parts) if fits else None
-
-    def _names_parts(self, given: set[str], parts: list[str]) -> bool:
-        if given == {_ONLY}:
-            how = ", ".join(f"{name}: ..." for name in parts)
-            text = f"the frame has {len(parts)} identity parts"
-            hint = f"write id: {{{how}}}"
-            if not parts:
-                text = "no part of the frame tells messages apart"
-                hint = "mark the part that does, as in `kind: {type: uint8, id: true}`"
-            self._context.error("PG151", (*self._loc, "id"), text, hint)
-            return False
-        for name in sorted(given - set(parts)):
-            text = f"`{name}` is no identity part of the frame"
-            place = (*self._loc, "id", name)
-            self._context.error_at_key("PG151", place, text, hint_for(name, parts))
-        missing = [name for name in parts if name not in given]
-        if missing:
-            text = f"{self._name} does not say its identity: {', '.join(missing)}"
-            self._context.error_at_key("PG151", self._loc, text, "add `id`")
-        return given == set(parts)
 
 
 def check_identities(context: Context, draft: Draft) -> None:
     """Messages of one sender differ in identity, or an overload says how they are told apart."""
     overloads = _Overloads(context)
     for sender in draft.senders:
-        groups: dict[Identity, list[Message]] = defaultdict(list)
+        groups: dict[Identities, list[Message]] = defaultdict(list)
         for message in draft.sent_by(sender):
-            groups[message.identity].append(message)
+            groups[message.told_by].append(message)
+        _check_overlaps(context, sender, [group[0] for group in groups.values()])
         shared = (group for group in groups.values() if len(group) > 1)
         found = [overloads.resolve(sender, group) for group in shared]
         draft.overloads[sender] = [overload for overload in found if overload is not None]
     overloads.check_asked(draft)
+
+
+def _check_overlaps(context: Context, sender: str, messages: Sequence[Message]) -> None:
+    """No message with several identities has one of another's."""
+    if all(message.identities is None for message in messages):
+        return
+    for one, other in combinations(messages, 2):
+        if one.identities is None and other.identities is None:
+            continue
+        both = one.told_by.meet(other.told_by)
+        if both is not None:
+            shown = " ".join(f"0x{value:02X}" for value in both)
+            context.error_at_key(
+                "PG191",
+                ("messages", other.name),
+                f"`{other.name}` and `{one.name}` both have the identity {shown}, and both come "
+                f"from {sender}",
+                "take it out of one of them; a range can be written as several",
+            )
 
 
 class _Overloads:

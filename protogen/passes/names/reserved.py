@@ -5,7 +5,7 @@ from __future__ import annotations
 from protogen.model.protocol import Reserved, ReservedIdentity, ReservedNames, ReservedValues
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
-from protogen.passes.messages.identities import IdentityReader
+from protogen.passes.messages.identity_reader import IdentityReader
 from protogen.schema.syntax.protocol import ReservedIdentity as IdentitySyntax
 
 
@@ -38,16 +38,21 @@ def _identity(
     if not own:
         return None
     reader = IdentityReader(context, loc, "the reserved identity")
-    identity = reader.read(entry.id, draft.frames[own[0]])
+    identities = reader.read(entry.id, draft.frames[own[0]])
+    if identities is None:
+        return None
     sent = {message.name: message for name in own for message in draft.sent_by(name)}
     for message in sent.values():
-        if message.identity == identity:
+        if message.told_by.meet(identities) is not None:
             text = f"the identity of `{message.name}` is reserved"
             note = (context.find(loc), "reserved here")
             context.error_at_key("PG156", ("messages", message.name), text, note=note)
-    if identity is None:
-        return None
-    return ReservedIdentity(sender=entry.from_, identity=identity, doc=entry.doc or "")
+    return ReservedIdentity(
+        sender=entry.from_,
+        identity=identities.first,
+        identities=identities if identities.count > 1 else None,
+        doc=entry.doc or "",
+    )
 
 
 def _fields(context: Context, draft: Draft, name: str, fields: tuple[str, ...]) -> None:

@@ -62,7 +62,7 @@ def _sizes_join(frame: Frame, messages: list[Message]) -> bool:
     filled = {sizes for message in messages if (sizes := message.sizes.within(1, 1 << 20))}
     groups = defaultdict(list)
     for message in messages:
-        groups[message.identity].append(message.sizes)
+        groups[message.told_by].append(message.sizes)
     for group in groups.values():
         for one in group:
             for other in filled:

@@ -23,6 +23,7 @@ from protogen.model.frame import (
     PayloadPart,
 )
 from protogen.model.framing import End, Start, StartLiteral, StartSet
+from protogen.model.identities import Identities
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.passes.framing.capacity import payload_range
@@ -92,16 +93,33 @@ def _identity(frame: Frame, part: IdentityPart, end: End | None, messages: list[
     Where nothing but the identity tells the size, a shorter message is one as well.
     """
     index = frame.identity.index(part)
-    groups: dict[tuple[int, ...], list[Message]] = defaultdict(list)
-    for message in messages:
-        groups[message.identity[:index] + message.identity[index + 1 :]].append(message)
+    groups = _groups_without(messages, index)
+    wrong, found = f"a wrong `{part.name}` that makes it", ""
     if frame.length is None and end is None:
-        several = any(len({message.identity for message in group}) > 1 for group in groups.values())
-        text = f"a wrong `{part.name}` that makes it another message of the same size, or a shorter"
-        return f"{text} one" if several else ""
-    if any(_share_a_size(group) for group in groups.values()):
-        return f"a wrong `{part.name}` that makes it another message of the same size"
-    return ""
+        if any(len({message.told_by for message in group}) > 1 for group in groups):
+            found = f"{wrong} another message of the same size, or a shorter one"
+    elif any(_share_a_size(group) for group in groups):
+        found = f"{wrong} another message of the same size"
+    if any(message.chooses(index) for message in messages):
+        own = "another identity of its message"
+        return f"{found}, or {own}" if found else f"{wrong} {own}"
+    return found
+
+
+def _groups_without(messages: list[Message], index: int) -> list[list[Message]]:
+    """The messages that differ in this identity part only, in groups."""
+    others = [
+        (Identities(message.told_by.runs[:index] + message.told_by.runs[index + 1 :]), message)
+        for message in messages
+    ]
+    if all(message.identities is None for message in messages):
+        alike: dict[Identities, list[Message]] = defaultdict(list)
+        for rest, message in others:
+            alike[rest].append(message)
+        return list(alike.values())
+    return [
+        [message for other, message in others if other.meet(rest) is not None] for rest, _ in others
+    ]
 
 
 def _false_start(frame: Frame, start: Start) -> str:
@@ -133,7 +151,7 @@ def _early_end(frame: Frame, start: Start, end: End | None, messages: list[Messa
 
 def _share_a_size(messages: list[Message]) -> bool:
     """True if two of the messages, which differ in identity, can have the same size."""
-    distinct = {message.identity: message.sizes for message in messages}
+    distinct = {message.told_by: message.sizes for message in messages}
     by_least = sorted(distinct.values(), key=lambda sizes: sizes.least)
     fixed = {sizes.least for sizes in by_least if sizes.step == 0}
     varying = [sizes for sizes in by_least if sizes.step]
@@ -238,9 +256,9 @@ def _acceptable(frame: Frame, messages: list[Message]) -> list[SizeSet]:
     Behind the payload, another size makes another identity of it.
     """
     first = set(frame.identity) <= set(frame.head)
-    groups: dict[tuple[int, ...], SizeSet] = {}
+    groups: dict[Identities | None, SizeSet] = {}
     for message in messages:
-        key = message.identity if first else ()
+        key = message.told_by if first else None
         groups[key] = groups[key] | message.sizes if key in groups else message.sizes
     stated = payload_range(frame)
     bounded = (

@@ -51,8 +51,11 @@ class WireSizes:
 
     def message(self, message: Message, payload: SizeSet) -> SizeSet:
         """Wire bytes of the frames of one message, whose identity is known."""
-        names = [part.name for part in self._frame.identity]
-        identity = dict(zip(names, message.identity, strict=True))
+        identity = {
+            part.name: message.identity[index]
+            for index, part in enumerate(self._frame.identity)
+            if not message.chooses(index)
+        }
         return self._sizes(payload, identity, message.fields)
 
     def _sizes(

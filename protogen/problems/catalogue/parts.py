@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
-from protogen.problems.catalogue.sketch import with_frame
+from protogen.problems.catalogue.sketch import with_frame, with_messages
 
 PART_CODES: tuple[Code, ...] = (
     Code(
@@ -31,5 +31,25 @@ number of bytes. The `default`, which encoders write, is one of them.
             """,
             more="transparency: {escape: {byte: 0xDB, of: [0xC0, 0xC1, 0xDB], transform: invert}}",
         ),
+    ),
+    Code(
+        "PG191",
+        "identity-overlap",
+        "An identity that two messages have, or one message twice",
+        """\
+A message may have several identities: `id: [4, 5]`, `id: {range: [0x81, 0xFF]}`, or both in a list.
+A receiver tells messages apart by them, so none of them belongs to two messages of one sender;
+which of two ranges is the smaller one does not matter. Leave it out of one of them: a range can be
+written as two. Messages that share all of their identities may be told apart by size, under
+`overloads`.
+""",
+        with_messages("""
+            answer: {id: {range: [0, 0x7F]}, from: robot}
+            alarm: {id: 0x10, from: robot}
+        """),
+        with_messages("""
+            answer: {id: [{range: [0, 0x0F]}, {range: [0x11, 0x7F]}], from: robot}
+            alarm: {id: 0x10, from: robot}
+        """),
     ),
 )

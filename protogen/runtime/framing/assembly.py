@@ -21,7 +21,8 @@ from protogen.runtime.framing.frame import (
 )
 from protogen.runtime.framing.layout import Layout, is_optional
 from protogen.runtime.framing.machine import Cut, verdict_on
-from protogen.runtime.framing.sender import Identity, SenderSpec
+from protogen.runtime.framing.sender import SenderSpec
+from protogen.runtime.identities import Identity
 from protogen.runtime.payload.number import as_integer
 
 

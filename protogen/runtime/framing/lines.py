@@ -7,7 +7,8 @@ from typing import Any
 
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.assembly import encode_frame
-from protogen.runtime.framing.sender import Identity, SenderSpec
+from protogen.runtime.framing.sender import SenderSpec
+from protogen.runtime.identities import Identity
 from protogen.runtime.payload.number import as_integer
 
 _EVENTS = ("message", "unknown", "invalid")
@@ -44,15 +45,8 @@ def _encode_message(sender: SenderSpec[Any, Any], line: Mapping[str, Any]) -> by
     except EncodeError as error:
         raise error.inside("fields") from None
     parts = _parts(line) if "parts" in line else {}
-    identity = {
-        part.name: value
-        for part, value in zip(sender.layout.identity, message.IDENTITY, strict=True)
-    }
-    for part, value in identity.items():
-        if parts.get(part, value) != value:
-            raise EncodeError(part, f"{parts[part]!r} is not {name}, whose {part} is {value}")
-    given = {part: value for part, value in parts.items() if part not in identity}
-    return encode_frame(sender, message.IDENTITY, payload, given, strict=False)
+    identity, given = sender.choose_identity(message, parts)
+    return encode_frame(sender, identity, payload, given, strict=False)
 
 
 def split_parts(

@@ -6,18 +6,23 @@ from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any, Generic, TypeVar
 
+from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.frame import FrameSpec
 from protogen.runtime.framing.layout import Layout
+from protogen.runtime.identities import Identities, Identity
 from protogen.runtime.payload.message import Message
+from protogen.runtime.payload.number import as_integer
 
 MessageT_co = TypeVar("MessageT_co", bound=Message, covariant=True)
 PartsT_co = TypeVar("PartsT_co", covariant=True)
 
-Identity = tuple[int, ...]
-
 Cutter = Callable[[bytes, int, int, list[Any]], int]
 """Called with data, a place in them, the offset of the data in the input, and a list to which it
 adds events. Gives the place of the first byte that it did not take."""
+
+
+_LISTED = 1024
+"""A message with more identities than this is looked for by their bounds."""
 
 
 class IdentityGroup(Generic[MessageT_co]):
@@ -95,7 +100,21 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         groups: dict[Identity, tuple[type[MessageT_co], ...]] = {}
         for message in self.messages:
             groups[message.IDENTITY] = (*groups.get(message.IDENTITY, ()), message)
-        return {key: IdentityGroup(value) for key, value in groups.items()}
+        found = {key: IdentityGroup(value) for key, value in groups.items()}
+        for message in self.messages:
+            identities = message.IDENTITIES
+            if identities is not None and identities.count <= _LISTED:
+                found |= dict.fromkeys(identities, found[message.IDENTITY])
+        return found
+
+    @cached_property
+    def _wide(self) -> tuple[tuple[Identities, IdentityGroup[MessageT_co]], ...]:
+        """Groups of too many identities for a table."""
+        return tuple(
+            (message.IDENTITIES, self._groups[message.IDENTITY])
+            for message in self.messages
+            if message.IDENTITIES is not None and message.IDENTITIES.count > _LISTED
+        )
 
     @property
     def key(self) -> str:
@@ -118,7 +137,10 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
 
     def group(self, identity: Identity) -> IdentityGroup[MessageT_co] | None:
         """The messages of an identity; None where it is unknown."""
-        return self._groups.get(identity)
+        found = self._groups.get(identity)
+        if found is None and self._wide:
+            return next((group for known, group in self._wide if identity in known), None)
+        return found
 
     def identity(self, numbers: Mapping[str, int]) -> Identity:
         """The identity among the values of a frame's parts."""
@@ -132,7 +154,37 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         group = self.group(self.identity(numbers))
         return None if group is None else group.read(payload)
 
+    def choose_identity(
+        self, message: type[Message], parts: Mapping[str, Any]
+    ) -> tuple[Identity, dict[str, Any]]:
+        """The identity of a message's frame, and the parts that are no identity.
+
+        Raises EncodeError where `parts` have an identity that is not the message's.
+        """
+        others, chosen = dict(parts), []
+        for index, part in enumerate(self.layout.identity):
+            default = message.IDENTITY[index]
+            value = others.pop(part.name, None)
+            chosen.append(default if value is None else value)
+            if value not in (None, default):
+                chosen[index] = _one_of(message, index, part.name, value)
+        return tuple(chosen), others
+
     def named(self, name: str) -> type[MessageT_co] | None:
         """The message called `name`, if this endpoint sends one."""
         every: tuple[Any, ...] = (*self.messages, *self.encode_only)
         return next((message for message in every if name == message.NAME), None)
+
+
+def _one_of(message: type[Message], index: int, name: str, value: Any) -> int:
+    """A value of an identity part that a message has besides its first."""
+    shown: object = message.IDENTITY[index]
+    if message.IDENTITIES is not None:
+        shown = message.IDENTITIES.shown(index)
+        try:
+            number = as_integer(value)
+        except EncodeError as error:
+            raise error.inside(name) from None
+        if message.IDENTITIES.holds(index, number):
+            return number
+    raise EncodeError(name, f"{value!r} is not {message.NAME}, whose {name} is {shown}")

@@ -7,6 +7,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from protogen.runtime.errors import DecodeError, EncodeError, NeedsReference, PayloadFault
+from protogen.runtime.identities import Identities
 from protogen.runtime.values import Frozen, Value
 
 if TYPE_CHECKING:
@@ -107,6 +108,8 @@ class Message(Record):
     """The endpoints that send it."""
     IDENTITY: ClassVar[tuple[int, ...]]
     """The values of the frame's identity parts, in wire order."""
+    IDENTITIES: ClassVar[Identities | None] = None
+    """All identities, where there are several; IDENTITY is the one that is sent by itself."""
     SPEC_HASH: ClassVar[str]
     """SHA-256, in hex, of its identity, its layout and what its values mean."""
     SIZES: ClassVar[Sizes]

@@ -27,7 +27,7 @@ from protogen.schema.syntax.names import (
     ValuesByField,
 )
 from protogen.schema.syntax.octets import Octets
-from protogen.schema.syntax.parts import ByteOrder, PartRun
+from protogen.schema.syntax.parts import ByteOrder, PartRun, RawRange
 
 Reason = Literal[
     "noise", "checksum", "length", "stuffing", "truncated", "size", "encoding", "value"
@@ -105,18 +105,55 @@ Forms = Annotated[tuple[FormName, ...], _one_or_several("a form")]
 """One form of frame or several."""
 
 
+class IdentityRange(Syntax):
+    """All values from the first to the last."""
+
+    range: RawRange = Field(description="The first and the last of several values.")
+
+
+def _to_values(value: Any) -> Any:
+    """One value stands for a list of one."""
+    values = tuple(value) if isinstance(value, list | tuple) else (value,)
+    if not values:
+        raise ValueError("expected a value, or a list of values")
+    return values
+
+
+def _value_or_range(value: Any) -> str:
+    return "range" if isinstance(value, dict | IdentityRange) else "value"
+
+
+_IdentityValue = Annotated[
+    Annotated[RawNumber, Tag("value")] | Annotated[IdentityRange, Tag("range")],
+    Discriminator(_value_or_range),
+]
+_IdentityForm = int | Character | IdentityRange
+
+IdentityValues = Annotated[
+    tuple[_IdentityValue, ...],
+    BeforeValidator(
+        _to_values,
+        json_schema_input_type=_IdentityForm | Annotated[list[_IdentityForm], Field(min_length=1)],
+    ),
+]
+"""Values of an identity part that all mean one message; the first is the one that is sent."""
+
+
 def _to_identity(value: Any) -> Any:
-    """One number stands for the only identity part, which the passes know."""
-    return value if isinstance(value, dict) else {"": value}
+    """One value, or several, stand for the only identity part, which the passes know."""
+    is_range = isinstance(value, dict) and set(value) == {"range"}
+    if isinstance(value, dict) and not (is_range and isinstance(value["range"], list)):
+        return value
+    return {"": value}
 
 
 Identity = Annotated[
-    dict[PartName, RawNumber],
+    dict[PartName, IdentityValues],
     BeforeValidator(
-        _to_identity, json_schema_input_type=int | Character | dict[Name, int | Character]
+        _to_identity, json_schema_input_type=IdentityValues | dict[Name, IdentityValues]
     ),
 ]
-"""Identity: a number or character, or a mapping of part to value."""
+"""Identity: a value or several, or a mapping of part to these."""
 
 
 def _text_or_mapping(value: Any) -> str:
@@ -128,7 +165,8 @@ class MessageSyntax(Syntax):
 
     id: Identity | None = Field(
         None,
-        description="Identity: a number or character, or one for each identity part.",
+        description="Identity: a number or character, or one for each identity part; a list or a "
+        "range where there are several.",
     )
     from_: Senders = Field(alias="from", description="The endpoint that sends it, or a list.")
     forms: Forms | None = Field(

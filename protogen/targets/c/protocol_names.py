@@ -127,6 +127,8 @@ def _of_sender(names: Names, sender: Sender, start: str) -> Iterator[tuple[NameT
         yield names.others, f"{start}_{word}"
     for word in _MACROS_OF_A_SENDER.split():
         yield names.others, f"{start}_{word}".upper()
+    if any(group.identities is not None for group in sender.plan.groups):
+        yield names.others, f"{start}_told"
     if sender.plan.mark_size and len(sender.plan.start_words) > 1:
         for word in ("begun", "begun_byte"):
             yield names.others, f"{start}_{word}"

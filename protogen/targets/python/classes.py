@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import msgspec
 
+from protogen.model.identities import Identities
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
@@ -116,15 +117,27 @@ def struct_class(item: Struct, names: Names) -> RecordClass:
 def message_class(item: Message, identity: str, names: Names) -> RecordClass:
     """A message; `identity` says in words what its identity is."""
     values = tuple_of(f"0x{value:02X}" for value in item.identity)
+    several = () if item.identities is None else (f"IDENTITIES = {_identities(item.identities)}",)
     constants = (
         f"NAME = {text(item.name)}",
         f"SPEC_HASH = {text(item.spec_hash)}",
         f"SENDERS = {tuple_of(map(text, item.senders))}",
         f"IDENTITY = {values}" + (f"  # {identity}" if identity else ""),
+        *several,
         f"SIZES = {_sizes(item.sizes)}",
     )
     doc = docstring(describing.message(item), _INDENT)
     return _record(item, "_rt.Message", doc, constants, names)
+
+
+def _identities(identities: Identities) -> str:
+    """All identities of a message that has several."""
+    parts = (
+        tuple_of(tuple_of(f"0x{value:02X}" for value in run) for run in runs)
+        for runs in identities.runs
+    )
+    expression = call("_rt.Identities", tuple_of(parts))
+    return wrapped(expression, _INDENT + len("IDENTITIES = "), _INDENT, after=0)
 
 
 def _sizes(sizes: SizeSet) -> str:

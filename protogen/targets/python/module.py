@@ -190,7 +190,7 @@ def _counters(sender: Sender) -> list[CounterPart]:
 
 
 def _arguments(protocol: Protocol) -> dict[str, str]:
-    parts = [part.name for sender in protocol.senders for part in sender.frame.caller_parts]
+    parts = [part.name for sender in protocol.senders for part in sender.given_parts]
     return {name: argument(name) for name in parts}
 
 
@@ -203,6 +203,9 @@ def _arguments_doc(protocol: Protocol) -> str:
             counted = isinstance(part, CounterPart)
             missing = "has to be given" + ("; an `Encoder` counts by itself" if counted else "")
             sentences.setdefault(part.name, f"{bounds} {default or missing}.")
+        for item in sender.given_identity:
+            words = f"`{item.name}` is the first of those that the message has if not given."
+            sentences.setdefault(item.name, words)
     return " ".join(sentences.values())
 
 

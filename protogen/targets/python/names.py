@@ -94,7 +94,7 @@ def _arguments(protocol: Protocol) -> NameTable:
     """Parameters of encoders. Parts of several senders that are called alike are one of them."""
     given: dict[str, Thing] = {}
     for sender in protocol.senders:
-        for item in sender.frame.caller_parts:
+        for item in sender.given_parts:
             given.setdefault(item.name, part(sender.name, item.name))
     table = NameTable(ARGUMENTS)
     for name, thing in given.items():

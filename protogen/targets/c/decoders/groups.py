@@ -7,7 +7,9 @@ from collections.abc import Mapping
 import msgspec
 
 from protogen.model.frame_plan import FramePlan, IdentityGroup
+from protogen.model.identities import Identities
 from protogen.model.messages import Message
+from protogen.model.types import Integer
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
@@ -47,6 +49,15 @@ class ReceivedMessage(msgspec.Struct, frozen=True):
         return word.join(found)
 
 
+class Alternatives(msgspec.Struct, frozen=True):
+    """Several identities of one message."""
+
+    key: str
+    """The one that stands for all."""
+    condition: str
+    """The condition that `key` is one of them; empty if every one is."""
+
+
 class GroupView(msgspec.Struct, frozen=True):
     """The messages of one identity."""
 
@@ -69,6 +80,39 @@ def groups_of(plan: FramePlan, views: Mapping[str, MessageView]) -> tuple[GroupV
         )
         for index, group in enumerate(plan.groups)
     )
+
+
+def alternatives_of(plan: FramePlan) -> tuple[Alternatives, ...]:
+    """The identities of the messages that have several."""
+    return tuple(
+        Alternatives(_constant(plan, group), _is_among(plan, group.identities))
+        for group in plan.groups
+        if group.identities is not None
+    )
+
+
+def _is_among(plan: FramePlan, identities: Identities) -> str:
+    shift, found = plan.identity_bits, []
+    for part, runs in zip(plan.identity, identities.runs, strict=True):
+        shift -= part.type.bits
+        value = f"(key >> {shift})" if shift else "key"
+        if len(plan.identity) > 1:
+            value = f"({value} & {hexadecimal(part.type.greatest)})"
+        conditions = [in_run(value, run, part.type) for run in runs]
+        if all(conditions):
+            joined = " || ".join(f"({item})" if " && " in item else item for item in conditions)
+            found.append(f"({joined})" if len(runs) > 1 else joined)
+    return " && ".join(found) if len(found) > 1 else "".join(found)
+
+
+def in_run(value: str, run: tuple[int, int], type_: Integer) -> str:
+    """The condition that a number is one of a run of values; empty if every one of its type is."""
+    first, last = run
+    if first == last:
+        return f"{value} == {hexadecimal(first)}"
+    found = [f"{value} >= {hexadecimal(first)}"] if first > 0 else []
+    found += [f"{value} <= {hexadecimal(last)}"] if last < (1 << type_.width) - 1 else []
+    return " && ".join(found)
 
 
 def key_type(plan: FramePlan) -> str:

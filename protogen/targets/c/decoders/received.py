@@ -11,7 +11,13 @@ from functools import cached_property
 import msgspec
 
 from protogen.model.frame_plan import FramePlan, PlacedPart, StartRule, Store
-from protogen.targets.c.decoders.groups import GroupView, key_from, key_type
+from protogen.targets.c.decoders.groups import (
+    Alternatives,
+    GroupView,
+    alternatives_of,
+    key_from,
+    key_type,
+)
 from protogen.targets.c.frame.checksums import ChecksumView, checksums_of
 from protogen.targets.c.frame.expressions import among, byte
 from protogen.targets.c.frame.numbers import (
@@ -282,12 +288,22 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     def key(self, parts: str) -> str:
         """The identity of an event's parts, as one number."""
         members = {item.name: parts + self.names.member(item.name) for item in self.plan.identity}
-        return key_from(self.plan, members)
+        return self.told(key_from(self.plan, members))
 
     @property
     def early_key(self) -> str:
         """The identity, made of bytes of the content, in front of the payload."""
-        return key_from(self.plan, {part.placed.name: part.value("") for part in self.parts})
+        names = {part.placed.name: part.value("") for part in self.parts}
+        return self.told(key_from(self.plan, names))
+
+    def told(self, key: str) -> str:
+        """The identity that stands for all that its message has."""
+        return f"{self.prefix}_told({key})" if self.alternatives else key
+
+    @cached_property
+    def alternatives(self) -> tuple[Alternatives, ...]:
+        """The identities of messages that have several."""
+        return alternatives_of(self.plan)
 
     @cached_property
     def can_open(self) -> bool:

@@ -24,7 +24,9 @@ from protogen.model.frame import (
     ValuePart,
 )
 from protogen.model.frame_plan import FramePlan, PlacedPart, Side
+from protogen.model.identities import Runs
 from protogen.targets.c.decoders.decoder import DecoderView
+from protogen.targets.c.decoders.groups import in_run
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
 from protogen.targets.c.frame.expressions import Index, byte, less_absent, wire_bytes
 from protogen.targets.c.frame.numbers import none_of
@@ -320,6 +322,13 @@ _LOCAL = frozenset(_WORDS.split())
 def argument_name(part: str, names: Names) -> str:
     """Name of the argument for a part that the caller gives."""
     return f"{part}_part" if part in _LOCAL else names.member(part)
+
+
+def one_of(argument: Argument, part: IdentityPart, runs: Runs) -> Argument:
+    """The argument of an identity part of which a message has several values."""
+    conditions = [in_run(argument.name, run, part.type) for run in runs]
+    is_one = " || ".join(f"({item})" if " && " in item else item for item in conditions)
+    return replace(argument, refused=f"!({is_one})" if all(conditions) else "")
 
 
 def _argument(part: IdentityPart | CounterPart | ValuePart, names: Names) -> Argument:

@@ -9,7 +9,7 @@ import msgspec
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.decoder import DecoderView
-from protogen.targets.c.frame.frames import FrameView
+from protogen.targets.c.frame.frames import Argument, FrameView, one_of
 from protogen.targets.c.payload.message_names import FrameNames
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.spelling import hexadecimal
@@ -59,9 +59,25 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     def identity(self) -> tuple[str, ...]:
         """The values of the identity parts."""
         return tuple(
-            hexadecimal(value, 2 * -(-part.type.bits // 8))
-            for part, value in zip(self.decoder.plan.identity, self.message.identity, strict=True)
+            argument.name
+            if self.message.chooses(index)
+            else hexadecimal(self.message.identity[index], 2 * -(-part.type.bits // 8))
+            for index, (part, argument) in enumerate(
+                zip(self.decoder.plan.identity, self.frame.identity, strict=True)
+            )
         )
+
+    @cached_property
+    def arguments(self) -> tuple[Argument, ...]:
+        """The parts that the caller gives: those of several identities first."""
+        chosen = (
+            one_of(argument, part, self.message.told_by.runs[index])
+            for index, (part, argument) in enumerate(
+                zip(self.decoder.plan.identity, self.frame.identity, strict=True)
+            )
+            if self.message.chooses(index)
+        )
+        return (*chosen, *self.frame.arguments)
 
     @cached_property
     def passed(self) -> str:
@@ -112,7 +128,7 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
         return (*self._given(), f"{put} put", "void *user")
 
     def _given(self) -> tuple[str, ...]:
-        parts = (f"{item.type} {item.name}" for item in self.frame.arguments)
+        parts = (f"{item.type} {item.name}" for item in self.arguments)
         return (f"const {self.view.struct} *message", *parts)
 
 

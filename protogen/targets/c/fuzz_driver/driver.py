@@ -12,6 +12,7 @@ from protogen.fuzzing.c_driver import (
     DrivenPart,
     Driver,
 )
+from protogen.model.messages import given_parts
 from protogen.model.protocol import Protocol
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.emit import Unit, emit, unit_of
@@ -103,7 +104,7 @@ def _frames(unit: Unit, indices: Mapping[str, int]) -> tuple[DrivenFrame, ...]:
             tuple(
                 DrivenPart(part.name, argument.type)
                 for part, argument in zip(
-                    item.frame.plan.frame.caller_parts, item.frame.arguments, strict=True
+                    given_parts(item.frame.plan.frame, item.message), item.arguments, strict=True
                 )
             ),
             item.room,

@@ -92,7 +92,7 @@ def _spellings(unit: Unit, tables: list[str]) -> list[_Spelling]:
             tables.index(item.message.name),
             item.called.function,
             item.called.room,
-            tuple(argument.part for argument in item.frame.arguments),
+            tuple(argument.part for argument in item.arguments),
         )
         for item in unit.framing.messages
         if item.message.name in tables

@@ -26,6 +26,7 @@ from protogen.model.frame import (
     Transparency,
     ValuePart,
 )
+from protogen.model.identities import Identities, Runs
 from protogen.model.sizes import SizeSet
 from protogen.model.types import NumberType
 from protogen.targets.emitted import EmittedNames
@@ -72,16 +73,22 @@ def part_value(part: Part) -> str:
             return ""
 
 
-def value_in(frame: Frame, part: Part, identity: Sequence[int], payload: SizeSet) -> str:
+def value_in(frame: Frame, part: Part, identities: Identities, payload: SizeSet) -> str:
     """Return what a part holds in the frames of one message."""
     if isinstance(part, IdentityPart):
-        return identity_value(part, identity[frame.identity.index(part)])
+        return identity_values(part, identities.runs[frame.identity.index(part)])
     if isinstance(part, LengthPart):
         lengths = length_values(frame, part, payload)
         if lengths.fixed is not None:
             return code(hex_number(lengths.fixed, part.type.bits))
         return f"{max(lengths.least, part.least)}..{min(lengths.greatest, part.greatest)}"
     return part_value(part)
+
+
+def identity_values(part: IdentityPart, runs: Runs) -> str:
+    """Print the values of an identity part that all mean one message."""
+    texts = ("..".join(identity_value(part, value) for value in dict.fromkeys(run)) for run in runs)
+    return ", ".join(texts)
 
 
 def identity_value(part: IdentityPart, value: int) -> str:

@@ -17,7 +17,7 @@ from protogen.targets.markdown.fields.paths import named_fields
 from protogen.targets.markdown.fields.rows import message_table
 from protogen.targets.markdown.fields.values import Anchors
 from protogen.targets.markdown.frames.packet import message_diagram
-from protogen.targets.markdown.frames.parts import identity_value
+from protogen.targets.markdown.frames.parts import identity_values
 from protogen.targets.markdown.pages.context import Context, by_frame, sender_code
 from protogen.targets.markdown.pages.example import example_view
 from protogen.targets.markdown.text.anchors import decision_link, message_anchor, message_link
@@ -28,8 +28,8 @@ from protogen.targets.markdown.text.words import listed, plural, rate, sentence
 
 def identity_text(frame: Frame, message: Message) -> str:
     """Print an identity as it is on the wire: the value of each part."""
-    pairs = zip(frame.identity, message.identity, strict=True)
-    return " ".join(identity_value(part, value) for part, value in pairs)
+    pairs = zip(frame.identity, message.told_by.runs, strict=True)
+    return " ".join(identity_values(part, runs) for part, runs in pairs)
 
 
 def message_view(context: Context, message: Message) -> View:

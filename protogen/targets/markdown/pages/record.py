@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from protogen.model.identities import Identities
 from protogen.model.messages import Exchange, Message, Step
 from protogen.model.protocol import Decision, Protocol, ReservedIdentity
 from protogen.targets.escape import markdown
@@ -76,7 +77,8 @@ def reserved(protocol: Protocol) -> Table | None:
 
 def _reserved_identity(protocol: Protocol, item: ReservedIdentity) -> tuple[str, ...]:
     parts = protocol.forms(item.sender)[0].frame.identity
-    named = (f"{part.name} 0x{value:02X}" for part, value in zip(parts, item.identity, strict=True))
+    each = zip(parts, item.told_by.runs, strict=True)
+    named = (f"{part.name} {Identities((runs,))}" for part, runs in each)
     what = sentence(markdown(item.doc)) if item.doc else ""
     return f"identity, from {code(item.sender)}", code(", ".join(named)), what
 

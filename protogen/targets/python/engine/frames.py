@@ -17,6 +17,7 @@ from protogen.runtime.transparency import replacing_order
 from protogen.targets.python.literals import octets_in_class
 
 _MOST_SPECIALS = 4
+_MOST_IDENTITIES = 4096
 
 
 class EngineFrame:
@@ -59,11 +60,20 @@ class EngineFrame:
     def can_frame(self) -> bool:
         """True if there is a function that makes frames; else the reference does it alone."""
         return (
-            (self.plan.takes_whole or not self.plan.cut_ambiguous)
+            (self.takes_whole or not self.plan.cut_ambiguous)
             and not any(part.over_wire for part in self.checksums)
             and self.tail == self.checksums
             and self.plan.is_regular
         )
+
+    @property
+    def takes_whole(self) -> bool:
+        """True if there is a function that takes frames; it looks their identities up in a table.
+
+        A range of very many identities is left to the reference.
+        """
+        several = filter(None, (group.identities for group in self.plan.groups))
+        return self.plan.takes_whole and sum(item.count for item in several) <= _MOST_IDENTITIES
 
     @property
     def lists_frame_sizes(self) -> bool:
@@ -95,7 +105,7 @@ class EngineFrame:
         frames of one message that are equally long have all parts in the same places.
         """
         specials = self.specials(sending=False)
-        if not self.plan.takes_whole or self.replacements is None or specials is None:
+        if not self.takes_whole or self.replacements is None or specials is None:
             return False
         start, end = self.plan.start_bytes, self.plan.end_bytes
         if self.plan.end_rule is EndRule.NEXT_START:

@@ -72,7 +72,6 @@ def encoder(
     payload_writer(message, lines)
     if len(frames) == 1:
         return _Framer(frames[0], of_caller, lines, message).body()
-    values = [*map(str, message.identity), *encoder_arguments(of_caller)]
     endpoints = dict.fromkeys(frame.sender.endpoint for frame in frames)
     for endpoint in endpoints:
         own = [frame for frame in frames if frame.sender.endpoint == endpoint]
@@ -80,16 +79,19 @@ def encoder(
         if len(endpoints) == 1:
             is_meant = f"sender is None or {is_meant}"
         with lines.block(f"if {is_meant}:"):
-            _first_that_fits(message, own, values, lines)
+            _first_that_fits(message, own, of_caller, lines)
     lines.add("raise _fast.NeedsReference")
     return lines.text
 
 
 def _first_that_fits(
-    message: Message, frames: Sequence[EngineFrame], values: Sequence[str], lines: Lines
+    message: Message, frames: Sequence[EngineFrame], of_caller: Sequence[str], lines: Lines
 ) -> None:
     """Return the frame of the first form whose length can say the payload's size."""
     for frame in frames:
+        chosen = _chosen_names(message, frame)
+        others = ("None" if name in chosen else f"{name}_" for name in of_caller)
+        values = [*_identity_of(message, frame, lines), *others]
         made = f"return _frame_{frame.sender.name}({', '.join(['payload', *values])})"
         stated, sizes = frame.plan.payload, message.sizes
         if frame is frames[-1] or frame.plan.length is None or stated.holds(sizes):
@@ -98,6 +100,31 @@ def _first_that_fits(
         if stated.meets(sizes):
             with lines.block(f"if {stated.least} <= len(payload) <= {stated.greatest}:"):
                 lines.add(made)
+
+
+def _chosen_names(message: Message, frame: EngineFrame) -> list[str]:
+    """Identity parts whose values the caller of an encoder may choose."""
+    parts = enumerate(frame.plan.identity)
+    return [part.name for index, part in parts if message.chooses(index)]
+
+
+def _identity_of(message: Message, frame: EngineFrame, lines: Lines) -> list[str]:
+    """Expressions for the values of identity parts; those of a caller are checked."""
+    found = []
+    for index, part in enumerate(frame.plan.identity):
+        value = str(message.identity[index])
+        if message.chooses(index):
+            given, default, value = f"{part.name}_", value, f"identity{index}"
+            lines.add(f"{value} = {default} if {given} is None else {given}")
+            lines.refuse_if(f"type({value}) is not int")
+            bounds = [_in_run(value, *run) for run in message.told_by.runs[index]]
+            lines.refuse_if(f"not ({' or '.join(bounds)})")
+        found.append(value)
+    return found
+
+
+def _in_run(value: str, first: int, last: int) -> str:
+    return f"{value} == {first}" if first == last else f"{first} <= {value} <= {last}"
 
 
 def encoder_arguments(of_caller: tuple[str, ...]) -> list[str]:
@@ -127,7 +154,10 @@ class _Framer(FrameFunction):
         self._has_payload = False
         """True if a variable holds the payload alone."""
         names = _of_caller(frame, of_caller) if message is None else encoder_arguments(of_caller)
-        self.values = dict(zip(of_caller, names, strict=True))
+        chosen = () if message is None else _chosen_names(message, frame)
+        given = zip(of_caller, names, strict=True)
+        self.values = {name: argument for name, argument in given if name not in chosen}
+        self._identity = [f"{part.name}_" for part in frame.plan.identity]
 
     def body(self) -> tuple[str, ...]:
         for name in self._values():
@@ -173,6 +203,8 @@ class _Framer(FrameFunction):
         Where `struct` writes them, it sees to that.
         """
         integers = []
+        if self.message is not None:
+            self._identity = _identity_of(self.message, self.frame, self.lines)
         own = {part.name for part in self.plan.frame.caller_parts}
         for name, argument in self.values.items():
             if name not in own:
@@ -240,9 +272,9 @@ class _Framer(FrameFunction):
             if self.message is not None and self.message.sizes.fixed is not None:
                 return str(self.message.sizes.fixed + counted)
             return f"len(payload) + {counted}" if counted else "len(payload)"
-        if self.message is not None and isinstance(part, IdentityPart):
-            return str(self.message.identity[self.plan.identity.index(part)])
-        assert isinstance(part, IdentityPart | CounterPart | ValuePart)
+        if isinstance(part, IdentityPart):
+            return self._identity[self.plan.identity.index(part)]
+        assert isinstance(part, CounterPart | ValuePart)
         return f"{part.name}_"
 
     def _insert(self, part: ChecksumPart) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from protogen.model.frame_plan import EndRule, IdentityGroup
+from protogen.model.identities import Runs
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.numbers import FrameFunction
@@ -23,13 +24,36 @@ def kinds(frame: EngineFrame) -> str:
 
     Where that varies, it is negative: the complement of the greatest.
     """
-    lines = [
-        f"    {identity_key(item.identity)}: {_kind(frame, item)}," for item in frame.plan.groups
-    ]
+    lines = [f"    {_entries(frame, item)}," for item in frame.plan.groups]
     return "\n".join(["{", *lines, "}"])
 
 
-def _kind(frame: EngineFrame, group: IdentityGroup) -> str:
+def _entries(frame: EngineFrame, group: IdentityGroup) -> str:
+    if group.identities is None:
+        identity = tuple(map(str, group.identity))
+        return f"{identity_key(group.identity)}: {_kind(frame, group, identity)}"
+    names = tuple(f"part{index}" for index in range(len(group.identity)))
+    key = names[0] if len(names) == 1 else tuple_of(names)
+    loops = [
+        f"        for {name} in {_values(runs)}"
+        for name, runs in zip(names, group.identities.runs, strict=True)
+    ]
+    entry = f"        {key}: {_kind(frame, group, names)}"
+    return "\n".join(["**{", entry, *loops, "    }"])
+
+
+def _values(runs: Runs) -> str:
+    """The values of an identity part, as an expression."""
+    if len(runs) == 1 and runs[0][0] < runs[0][1]:
+        return f"range(0x{runs[0][0]:02X}, 0x{runs[0][1] + 1:02X})"
+    values = (
+        f"0x{first:02X}" if first == last else f"*range(0x{first:02X}, 0x{last + 1:02X})"
+        for first, last in runs
+    )
+    return tuple_of(values)
+
+
+def _kind(frame: EngineFrame, group: IdentityGroup, identity: tuple[str, ...]) -> str:
     reader = reader_of(frame, group)
     if frame.plan.length is not None:
         return reader
@@ -37,7 +61,7 @@ def _kind(frame: EngineFrame, group: IdentityGroup) -> str:
     if frame.lists_frame_sizes:
         size += frame.plan.head_size + frame.plan.tail_size + len(frame.plan.end_bytes)
     if frame.plan.end_rule is EndRule.IDENTITY and frame.shows_identity:
-        return f"({size}, {reader}, {tuple_of(map(str, group.identity))})"
+        return f"({size}, {reader}, {tuple_of(identity)})"
     return f"({size}, {reader})"
 
 

@@ -134,7 +134,7 @@ _CLASS = re.compile(r"\b[A-Z]\w*")
 
 def _around(frames: list[EngineFrame]) -> tuple[int, int] | None:
     """Sizes around payloads, where they are the same in all frames that are cut; else None."""
-    found = {frame.around for frame in frames if frame.plan.takes_whole}
+    found = {frame.around for frame in frames if frame.takes_whole}
     return found.pop() if len(found) == 1 else None
 
 
@@ -218,7 +218,7 @@ def _encoder(
 
 def _overloads(frame: EngineFrame, constants: Constants) -> list[Function]:
     """Readers of identities that several messages share."""
-    if not frame.plan.takes_whole:
+    if not frame.takes_whole:
         return []
     return [
         _overload(frame, group, constants.classes)
@@ -242,12 +242,12 @@ def _overload(frame: EngineFrame, group: IdentityGroup, classes: Mapping[str, st
 def _sender(frame: EngineFrame, of_caller: tuple[str, ...], constants: Constants) -> EngineSender:
     name = frame.sender.name
     cut = head = made = None
-    if frame.plan.takes_whole:
+    if frame.takes_whole:
         body = cutting.cutter(frame, constants)
         parameters = "data: bytes, at: int, base: int, events: list[_typing.Any]"
         cut = _function(f"_cut_{name}", parameters, "int", body)
     if (
-        frame.plan.takes_whole
+        frame.takes_whole
         and frame.plan.end_rule is not EndRule.IDENTITY
         and frame.remembered is not None
     ):
