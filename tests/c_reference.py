@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from bit_runs import bits_of, number_of
+from expression_oracle import worked_out
 
 from protogen.model.messages import Message
 from protogen.model.types import (
@@ -31,7 +32,7 @@ from protogen.model.types import (
 from protogen.runtime.errors import ByteError
 from protogen.runtime.payload.number import Number
 
-Scope = dict[str, int]
+Scope = dict[str, Any]
 
 
 class Wrong(Exception):  # noqa: N818 - a verdict, not a failure
@@ -72,14 +73,15 @@ class _Reader:
     def _left(self) -> int:
         return len(self._payload) - self.at
 
-    def fields(self, fields: Sequence[Field], scope: Scope) -> None:
-        inner = dict(scope)
+    def fields(self, fields: Sequence[Field], scope: Scope) -> Scope:
+        inner, numbers = dict(scope), Scope()
         for field in fields:
             found = self._value(field.type, inner, constant=field.const is not None)
             if field.const is not None and not _is(found, field.const):
                 raise Wrong("value")
-            if isinstance(field.type, Integer):
-                inner[field.name] = found
+            if isinstance(field.type, Integer | Struct):
+                inner[field.name] = numbers[field.name] = found
+        return numbers
 
     def _value(self, type_: Type, scope: Scope, *, constant: bool = False) -> Any:
         if isinstance(type_, Struct | Array) and type_.packed is not None:
@@ -134,7 +136,7 @@ class _Reader:
             return extent.count
         if isinstance(extent, Fill):
             return None
-        count = scope[extent.field]
+        count = worked_out(extent.by, scope)
         if not constant:
             _bounded(extent, count)
         return count
@@ -167,7 +169,7 @@ class _Reader:
 
     def _case(self, type_: Switch, scope: Scope) -> None:
         for case in type_.cases:
-            if case.value == scope[type_.selector]:
+            if case.value == worked_out(type_.selector, scope):
                 self._value(case.type, scope)
                 return
         if type_.rest is None:

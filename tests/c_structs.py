@@ -11,6 +11,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from expression_oracle import worked_out
+
 from protogen.model.types import (
     Array,
     Extent,
@@ -27,7 +29,7 @@ from protogen.model.types import (
 )
 
 Values = dict[str, Any]
-Scope = dict[str, int]
+Scope = dict[str, Any]
 
 _UNSIGNED = {
     8: ctypes.c_uint8,
@@ -149,9 +151,8 @@ def fill(record: Any, fields: Sequence[Field], values: Mapping[str, Any], scope:
     inner = dict(scope)
     for field in fields:
         value = field.const if field.const is not None else values[field.name]
-        if isinstance(field.type, Integer):
-            assert isinstance(value, int)
-            inner[field.name] = int(value)
+        if isinstance(field.type, Integer | Struct):
+            inner[field.name] = value
         if field.const is not None:
             continue
         if isinstance(_extent(field.type), Fill):
@@ -180,7 +181,7 @@ def _put(at: Any, key: Any, type_: Type, value: Any, scope: Scope) -> None:
 
 def _put_case(union: Any, type_: Switch, value: Any, scope: Scope) -> None:
     for case in type_.cases:
-        if case.value == scope[type_.selector]:
+        if case.value == worked_out(type_.selector, scope):
             if has_room(case.type):
                 _put(union, case.name, case.type, value, scope)
             return
@@ -236,8 +237,8 @@ def read(record: Any, fields: Sequence[Field], scope: Scope) -> Values:
             if isinstance(_extent(field.type), Fill):
                 count = getattr(record, count_name(fields, field))
             found[field.name] = _take(record, field.name, field.type, count, inner)
-        if isinstance(field.type, Integer):
-            inner[field.name] = int(found[field.name])
+        if isinstance(field.type, Integer | Struct):
+            inner[field.name] = found[field.name]
     return found
 
 
@@ -282,12 +283,12 @@ def _count(extent: Extent, count: int, scope: Scope) -> int:
         case Fill():
             return count
         case _:
-            return scope[extent.field]
+            return worked_out(extent.by, scope)
 
 
 def _take_case(union: Any, type_: Switch, scope: Scope) -> Any:
     for case in type_.cases:
-        if case.value == scope[type_.selector]:
+        if case.value == worked_out(type_.selector, scope):
             if isinstance(case.type, Struct) and not case.type.fields:
                 return None
             return _take(union, case.name, case.type, 0, scope)

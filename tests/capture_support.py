@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from compiled import module_at
+from expression_oracle import worked_out
 
 from protogen.capture import Column, Tables
 from protogen.capture.schema import Choice, Number, Record, Shape, Text
+from protogen.model.expressions import Expression
 from protogen.runtime.values import as_dict
 
 Scope = ChainMap[str, Any]
@@ -59,10 +61,7 @@ def fields_of(tables: Tables, name: str, row: Any) -> dict[str, Any]:
 
 
 def _record(columns: tuple[Column, ...], row: Any, around: Scope) -> dict[str, Any]:
-    scope = around.new_child()
-    for column in columns:
-        if isinstance(column.shape, Number) and not column.dimensions:
-            scope[column.name] = row[column.name].item()
+    scope = around.new_child(_numbers(columns, row))
     return {
         column.source: _value(column, row[column.name], 0, scope)
         for column in columns
@@ -70,15 +69,27 @@ def _record(columns: tuple[Column, ...], row: Any, around: Scope) -> dict[str, A
     }
 
 
+def _numbers(columns: tuple[Column, ...], row: Any) -> dict[str, Any]:
+    """The numbers of a record, and those of records in it."""
+    found: dict[str, Any] = {}
+    for column in columns:
+        if not column.dimensions and isinstance(column.shape, Number):
+            found[column.name] = row[column.name].item()
+        elif not column.dimensions and isinstance(column.shape, Record):
+            found[column.name] = _numbers(column.shape.columns, row[column.name])
+    return found
+
+
 def _value(column: Column, value: Any, depth: int, scope: Scope) -> Any:
     rest = column.dimensions[depth:]
     if isinstance(column.shape, Text) and len(rest) == 1:
         text = bytes(value).decode("latin-1")
         count = rest[0].counted_by
-        return text if count is None else text.ljust(scope[count], "\0")
+        return text if count is None else text.ljust(_said(count, scope), "\0")
     if not rest:
         return _plain(column.shape, value, scope)
-    count = len(value) if rest[0].counted_by is None else int(scope[rest[0].counted_by])
+    counted_by = rest[0].counted_by
+    count = len(value) if counted_by is None else _said(counted_by, scope)
     found = [_value(column, value[place], depth + 1, scope) for place in range(count)]
     octets = type(column.type).__name__ == "Octets" or _is_octets(column)
     return bytes(found).hex() if octets and len(rest) == 1 else found
@@ -104,8 +115,14 @@ def _plain(shape: Shape, value: Any, scope: Scope) -> Any:
             return number
 
 
+def _said(number: int | str | Expression, scope: Scope) -> int:
+    if isinstance(number, int | str):
+        return number if isinstance(number, int) else int(scope[number])
+    return worked_out(number, scope)
+
+
 def _choice(choice: Choice, value: Any, scope: Scope) -> Any:
-    chosen = choice.selector if isinstance(choice.selector, int) else int(scope[choice.selector])
+    chosen = _said(choice.selector, scope)
     for number, case in choice.cases:
         if number == chosen:
             return _value(case, value[case.name], 0, scope)

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from protogen.model.checksums import find_algorithm
+from protogen.model.expressions import named
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
@@ -105,7 +106,7 @@ def switch_message() -> Message:
         Case(value=0x51, name="kill", type=Struct(name="b", fields=())),
         Case(value=7, name="case_7", type=UINT8),
     )
-    switch = Switch(selector="op", cases=cases, rest=4)
+    switch = Switch(selector=named("op"), cases=cases, rest=4)
     return message("maintenance", 1, ("op", UINT8), ("argument", switch))
 
 

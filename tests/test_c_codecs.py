@@ -19,6 +19,7 @@ import pytest
 from c_library import FLAGS, OK, RANGE, RESULTS, SIZE, SPACE, CLibrary, Encoded, write_sources
 from c_structs import FloatConstant, Unfit, Values
 from compiled import ROOT, SCHEMAS, module_at, name_of, protocol_of
+from expression_oracle import worked_out
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from schema_fuzzing import Schema, schemas
@@ -285,7 +286,8 @@ def spoilings(
 
 
 def counting_names(fields: Sequence[Field]) -> frozenset[str]:
-    return frozenset().union(*(field.type.needs for field in fields))
+    needed = frozenset[str]().union(*(field.type.needs for field in fields))
+    return frozenset(name.partition(".")[0] for name in needed)
 
 
 def others(type_: Type, value: Any, used: frozenset[str], scope: Values) -> Iterator[Any]:
@@ -304,7 +306,7 @@ def others(type_: Type, value: Any, used: frozenset[str], scope: Values) -> Iter
             for other in others(element, value[-1], used, scope):
                 yield [*value[:-1], other]
         case Switch(selector=selector, cases=cases) if isinstance(value, dict):
-            case = next(case for case in cases if case.value == scope[selector])
+            case = next(case for case in cases if case.value == worked_out(selector, scope))
             assert isinstance(case.type, Struct)
             yield from spoilings(case.type.fields, value, used, scope)
 

@@ -28,6 +28,7 @@ from models import (
 )
 
 from protogen.copying import replace
+from protogen.model.expressions import named
 from protogen.model.frame import Cobs, Frame, LiteralPart, Transparency
 from protogen.model.meanings import BitField, NamedValue
 from protogen.model.messages import Contradiction
@@ -130,7 +131,11 @@ def test_examples_of_every_type():
         ("pi", Float(bits=32), {"unit": "rad"}),
         ("n", UINT8),
         ("text", Text(extent=Fixed(count=4))),
-        ("raw", Octets(extent=Counted(field="n", least=0, greatest=9)), {"about": about("Bytes.")}),
+        (
+            "raw",
+            Octets(extent=Counted(by=named("n"), least=0, greatest=9)),
+            {"about": about("Bytes.")},
+        ),
         ("points", Array(element=point, extent=Fill(greatest=9))),
     )
     assert rows == [
@@ -157,7 +162,9 @@ def test_examples_of_long_arrays_are_cut_short():
 def test_examples_of_long_arrays_of_varying_elements():
     word = Struct(
         name="w",
-        fields=fields(("n", UINT8), ("t", Text(extent=Counted(field="n", least=0, greatest=1)))),
+        fields=fields(
+            ("n", UINT8), ("t", Text(extent=Counted(by=named("n"), least=0, greatest=1)))
+        ),
     )
     rows = payload_rows("00" * 40, ("a", Array(element=word, extent=Fixed(count=40))))
     assert rows[0][1:] == ("`a`", "40 elements.")

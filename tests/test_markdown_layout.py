@@ -27,6 +27,7 @@ from models import (
 
 from protogen.copying import replace
 from protogen.model.checksums import find_algorithm
+from protogen.model.expressions import named
 from protogen.model.frame import ChecksumPart, Cobs, Frame, LiteralPart, Transparency
 from protogen.model.protocol import Protocol
 from protogen.model.sizes import SizeSet
@@ -96,7 +97,7 @@ def test_positions_behind_a_varying_payload_count_from_the_end():
 
 
 def test_positions_behind_a_varying_field_count_from_its_end():
-    points = Array(element=UINT8, extent=Counted(field="n", least=0, greatest=255))
+    points = Array(element=UINT8, extent=Counted(by=named("n"), least=0, greatest=255))
     made = protocol(message("m", 1, ("n", UINT8), ("p", points), ("q", UINT8), ("r", UINT16)))
     assert places(made)[3:] == [
         ("p", "from 3", "from 1"),
@@ -127,7 +128,7 @@ def test_arrays_of_varying_elements_count_from_their_start():
     word = Struct(
         name="word",
         fields=fields(
-            ("n", UINT8), ("text", Octets(extent=Counted(field="n", least=0, greatest=9)))
+            ("n", UINT8), ("text", Octets(extent=Counted(by=named("n"), least=0, greatest=9)))
         ),
     )
     made = protocol(message("words", 1, ("w", Array(element=word, extent=Fixed(count=2)))))
@@ -155,7 +156,7 @@ def test_switches_show_every_case_with_its_place():
 
 def test_a_case_of_a_single_type_is_one_row():
     case = Case(value=1, name="ang", type=Struct(name="s", fields=fields(("value", SINT14))))
-    switch = Switch(selector="op", cases=(case,), rest=None)
+    switch = Switch(selector=named("op"), cases=(case,), rest=None)
     rows = layout(protocol(message("m", 1, ("op", UINT8), ("argument", switch))))
     assert [(row["Name"], row["Type"]) for row in rows[3:5]] == [
         ("`argument`", "depends on `op`"),

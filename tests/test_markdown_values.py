@@ -23,6 +23,7 @@ from models import (
     protocol,
 )
 
+from protogen.model.expressions import named
 from protogen.model.meanings import BitField, Enum, Flags, NamedBit, NamedValue
 from protogen.model.origin import About, Source
 from protogen.model.sizes import SizeSet
@@ -224,7 +225,7 @@ def test_cases_with_fields_of_one_name_have_tables_of_their_own():
         inner = Struct(name=f"s{value}", fields=fields(("state", kind)))
         return Case(value=value, name=f"case_{value}", type=inner)
 
-    switch = Switch(selector="op", cases=(case(1), case(2)), rest=None)
+    switch = Switch(selector=named("op"), cases=(case(1), case(2)), rest=None)
     text = page(protocol(message("m", 1, ("op", UINT8), ("argument", switch))))
     assert "(#message-m-argument-case_1-state)" in text
     assert "(#message-m-argument-case_2-state)" in text

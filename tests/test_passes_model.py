@@ -10,6 +10,7 @@ from passes_support import HEAD, SCHEMAS, protocol_of
 
 from protogen.compiler import compile_file
 from protogen.model.checksums import ChecksumSpec
+from protogen.model.expressions import named
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
@@ -207,14 +208,14 @@ class TestExtents:
     def test_a_counting_field_bounds_by_its_range(self) -> None:
         type_ = fields_of("n: {type: uint8, range: [2, 9]}, a: {type: uint16, count: n}")["a"].type
         assert type_ == Array(
-            element=Integer(bits=16), extent=Counted(field="n", least=2, greatest=9)
+            element=Integer(bits=16), extent=Counted(by=named("n"), least=2, greatest=9)
         )
         assert type_.sizes == SizeSet.between(4, 18, 2)
 
     def test_a_count_is_bounded_by_what_the_frame_can_hold(self) -> None:
         # 255 bytes of payload, one of them the count: 254, or 127 elements of two bytes.
         fields = fields_of("n: uint8, a: {type: uint16, count: n}", frame=LENGTH)
-        assert fields["a"].type.extent == Counted(field="n", least=0, greatest=127)  # type: ignore[union-attr]
+        assert fields["a"].type.extent == Counted(by=named("n"), least=0, greatest=127)  # type: ignore[union-attr]
 
     @pytest.mark.parametrize(
         ("fields", "greatest"),

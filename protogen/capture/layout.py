@@ -17,6 +17,8 @@ from protogen.capture.schema import (
     TableSchema,
     Text,
 )
+from protogen.copying import replace
+from protogen.model.expressions import Expression, Operand, plain_name, rebuilt
 from protogen.model.frame import NumberPart
 from protogen.model.messages import Message
 from protogen.model.payload_plan import (
@@ -25,9 +27,9 @@ from protogen.model.payload_plan import (
     ChooseStep,
     Count,
     FloatStep,
+    Formula,
     IntegerStep,
     RecordStep,
-    Reference,
     RepeatStep,
     RestStep,
 )
@@ -172,9 +174,16 @@ def _dimension(count: Count, outer: Sequence[str], taken: Sequence[str]) -> Dime
     return Dimension(capacity, None if count.by is None else _referred(count.by, outer))
 
 
-def _referred(number: Reference, outer: Sequence[str]) -> str:
-    """Name of the column of a number that counts or selects."""
-    return _free(number.name, outer) if number.level == 0 else number.name
+def _referred(formula: Formula, outer: Sequence[str]) -> str | Expression:
+    """Name of the column of a number that counts or selects; an expression over columns."""
+
+    def called(item: Expression) -> Expression:
+        if not isinstance(item, Operand) or formula.references[item.name].level > 0:
+            return item
+        return replace(item, path=(_free(item.path[0], outer), *item.path[1:]))
+
+    found = rebuilt(formula.expression, called)
+    return plain_name(found) or found
 
 
 def _shape(step: AnyStep, outer: Sequence[str]) -> Shape:

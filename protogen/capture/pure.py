@@ -21,6 +21,7 @@ from protogen.capture.schema import (
     Text,
 )
 from protogen.capture.tables import Tables, empty_rows, rows
+from protogen.model.expressions import Expression, operands, value_of
 from protogen.runtime.attributes import attribute
 from protogen.runtime.decoder import Decoder
 
@@ -207,8 +208,7 @@ def _chosen(choice: Choice, values: Values, scope: Scope) -> Rows:
     """The values of a switch: each row has that of its case."""
     whole = Column(name="it", role="field", source="it", shape=choice)
     found = rows(dtype_of(TableSchema(row=Record((whole,), choice.size, 1))), len(values))["it"]
-    selector = choice.selector
-    chosen = [selector] * len(values) if isinstance(selector, int) else scope[selector]
+    chosen = _said(choice.selector, scope, len(values))
     known: Mapping[int, Column] = dict(choice.cases)
     for value in dict.fromkeys(map(int, chosen)):
         places = [place for place, number in enumerate(chosen) if number == value]
@@ -220,6 +220,26 @@ def _chosen(choice: Choice, values: Values, scope: Scope) -> Rows:
         elif value not in choice.empty and choice.rest is not None:
             found[choice.rest.name][places] = _rest(choice.rest, inner)
     return found
+
+
+def _said(what: str | int | Expression, scope: Scope, count: int) -> Values:
+    """The numbers that a column, or an expression over columns, has in each row."""
+    if isinstance(what, str):
+        return scope[what]
+    if isinstance(what, int):
+        return [what] * count
+    looked_up = {operand.name: _reached(scope, operand.path) for operand in operands(what)}
+    return [
+        int(value_of(what, lambda operand: looked_up[operand.name][row]))  # noqa: B023
+        for row in range(count)
+    ]
+
+
+def _reached(scope: Scope, path: Sequence[str]) -> Values:
+    values = scope[path[0]]
+    for name in path[1:]:
+        values = [getattr(value, name) for value in values]
+    return values
 
 
 def _rest(rest: Column, values: Values) -> Rows:

@@ -13,6 +13,7 @@ from typing import Literal
 import msgspec
 
 from protogen.copying import replace
+from protogen.model.expressions import Expression
 from protogen.model.frame import NumberPart
 from protogen.model.meanings import Enum, Flags, NamedValue
 from protogen.model.messages import Message
@@ -91,8 +92,9 @@ class Choice(msgspec.Struct, frozen=True):
     can't be.
     """
 
-    selector: str | int
-    """The column, found as that of a `Dimension`; a number where it is always that."""
+    selector: str | int | Expression
+    """The column, found as that of a `Dimension`; a number where it is always that; an expression
+    over columns and members of them."""
     cases: tuple[tuple[int, Column], ...]
     empty: tuple[int, ...]
     rest: Column | None
@@ -108,11 +110,12 @@ class Dimension(msgspec.Struct, frozen=True):
 
     `capacity`: how many a row has room for; those that are not there are zero. `counted_by`: the
     column that says how many there are, of the same record or, if that has none, of the one around
-    it; None: always as many as there is room for.
+    it; an expression over such columns, and members of them; None: always as many as there is room
+    for.
     """
 
     capacity: int
-    counted_by: str | None = None
+    counted_by: str | Expression | None = None
 
 
 class Column(msgspec.Struct, frozen=True, kw_only=True):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from protogen.copying import replace
 from protogen.evolution.change import Change, Mark, named
 from protogen.evolution.shapes import are_crossed
+from protogen.model.expressions import Expression, Operand, plain_name, rebuilt
 from protogen.model.meanings import BitField, Enum, Flags, NamedBit
 from protogen.model.types import (
     Array,
@@ -107,7 +108,7 @@ class TypeComparison:
 
     def _extents(self, old: Extent, new: Extent, path: str) -> Iterator[Change]:
         if isinstance(old, Counted):
-            old = replace(old, field=self._renamed.get(old.field, old.field))
+            old = replace(old, by=self._now(old.by))
         if old == new:
             return
         words = named(_amount(old), _amount(new))
@@ -119,8 +120,9 @@ class TypeComparison:
             yield self._report("field-encoding", path, words)
 
     def _switches(self, old: Switch, new: Switch, path: str) -> Iterator[Change]:
-        if self._renamed.get(old.selector, old.selector) != new.selector:
-            words = named(f"the cases of {old.selector}", f"those of {new.selector}")
+        if self._now(old.selector) != new.selector:
+            chosen = f"the cases of {old.selector.text}", f"those of {new.selector.text}"
+            words = named(*chosen)
             yield self._report("field-cases", path, words)
         before = {case.value: case for case in old.cases}
         after = {case.value: case for case in new.cases}
@@ -128,14 +130,28 @@ class TypeComparison:
             if (value in before) != (value in after):
                 words = f"a case {value}" if value in after else f"no case {value} any more"
                 found = self._report("field-cases", path, words)
-                marks = Mark(-1, value), Mark(-1, value)
-                yield replace(found, marks=marks, selector=new.selector)
+                name = plain_name(new.selector)
+                if name is not None:
+                    marks = Mark(-1, value), Mark(-1, value)
+                    found = replace(found, marks=marks, selector=name)
+                yield found
             else:
                 case = before[value]
                 yield from self.compare(case.type, after[value].type, path)
         if (old.rest is None) != (new.rest is None):
             words = "values without a case are " + ("taken" if old.rest is None else "refused")
             yield self._report("field-cases", path, words)
+
+    def _now(self, expression: Expression) -> Expression:
+        """The expression with the new names of the fields beside this one."""
+
+        def change(item: Expression) -> Expression:
+            if not isinstance(item, Operand):
+                return item
+            first, *rest = item.path
+            return replace(item, path=(self._renamed.get(first, first), *rest))
+
+        return rebuilt(expression, change)
 
     # --- named values ---------------------------------------------------------------------------
 
@@ -289,7 +305,7 @@ def _amount(extent: Extent) -> str:
         case Fixed():
             return str(extent.count)
         case Counted():
-            return f"{extent.least} to {extent.greatest}, as {extent.field} says"
+            return f"{extent.least} to {extent.greatest}, as {extent.by.text} says"
         case Fill():
             amount = f"{extent.least} to" if extent.least else "up to"
             return f"{amount} {extent.greatest}, to the end"

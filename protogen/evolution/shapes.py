@@ -7,6 +7,7 @@ from difflib import SequenceMatcher
 from typing import Any
 
 from protogen.copying import field_names, is_record
+from protogen.model.expressions import Expression
 from protogen.model.frame import Encoding, Escape, Substitution
 from protogen.model.meanings import Enum, Flags
 from protogen.model.types import Struct
@@ -21,6 +22,8 @@ def shape(item: Any) -> Hashable:
     """Content of a type without texts for people and without the names of types."""
     if isinstance(item, tuple):
         return tuple(shape(each) for each in item)
+    if isinstance(item, Expression):
+        return str(item)
     kind = type(item)
     if not is_record(kind):
         found: Hashable = item

@@ -26,9 +26,9 @@ from protogen.model.payload_plan import (
     IntegerStep,
     PayloadPlan,
     RecordStep,
-    Reference,
     RepeatStep,
     RestStep,
+    said,
 )
 from protogen.model.types import Fixed, Text, counting_bits
 
@@ -115,7 +115,7 @@ class _Exchange(ABC):
             case RepeatStep():
                 return self._elements(step, given)
             case ChooseStep():
-                chosen = step.case(self._said(step.selector))
+                chosen = step.case(said(step.selector, self._records))
                 is_empty = isinstance(chosen, RecordStep) and not chosen.steps
                 return None if chosen is None or is_empty else self._value(chosen, given)
             case RestStep():
@@ -154,17 +154,12 @@ class _Exchange(ABC):
         elements = [None] * size if given is None else given
         return [self._value(step.element, item) for item in elements]
 
-    def _said(self, number: int | Reference) -> int:
-        if isinstance(number, int):
-            return number
-        return int(self._records[number.level][number.name])
-
     def _size(self, count: Count, given: int) -> int:
         """Number of elements or bytes; where they fill the payload, it stands in front."""
         if count.fills:
             return self._filled(count, given)
-        size = self._said(count.by) if count.by is not None else count.known
-        if size is None or size > count.greatest:
+        size = said(count.by, self._records) if count.by is not None else count.known
+        if size is None or not 0 <= size <= count.greatest:
             raise Unfit
         return size
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import msgspec
 
+from protogen.model.expressions import Numeral, every, linear, operands
 from protogen.model.frame import ChoicePart, CounterPart, ValuePart
 from protogen.model.identities import Runs
 from protogen.model.messages import Message
@@ -23,6 +24,7 @@ from protogen.model.payload_plan import (
     ConstantStep,
     Count,
     FloatStep,
+    Formula,
     IntegerStep,
     RecordStep,
     Reference,
@@ -77,11 +79,18 @@ def unspecified_choices(message: Message, sizes: SizeSet) -> Choices:
 class Need(msgspec.Struct, frozen=True):
     """Bounds of a number because it counts something, or selects one of several cases."""
 
-    least: int
-    greatest: int
+    least: int = -_ANY
+    greatest: int = _ANY
     cases: tuple[int, ...] = ()
     others: bool = True
     """True if it may be none of the cases."""
+    near: tuple[int, ...] = ()
+    """Further values that make a difference."""
+
+    @property
+    def is_bounded(self) -> bool:
+        """True if not every number will do."""
+        return (self.least, self.greatest) != (-_ANY, _ANY)
 
     def also(self, other: Need) -> Need:
         """Both needs together."""
@@ -90,6 +99,7 @@ class Need(msgspec.Struct, frozen=True):
             min(self.greatest, other.greatest),
             self.cases + other.cases,
             self.others and other.others,
+            self.near + other.near,
         )
 
 
@@ -121,16 +131,46 @@ def _needs(step: AnyStep, level: int) -> Iterator[tuple[Reference, Need]]:
             if isinstance(step, RepeatStep):
                 yield from _needs(step.element, level)
         case ChooseStep():
-            if isinstance(step.selector, Reference):
+            if isinstance(step.selector, Formula):
                 values = tuple(case.value for case in step.cases)
-                yield step.selector, Need(-_ANY, _ANY, values, others=step.rest is not None)
+                yield from _needs_of_choice(step.selector, values, others=step.rest is not None)
             for case in step.cases:
                 yield from _needs(case.step, level)
 
 
 def _needs_of_count(count: Count) -> Iterator[tuple[Reference, Need]]:
-    if count.by is not None:
-        yield count.by, Need(count.least, min(count.greatest, _GREATEST_COUNT))
+    if count.by is None:
+        return
+    least, greatest = count.least, min(count.greatest, _GREATEST_COUNT)
+    line = linear(count.by.expression)
+    if line is None:
+        yield from _needs_of_formula(count.by, (least, greatest))
+        return
+    yield count.by.references[line.name], Need(*line.within(least, greatest))
+
+
+def _needs_of_choice(
+    formula: Formula, values: tuple[int, ...], *, others: bool
+) -> Iterator[tuple[Reference, Need]]:
+    if formula.plain is not None:
+        yield formula.plain, Need(cases=values, others=others)
+    else:
+        yield from _needs_of_formula(formula, values)
+
+
+def _needs_of_formula(
+    formula: Formula, values: Iterable[int] = ()
+) -> Iterator[tuple[Reference, Need]]:
+    """Numbers that make a difference to a formula, or give it one of these values."""
+    line = linear(formula.expression)
+    written = [it.value for it in every(formula.expression) if isinstance(it, Numeral)]
+    for operand in operands(formula.expression):
+        found = [*written, *values] if line is None else map(line.inverse, values)
+        low, high = operand.run or (0, 0)
+        near = [number for it in found for number in (it - 1, it, it + 1)]
+        bits = [number << low for number in near if number >= 0]
+        chosen = near if operand.run is None else [0, (1 << high + 1) - (1 << low), *bits]
+        yield formula.references[operand.name], Need(near=tuple(chosen))
 
 
 # --- single values ------------------------------------------------------------------------------
@@ -174,7 +214,9 @@ def _integer_choices(step: IntegerStep, need: Need | None) -> Choices:
         values = _distinct([*values, least, greatest, *near])
     if need is not None and need.cases:
         return _selecting(values, need)
-    if need is not None:
+    if need is not None and not closed:
+        values = _distinct([*values, *(it for it in need.near if least <= it <= greatest)])
+    if need is not None and need.is_bounded:
         least, greatest = max(least, need.least), min(greatest, need.greatest)
         values = [value for value in values if least <= value <= greatest]
         values = values if values or closed else _distinct([least, greatest])

@@ -33,10 +33,11 @@ from protogen.model.payload_plan import (
     ChooseStep,
     ConstantStep,
     Count,
+    Formula,
     RecordStep,
-    Reference,
     RepeatStep,
     RestStep,
+    said,
     without_constant,
 )
 from protogen.model.sizes import SizeSet
@@ -136,7 +137,10 @@ def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, V
         fields = {message.fields[0].name: chooser.choose(unspecified_choices(message, sizes))}
     else:
         sampler = _Sampler(sizes)
-        fields = sampler.record(message.plan.steps, chooser)
+        try:
+            fields = sampler.record(message.plan.steps, chooser)
+        except _UnfitError:
+            return None
         if sampler.size not in sizes:
             return None
     parts = {part.name: chooser.choose(part_choices(part)) for part in frame.caller_parts}
@@ -155,6 +159,10 @@ def _carried(message: Message, frame: Frame) -> SizeSet:
 
 
 # --- composites ---------------------------------------------------------------------------------
+
+
+class _UnfitError(Exception):
+    """Numbers in front say what nothing can have."""
 
 
 class _Sampler:
@@ -214,14 +222,16 @@ class _Sampler:
             values.append(value)
         return values
 
-    def _number(self, number: int | Reference) -> int:
-        if isinstance(number, int):
-            return number
-        return int(self._records[number.level][number.name])
+    def _said(self, count: Count, by: Formula) -> int:
+        """The number of elements or bytes that earlier numbers say."""
+        found = said(by, self._records)
+        if not count.least <= found <= count.greatest:
+            raise _UnfitError
+        return found
 
     def _lengths(self, count: Count, size: int) -> tuple[int, int]:
         """The least and the greatest number of elements that have at least `size` bytes."""
-        least, greatest = lengths_of(count, 0 if count.by is None else self._number(count.by))
+        least, greatest = lengths_of(count, 0 if count.by is None else self._said(count, count.by))
         if count.fills and size:
             greatest = min(greatest, max(0, self._sizes.greatest - self.size) // size)
             needed = -(min(0, self.size - self._sizes.least) // size)
@@ -230,7 +240,7 @@ class _Sampler:
 
     def _case(self, step: ChooseStep, chooser: Chooser) -> Any:
         inside = chooser.inside(len(step.cases) + (step.rest is not None))
-        chosen = step.case(self._number(step.selector))
+        chosen = step.case(said(step.selector, self._records))
         if isinstance(chosen, RecordStep) and not chosen.steps:
             return None
         if chosen is None or isinstance(chosen, RestStep):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from protogen.copying import replace
+from protogen.model.expressions import Expression, Numeral, Operand, folded, names_in
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -14,6 +15,7 @@ from protogen.model.payload_plan import (
     ConstantStep,
     Count,
     FloatStep,
+    Formula,
     IntegerStep,
     NumberStep,
     PayloadPlan,
@@ -41,6 +43,7 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    beyond,
     count_name,
     is_text,
     packing_of,
@@ -60,9 +63,10 @@ def plan_of_struct(struct: Struct) -> PayloadPlan:
 
 
 _NOTHING: frozenset[Check] = frozenset()
+_NO_NAMES: frozenset[str] = frozenset()
 _Scope = Mapping[str, "int | Reference"]
-"""The numbers in front, some of which are constants."""
-_Key = tuple[str, int, bool, "tuple[tuple[str, int | Reference], ...]"]
+"""The numbers in front, some of which are constants; of a member of a struct, `header.count`."""
+_Key = tuple[str, int, bool, frozenset[str], "tuple[tuple[str, int | Reference], ...]"]
 
 
 class _Builder:
@@ -72,30 +76,50 @@ class _Builder:
         self._level = level
         self._scope = dict(scope)
         self._made = made
+        self._needed = _NO_NAMES
+        """Names of the fields up to the present one that are needed behind it."""
 
-    def record(self, fields: Sequence[Field], *, is_last: bool) -> tuple[AnyStep, ...]:
-        """The steps of the fields of a record at this depth."""
+    def record(
+        self, fields: Sequence[Field], *, is_last: bool, needed_behind: frozenset[str] = _NO_NAMES
+    ) -> tuple[AnyStep, ...]:
+        """The steps of the fields of a record at this depth; what follows it needs some of them."""
         steps: list[AnyStep] = []
-        needed = _needed_behind(fields)
+        needed = _needed_behind(fields, needed_behind)
         for index, field in enumerate(fields):
             member = count_name(fields, field) if field.fills else ""
             at_end = is_last and index == len(fields) - 1
+            self._needed = needed[index]
             step = self._step(field, field.type, field.name, at_end, member)
             if isinstance(step, IntegerStep) and field.name in needed[index]:
                 step = replace(step, is_needed=True)
             steps.append(_constant(field, step) if field.const is not None else step)
-            self._remember(field)
+            for rest in _inside(needed[index], field.name) | {""}:
+                self._remember(_member(field, rest), f"{field.name}.{rest}" if rest else field.name)
         return tuple(steps)
 
-    def _remember(self, field: Field) -> None:
+    def _remember(self, field: Field, name: str) -> None:
+        """Keep the number of a field, or of a member inside of one."""
         number = field.constant_number
         if number is not None:
-            self._scope[field.name] = number
+            self._scope[name] = number
         elif isinstance(field.type, Integer):
-            self._scope[field.name] = Reference(field.name, self._level, field.type)
+            self._scope[name] = Reference(name, self._level, field.type)
 
     def _find(self, name: str) -> int | Reference:
         return self._scope.get(name, Reference(name, -1, None))
+
+    def _formula(self, expression: Expression) -> int | Formula:
+        """The formula of an expression, or the number that it always is."""
+        found = folded(expression, self._known)
+        if isinstance(found, Numeral):
+            return found.value
+        numbers = {name: self._find(name) for name in sorted(names_in(found))}
+        references = {name: it for name, it in numbers.items() if isinstance(it, Reference)}
+        return Formula(found, references)
+
+    def _known(self, operand: Operand) -> int | None:
+        number = self._find(operand.name)
+        return number if isinstance(number, int) else None
 
     def _step(
         self, field: Field, type_: Type, name: str, is_last: bool, member: str = ""
@@ -136,7 +160,7 @@ class _Builder:
                     count=count,
                 )
             case Struct():
-                steps, packing = self._inner(type_, is_last), packing_of(type_)
+                steps, packing = self._inner(type_, name, is_last), packing_of(type_)
                 return RecordStep(
                     name=name,
                     field=field,
@@ -154,13 +178,14 @@ class _Builder:
             case Switch():
                 return self._choose(field, type_, name, is_last)
 
-    def _inner(self, type_: Struct, is_last: bool) -> tuple[AnyStep, ...]:
+    def _inner(self, type_: Struct, name: str, is_last: bool) -> tuple[AnyStep, ...]:
         """The steps of a struct, made once for all places where they are the same."""
         outer = tuple((name, self._find(name)) for name in sorted(type_.needs))
-        key = type_.name, self._level, is_last, outer
+        needed = _inside(self._needed, name)
+        key = type_.name, self._level, is_last, needed, outer
         if key not in self._made:
             inner = _Builder(self._level + 1, self._scope, self._made)
-            self._made[key] = inner.record(type_.fields, is_last=is_last)
+            self._made[key] = inner.record(type_.fields, is_last=is_last, needed_behind=needed)
         return self._made[key]
 
     def _repeat(
@@ -195,8 +220,8 @@ class _Builder:
             holds_values=type_.holds_values,
             is_last=is_last,
             type=type_,
-            selector_name=type_.selector,
-            selector=self._find(type_.selector),
+            expression=type_.selector,
+            selector=self._formula(type_.selector),
             cases=cases,
             rest=None if type_.rest is None else _rest(field, type_, type_.rest, is_last),
         )
@@ -208,14 +233,14 @@ class _Builder:
     def _count(self, extent: Extent, member: str) -> Count:
         counts, number = extent.counts, None
         if isinstance(extent, Counted):
-            number = self._find(extent.field)
+            number = self._formula(extent.by)
         known = None if isinstance(extent, Fill) else counts.fixed
         if known is None and isinstance(number, int):
             known = number
         return Count(
-            field=extent.field if isinstance(extent, Counted) else "",
+            expression=extent.by if isinstance(extent, Counted) else None,
             known=known,
-            by=number if isinstance(number, Reference) else None,
+            by=number if isinstance(number, Formula) else None,
             member=member,
             fills=isinstance(extent, Fill),
             least=counts.least,
@@ -224,14 +249,28 @@ class _Builder:
         )
 
 
-def _needed_behind(fields: Sequence[Field]) -> list[frozenset[str]]:
+def _needed_behind(fields: Sequence[Field], needed: frozenset[str]) -> list[frozenset[str]]:
     """For each field the names that count or select in those behind it."""
     found: list[frozenset[str]] = []
-    needed: frozenset[str] = frozenset()
     for field in reversed(fields):
         found.append(needed)
-        needed = (needed - {field.name}) | field.type.needs
+        needed = beyond(needed, field.name) | field.type.needs
     return found[::-1]
+
+
+def _member(field: Field, path: str) -> Field:
+    """The field that a path leads to inside of one; without a path, that one."""
+    while path:
+        assert isinstance(field.type, Struct)
+        name, _, path = path.partition(".")
+        field = next(item for item in field.type.fields if item.name == name)
+    return field
+
+
+def _inside(needed: frozenset[str], name: str) -> frozenset[str]:
+    """The names of members that are needed of a field."""
+    paths = (path.partition(".") for path in needed)
+    return frozenset(rest for first, _, rest in paths if rest and first == name)
 
 
 def _constant(field: Field, step: AnyStep) -> ConstantStep:

@@ -1,22 +1,33 @@
 """Payload plan: the steps that read, check and write a payload, in wire order.
 
 A step knows what a walk over it needs: where its number of elements comes from, what can be wrong
-with its bytes, whether an encoder refuses some of its values, whether anything follows it. Names
-of fields that count and select are resolved here: a constant one is a number, any other says which
-of the records around it holds it. Targets print steps and decide nothing.
+with its bytes, whether an encoder refuses some of its values, whether anything follows it. What
+counts and selects is resolved here: where it never changes it is a number, anything else a formula,
+which knows which of the records around it holds each of its fields. Targets print steps and decide
+nothing.
 
 Nobody compares steps, and every command makes their classes, so these have no comparisons.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import Enum, auto
 from functools import cached_property
 from math import ceil, floor
+from typing import Any
 
 import msgspec
 
+from protogen.model.expressions import (
+    Expression,
+    Interval,
+    Operand,
+    bounds_of,
+    hull_of,
+    reached,
+    value_of,
+)
 from protogen.model.packing import Packing
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
@@ -70,21 +81,72 @@ class Reference(msgspec.Struct, frozen=True):
     """An earlier number that counts or selects."""
 
     name: str
+    """Of a member of a struct, `header.count`."""
     level: int
     """Depth of the record that holds it: 0 for the plan's own fields, -1 for one around them."""
     type: Integer | None
     """None for a number around the plan."""
 
+    @property
+    def bounds(self) -> Interval:
+        """What the bits can hold, whatever an encoder allows."""
+        return (0, 0) if self.type is None else (self.type.least, self.type.greatest)
+
+
+class Formula(msgspec.Struct, frozen=True, eq=False, dict=True):
+    """A number or condition that is worked out of earlier numbers."""
+
+    expression: Expression
+    references: Mapping[str, Reference]
+    """The numbers, by the names that the expression has for them."""
+
+    @cached_property
+    def plain(self) -> Reference | None:
+        """The number that it is, where nothing has to be worked out."""
+        is_plain = isinstance(self.expression, Operand) and self.expression.run is None
+        return next(iter(self.references.values())) if is_plain else None
+
+    @property
+    def label(self) -> str:
+        """The formula in the words of the schema language."""
+        return self.expression.text
+
+    @cached_property
+    def bounds(self) -> Interval:
+        """The least and the greatest value, of whatever the fields can hold."""
+        return bounds_of(self.expression, self.bounds_of)
+
+    @cached_property
+    def hull(self) -> Interval:
+        """The bounds of all numbers on the way to the value, itself included."""
+        return hull_of(self.expression, self.bounds_of)
+
+    def bounds_of(self, operand: Operand) -> Interval:
+        """The bounds of a field, or of the bits that count of it."""
+        if operand.run is not None:
+            low, high = operand.run
+            return 0, (1 << (high - low + 1)) - 1
+        return self.references[operand.name].bounds
+
+    def value(self, look: Callable[[Reference], int]) -> int:
+        """The value, where `look` gives the numbers; of a condition, 0 or 1."""
+        found = value_of(self.expression, lambda operand: look(self.references[operand.name]))
+        return int(found)
+
+    def holds(self, look: Callable[[Reference], int]) -> bool:
+        """True if the condition holds; a number does unless it is 0."""
+        return self.value(look) != 0
+
 
 class Count(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
     """Number of elements or bytes."""
 
-    field: str = ""
-    """Name of the earlier field that says it, if one does."""
+    expression: Expression | None = None
+    """What says it as the schema has it, if earlier fields do."""
     known: int | None = None
     """The number, where it is always the same."""
-    by: Reference | None = None
-    """The number that says it, unless that is a constant."""
+    by: Formula | None = None
+    """The numbers that say it, unless those are constants."""
     member: str = ""
     """Name for the number in a record, where all that is left of the payload is taken."""
     fills: bool = False
@@ -96,8 +158,8 @@ class Count(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
 
     @property
     def is_fixed(self) -> bool:
-        """True if neither a field nor the payload's end says the number."""
-        return not self.field and not self.fills
+        """True if neither fields nor the payload's end say the number."""
+        return self.expression is None and not self.fills
 
 
 class Step(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
@@ -221,9 +283,9 @@ class CaseStep(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
 class ChooseStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """One of several steps, chosen by an earlier number."""
 
-    selector_name: str
-    """Name of the field that chooses."""
-    selector: int | Reference
+    expression: Expression
+    """What chooses, as the schema has it."""
+    selector: int | Formula
     """The number that chooses; of a constant its value."""
     cases: tuple[CaseStep, ...]
     rest: RestStep | None
@@ -265,6 +327,13 @@ class PayloadPlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     def holds_values(self) -> bool:
         """True if a record keeps anything of it."""
         return any(step.holds_values or step.fills for step in self.steps)
+
+
+def said(number: int | Formula, records: Sequence[Mapping[str, Any]]) -> int:
+    """A number that counts or selects, where the values of the records around it are known."""
+    if isinstance(number, int):
+        return number
+    return number.value(lambda reference: reached(records[reference.level], reference.name))
 
 
 def without_constant(step: AnyStep) -> AnyStep:

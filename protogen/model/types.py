@@ -13,6 +13,7 @@ from typing import ClassVar, Literal, TypeGuard
 
 import msgspec
 
+from protogen.model.expressions import Expression, names_in
 from protogen.model.meanings import NamedValue
 from protogen.model.names import free_name
 from protogen.model.numbers import (
@@ -92,24 +93,24 @@ class Fixed(msgspec.Struct, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Counted:
-    """As many as an earlier field of the same struct or message, or of one around it, says."""
+    """As many as earlier fields of the same struct or message, or of those around it, say."""
 
-    field: str
+    by: Expression
     least: int
     greatest: int
     stated: bool = dataclass_field(default=False, compare=False)
-    """True if the schema bounds the number; else `greatest` is what the field or frame can take,
+    """True if the schema bounds the number; else `greatest` is what the fields or frame can take,
     in a declared type wherever it has the most room."""
 
     @property
     def needs(self) -> frozenset[str]:
-        """The name of the field that counts."""
-        return frozenset({self.field})
+        """The names of the fields that count."""
+        return names_in(self.by)
 
     @property
     def label(self) -> str:
         """The number in the words of the schema language."""
-        return self.field
+        return self.by.text
 
     @property
     def counts(self) -> SizeSet:
@@ -152,7 +153,7 @@ class _Bytes(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def needs(self) -> frozenset[str]:
-        """The name of the field that counts, if one does."""
+        """The names of the fields that count, if some do."""
         return self.extent.needs
 
     @property
@@ -193,7 +194,8 @@ class Struct:
     holds_values: bool = dataclass_field(init=False, repr=False, compare=False)
     """True if a record keeps anything of it."""
     needs: frozenset[str] = dataclass_field(init=False, repr=False, compare=False)
-    """Names of fields in front of the struct that count or select something inside of it."""
+    """Names of fields in front of the struct that count or select something inside of it; of a
+    member of a struct, `header.count`."""
     extent: ClassVar[None] = None
 
     @property
@@ -253,13 +255,13 @@ class Case(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Switch(msgspec.Struct, frozen=True, kw_only=True):
-    """One of several types, chosen by an earlier field.
+    """One of several types, chosen by earlier fields.
 
     A value without a case yields the rest of the payload as bytes (at most `rest` of them) where
     the frame says where the payload ends; with `rest` None it is invalid.
     """
 
-    selector: str
+    selector: Expression
     cases: tuple[Case, ...]
     rest: int | None
     byte_bits: Literal[7, 8] = 8
@@ -269,7 +271,7 @@ class Switch(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def label(self) -> str:
         """The type in the words of the schema language."""
-        return f"switch({self.selector})"
+        return f"switch({self.selector.text})"
 
     @property
     def holds_values(self) -> bool:
@@ -279,7 +281,7 @@ class Switch(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def needs(self) -> frozenset[str]:
         """Names of earlier fields that select the case or count something inside of one."""
-        return frozenset({self.selector}).union(*(case.type.needs for case in self.cases))
+        return names_in(self.selector).union(*(case.type.needs for case in self.cases))
 
     @property
     def rest_name(self) -> str:
@@ -417,8 +419,13 @@ def total(fields: tuple[Field, ...]) -> SizeSet:
 def _needed_by(fields: Sequence[Field]) -> frozenset[str]:
     needed = _NO_NAMES
     for field in reversed(fields):
-        needed = (needed - {field.name}) | field.type.needs
+        needed = beyond(needed, field.name) | field.type.needs
     return needed
+
+
+def beyond(needed: frozenset[str], name: str) -> frozenset[str]:
+    """The names that are needed of what lies around, where one field has this name."""
+    return frozenset(path for path in needed if path.partition(".")[0] != name)
 
 
 def count_name(fields: Sequence[Field], field: Field) -> str:

@@ -12,7 +12,7 @@ from enum import Enum
 from fractions import Fraction
 from itertools import groupby
 from math import lcm
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 _MAX_INTEGER = 20
 """Characters of an integer of 64 bits with its sign."""
@@ -61,7 +61,17 @@ class Place:
         return self.code.startswith("f")
 
 
-Count = Place | int
+@dataclass(frozen=True, slots=True)
+class Worked:
+    """An integer that is worked out of some in a row."""
+
+    value: str
+    """C of the number, an `int64_t`."""
+    is_signed: ClassVar[bool] = True
+    is_float: ClassVar[bool] = False
+
+
+Count = Place | Worked | int
 
 
 class Others(NamedTuple):
@@ -236,7 +246,9 @@ def repeat(first: Place, stride: int, count: Count, body: Iterable[Step]) -> Ste
     )
 
 
-def choose(place: Place, cases: Mapping[int, Iterable[Step]], rest: Iterable[Step]) -> Step:
+def choose(
+    place: Place | Worked, cases: Mapping[int, Iterable[Step]], rest: Iterable[Step]
+) -> Step:
     """Take the steps of the case whose value a number has, else those of `rest`."""
     blocks = [(value, list(block(body))) for value, body in cases.items()]
     return Step([*_switch(place, blocks, block(rest))])
@@ -257,7 +269,7 @@ def _either(condition: str, body: Iterable[str], other: Iterable[str] = ()) -> I
 
 
 def _switch(
-    place: Place, cases: Iterable[tuple[int, Sequence[str]]], rest: Iterable[str]
+    place: Place | Worked, cases: Iterable[tuple[int, Sequence[str]]], rest: Iterable[str]
 ) -> Iterator[str]:
     yield f"switch ({place.value}) {{"
     for value, lines in cases:
@@ -269,7 +281,9 @@ def _switch(
 
 
 def _count(count: Count) -> str:
-    return count.value if isinstance(count, Place) else str(count)
+    if isinstance(count, int):
+        return str(count)
+    return count.value if isinstance(count, Place) else f"({count.value})"
 
 
 def unless(place: Place, special: Iterable[int], body: Iterable[Step]) -> Step:
@@ -365,7 +379,7 @@ def _scaled_integer(place: Place, scale: Fraction, offset: Fraction) -> str:
     return f"scaled_integer({place.value}, {_signed(times)}, {_signed(plus)}, UINT64_C({over}))"
 
 
-def _constant(value: int, place: Place) -> str:
+def _constant(value: int, place: Place | Worked) -> str:
     """A number of the same type."""
     if place.is_float:
         return float(value).hex()

@@ -13,6 +13,7 @@ from protogen.model.types import ByteOrder
 from protogen.passes.framing.written_frames import Loc, WrittenFrame, written_frames
 from protogen.problems import Problem, Problems, Span
 from protogen.problems.problem import Note
+from protogen.schema.scopes import at
 from protogen.schema.syntax.base import Source as SourceSyntax
 from protogen.schema.syntax.protocol import ALL_SENDERS, ProtocolSyntax
 
@@ -67,6 +68,18 @@ class Context(msgspec.Struct, frozen=True, dict=True):
     def error(self, code: str, loc: Loc, message: str, hint: str | None = None) -> None:
         """Report a problem at a value."""
         self._report(Problem.of(code, self.find(loc), message, hint), loc)
+
+    def error_inside(
+        self, code: str, loc: Loc, place: tuple[int, int], message: str, hint: str | None = None
+    ) -> None:
+        """Report a problem at so many characters of a text, behind so many others."""
+        span = self.find(loc)
+        start, width = place
+        # What is quoted or goes over several lines does not show how far in it is.
+        written = at(self.data, loc)
+        if isinstance(written, str) and span.end_column - span.column == len(written):
+            span = Span.at(span.file, span.line, span.column + start, max(1, width))
+        self._report(Problem.of(code, span, message, hint), loc)
 
     def warning(self, code: str, loc: Loc, message: str, hint: str) -> None:
         """Report what can be read, but may be meant otherwise; it stops nothing."""

@@ -15,6 +15,7 @@ from operator import attrgetter
 from typing import Any, NamedTuple
 
 from protogen.copying import defaults_of
+from protogen.model.expressions import Expression
 from protogen.model.meanings import Enum, Flags
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
@@ -29,6 +30,9 @@ _LEFT_OUT = frozenset(
     }
 )  # fmt: skip
 """Text for readers, and facts that follow from the rest."""
+
+_CALLED = {"by": "field"}
+"""Names in the hash of members that were called otherwise: hashes of old schemas stay."""
 
 _LISTED = frozenset({"messages", "enums", "flags", "structs"})
 """Members of a protocol that stand in other places, too: messages under their senders."""
@@ -70,7 +74,7 @@ def _whole(value: Any) -> dict[str, Any]:
 
 
 class _Kind(NamedTuple):
-    """The fields of a data class that count."""
+    """The fields of a data class that count, by their names in the hash."""
 
     name: str
     fields: tuple[str, ...]
@@ -84,7 +88,8 @@ def _kind(kind: Any) -> _Kind:
     left_out = _LEFT_OUT | _LISTED if kind is Protocol else _LEFT_OUT
     kept = {name: default for name, default in defaults_of(kind).items() if name not in left_out}
     fields = tuple(sorted(kept))
-    return _Kind(kind.__name__, fields, tuple(map(kept.get, fields)), _getter(fields))
+    called = tuple(_CALLED.get(name, name) for name in fields)
+    return _Kind(kind.__name__, called, tuple(map(kept.get, fields)), _getter(fields))
 
 
 def _getter(fields: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
@@ -99,9 +104,10 @@ def _named(value: Any) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """What JSON does not have: fractions, bytes, and data classes."""
+    """What JSON does not have: fractions, expressions, bytes, and data classes."""
     kind = type(value)
-    if kind is Fraction:  # Not `isinstance`, which takes long for a class of `numbers`.
+    # Not `isinstance` of a fraction, which takes long for a class of `numbers`.
+    if kind is Fraction or isinstance(value, Expression):
         return str(value)
     return value.hex() if kind is bytes else _whole(value)
 

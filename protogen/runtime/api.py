@@ -64,6 +64,7 @@ __all__ = [
     "FieldRules",
     "Flags",
     "FloatRule",
+    "Formula",
     "Fraction",
     "FrameFormat",
     "FrameSpec",
@@ -110,6 +111,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from protogen.runtime.framing.frame_format import FrameFormat
+    from protogen.runtime.payload.formula import Formula
     from protogen.runtime.payload.records import ArrayRule, FieldRules, StructRule, SwitchRule
     from protogen.runtime.payload.rules import (
         BoolRule,
@@ -125,6 +127,7 @@ else:
         {
             "fractions": ("Fraction",),
             ".framing.frame_format": ("FrameFormat",),
+            ".payload.formula": ("Formula",),
             ".payload.records": (
                 "ArrayRule",
                 "FieldRules",

@@ -11,9 +11,26 @@ from typing import Any
 
 import msgspec
 
+from protogen.model.expressions import (
+    Comparison,
+    Expression,
+    Membership,
+    Operand,
+    every,
+    operands,
+)
+from protogen.schema.expressions import ExpressionError, parse_expression
 from protogen.schema.scopes import Place, Scopes, declares
 from protogen.schema.syntax.forms import Form
-from protogen.schema.syntax.names import BySender, FieldPath, FieldValues, Kind, Mark, Ref
+from protogen.schema.syntax.names import (
+    BySender,
+    FieldPath,
+    FieldValues,
+    Formula,
+    Kind,
+    Mark,
+    Ref,
+)
 from protogen.schema.syntax.protocol import SCHEMA, is_by_sender
 from protogen.schema.text.scalars import Scalar
 
@@ -109,8 +126,34 @@ class _Walk:
             case Ref(kind, of, missing):
                 scopes = self._scopes.of(kind, of, spot.place)
                 yield Reference(kind, spot, written, scopes, missing=missing)
+            case Formula() if isinstance(written, str):
+                yield from self._in_formula(str(written), spot)
             case FieldPath():
                 yield from _field_path(str(written), spot)
+
+    def _in_formula(self, written: str, spot: Spot) -> Iterator[Reference]:
+        """Yield what an expression names: fields, members, bits, and values they are compared to.
+
+        What can't be read names nothing; the passes say why.
+        """
+        try:
+            parsed = parse_expression(written)
+        except ExpressionError:
+            return
+        values = dict(_compared(parsed))
+        for operand in operands(parsed):
+            scopes = self._scopes.of(Kind.FIELD, None, spot.place)
+            first = Reference(Kind.FIELD, spot, operand.path[0], scopes, operand.at)
+            if operand.at in values and not first.declarations(self._data):
+                scopes = self._scopes.values_of(values[operand.at], spot.place)
+                yield Reference(Kind.VALUE, spot, operand.name, scopes, operand.at)
+                continue
+            yield first
+            at = operand.at
+            for depth, name in enumerate(operand.path[1:], start=1):
+                at += len(operand.path[depth - 1]) + 1
+                scopes = self._scopes.inside_path(operand.path[:depth], spot.place)
+                yield Reference(Kind.FIELD, spot, name, scopes, at)
 
     def _values_of_fields(
         self, values: Any, scopes: tuple[Place, ...], place: Place
@@ -135,6 +178,19 @@ class _Walk:
             yield from self._values_of_fields(value, structs, place)
         else:
             yield from self._values_of_fields(value, namings, place)
+
+
+def _compared(parsed: Expression) -> Iterator[tuple[int, tuple[str, ...]]]:
+    """Yield the places of names that may stand for values, with the field that would have those."""
+    for item in every(parsed):
+        pairs: list[tuple[Expression, Expression]] = []
+        if isinstance(item, Comparison):
+            pairs = [(item.left, item.right), (item.right, item.left)]
+        elif isinstance(item, Membership):
+            pairs = [(value, item.operand) for value in item.values]
+        for one, other in pairs:
+            if isinstance(one, Operand) and isinstance(other, Operand):
+                yield one.at, other.path
 
 
 def _field_path(path: str, spot: Spot) -> Iterator[Reference]:

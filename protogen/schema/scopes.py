@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
+from protogen.model.expressions import Operand
+from protogen.schema.expressions import ExpressionError, parse_expression
 from protogen.schema.syntax.names import Kind
 from protogen.schema.syntax.protocol import is_by_sender
 from protogen.schema.text.scalars import Scalar
 
 Place = tuple[Scalar, ...]
 """Keys and indexes that lead from the root to a node."""
+
+_BITS = ("bits", "flags")
+"""Keys that name bits of an integer."""
 
 _EVERYWHERE = {
     Kind.ENDPOINT: "endpoints",
@@ -85,13 +90,35 @@ class Scopes:
             if keys_at(self._data, (*place, key))
         )
 
+    def inside_path(self, path: Sequence[str], place: Place) -> tuple[Place, ...]:
+        """Mappings that may declare what stands behind a dotted name: members, and bits."""
+        found = self._of_path(path, place)
+        keys = ("fields", *_BITS)
+        return tuple(scope for field in found for scope in self.inside_field(field, *keys))
+
+    def values_of(self, path: Sequence[str], place: Place) -> tuple[Place, ...]:
+        """Mappings that may declare the values of what a dotted name stands for."""
+        found = self._of_path(path, place)
+        keys = ("values", "special")
+        return tuple(scope for field in found for scope in self.inside_field(field, *keys))
+
+    def _of_path(self, path: Sequence[str], place: Place) -> list[Place]:
+        """Places of a field, or of bits of one, that a dotted name at some place may mean."""
+        scopes, found = _of_fields(place), list[Place]()
+        for name in path:
+            found = [(*scope, name) for scope in scopes if name in keys_at(self._data, scope)][:1]
+            inner = (self.inside_field(field, "fields", *_BITS) for field in found)
+            scopes = tuple(scope for each in inner for scope in each)
+        return found
+
     def _of_cases(self, field: Place, switch: str) -> tuple[Place, ...]:
-        """Values of the field that chooses between the cases of another one."""
-        chosen = self._name((*field, switch))
-        for fields in _of_fields((*field, switch)):
-            if declares(self._data, fields, chosen):
-                return self.inside_field((*fields, chosen), "values")
-        return ()
+        """Values of what chooses between the cases of a field."""
+        written = at(self._data, (*field, switch))
+        try:
+            chosen = parse_expression(written) if isinstance(written, str) else None
+        except ExpressionError:
+            return ()
+        return self.values_of(chosen.path, (*field, switch)) if isinstance(chosen, Operand) else ()
 
     def _senders(self, place: Place) -> list[Scalar]:
         """Senders of the nearest mapping that says so; else all of them."""

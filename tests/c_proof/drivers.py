@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from protogen.copying import replace
+from protogen.model.expressions import names_in
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.model.types import Array, Counted, Field, Integer, Octets, Struct, Switch, Text, Type
@@ -248,14 +249,14 @@ def _bytes_of(field: Field, names: set[str]) -> range:
 def _names(types: Iterator[Type]) -> Iterator[str]:
     for type_ in types:
         match type_:
-            case Text(extent=Counted(field=name)) | Octets(extent=Counted(field=name)):
-                yield name
+            case Text(extent=Counted(by=by)) | Octets(extent=Counted(by=by)):
+                yield from names_in(by)
             case Array(element=element, extent=extent):
                 if isinstance(extent, Counted):
-                    yield extent.field
+                    yield from names_in(extent.by)
                 yield from _names(iter((element,)))
             case Struct(fields=fields):
                 yield from _names(field.type for field in fields)
-            case Switch(selector=name, cases=cases):
-                yield name
+            case Switch(selector=selector, cases=cases):
+                yield from names_in(selector)
                 yield from _names(case.type for case in cases)

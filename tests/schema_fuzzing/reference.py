@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from bit_runs import bits_of_number, bytes_of, number_of
+from expression_oracle import worked_out
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
@@ -89,7 +90,7 @@ def _bits(type_: Type, value: Any, order: str) -> list[int]:
 
 def _switch_bytes(type_: Switch, value: Any, scope: Scope) -> bytes:
     for case in type_.cases:
-        if case.value == scope[type_.selector]:
+        if case.value == worked_out(type_.selector, scope):
             return _value(case.type, value, scope)
     return bytes.fromhex(value)
 

@@ -8,8 +8,10 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import Any
 
+from expression_oracle import worked_out
 from hypothesis import strategies as st
 
+from protogen.model.expressions import plain_name
 from protogen.model.frame import ChoicePart, CounterPart, Frame, ValuePart
 from protogen.model.messages import Message
 from protogen.model.types import (
@@ -112,14 +114,14 @@ def _uses_in(name: str, type_: Type) -> Iterator[Counted | Switch]:
         case Text() | Octets():
             yield from _counted_by(name, type_.extent)
         case Switch():
-            if type_.selector == name:
+            if plain_name(type_.selector) == name:
                 yield type_
             for case in type_.cases:
                 yield from _uses_in(name, case.type)
 
 
 def _counted_by(name: str, extent: Extent) -> Iterator[Counted]:
-    if isinstance(extent, Counted) and extent.field == name:
+    if isinstance(extent, Counted) and plain_name(extent.by) == name:
         yield extent
 
 
@@ -259,7 +261,7 @@ def _size(extent: Extent, scope: Scope) -> st.SearchStrategy[int]:
         case Fixed():
             return st.just(extent.count)
         case Counted():
-            return st.just(scope[extent.field])
+            return st.just(worked_out(extent.by, scope))
     return _count(extent.counts.least, extent.greatest)
 
 
@@ -275,7 +277,8 @@ def _array(draw: st.DrawFn, type_: Array, field: Field | None, scope: Scope) -> 
 
 @st.composite
 def _switch(draw: st.DrawFn, type_: Switch, scope: Scope) -> Any:
-    case = next((case for case in type_.cases if case.value == scope[type_.selector]), None)
+    chosen = worked_out(type_.selector, scope)
+    case = next((case for case in type_.cases if case.value == chosen), None)
     if case is None:
         assert type_.rest is not None
         return draw(_octets(draw(_count(0, type_.rest)), 7)).hex()

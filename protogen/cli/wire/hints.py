@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from protogen.cli.wire.scalars import allowed
+from protogen.model.expressions import Expression, reached, value_of
 from protogen.model.payload_plan import (
     AnyStep,
     ChooseStep,
@@ -61,8 +62,16 @@ def _hint(step: AnyStep, value: Any, way: Sequence[str], scope: Scope, path: str
 
 def chosen_case(step: ChooseStep, scope: Mapping[str, Any]) -> AnyStep | None:
     """Return the step of the case that the value of the selector chooses, if it has one."""
-    chosen = scope.get(step.selector_name)
+    chosen = value_in(step.expression, scope)
     return next((case.step for case in step.cases if case.value == chosen), None)
+
+
+def value_in(expression: Expression, scope: Mapping[str, Any]) -> int | None:
+    """Return the value of an expression; None where the values in front do not say it."""
+    try:
+        return int(value_of(expression, lambda operand: reached(scope, operand.name)))
+    except (KeyError, TypeError):
+        return None
 
 
 def members(record: RecordStep, path: str) -> str:

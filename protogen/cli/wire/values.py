@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from protogen.cli.exits import UsageError
-from protogen.cli.wire.hints import chosen_case, members
+from protogen.cli.wire.hints import chosen_case, members, value_in
 from protogen.cli.wire.scalars import (
     float_value,
     from_json,
@@ -131,8 +131,8 @@ def _case(step: ChooseStep, written: Any, path: str, scope: Scope) -> Raw:
     case = chosen_case(step, scope)
     if case is not None:
         return None if _is_empty(case) else _value(case, written, path, scope)
-    if scope.get(step.selector_name) is None:
-        raise UsageError(f"{path}: `{step.selector_name}` says what this is; give it, too")
+    if value_in(step.expression, scope) is None:
+        raise UsageError(f"{path}: `{step.expression.text}` says what this is; give it, too")
     return octets_value(written, path).hex()
 
 

@@ -6,6 +6,8 @@ from collections import ChainMap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from protogen.model.expressions import reached as reached_in
+from protogen.model.expressions import value_of
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Type
 
 Scope = ChainMap[str, Any]
@@ -44,7 +46,7 @@ def _plain(type: Type, value: Any, scope: Scope) -> Any:
 
 
 def _plain_case(type: Switch, value: Any, scope: Scope) -> dict[str, Any]:
-    chosen = scope[type.selector]
+    chosen = value_of(type.selector, lambda operand: reached_in(scope, operand.name))
     for case in type.cases:
         if case.value == chosen:
             if isinstance(case.type, Struct):

@@ -26,6 +26,7 @@ from protogen.convert.columns.held_columns import (
     rest_of,
 )
 from protogen.convert.columns.python_values import Values
+from protogen.model.expressions import Expression, plain_name, value_of
 from protogen.model.types import Array as ArrayType
 from protogen.model.types import Counted, Extent, Field, Fixed, Struct, Switch, Text, Type
 from protogen.model.types import Octets as OctetsType
@@ -72,7 +73,7 @@ def _case(
 ) -> Scattered:
     """Values behind a path, of the rows that have the case that it begins with."""
     case = next((case for case in type.cases if case.name == path[0]), None)
-    chosen = np.ascontiguousarray(scope[type.selector])
+    chosen = np.ascontiguousarray(_said(type.selector, scope))
     if case is None:
         # NumPy would compare numbers of 64 bits with those of another type as floats.
         there = ~np.isin(chosen, np.array([case.value for case in type.cases], chosen.dtype))
@@ -112,7 +113,7 @@ class _InFront(dict[str, Array]):
     """Numbers of a record in front of a field, and the number of its elements, when asked for."""
 
     def __init__(
-        self, item: Field, fields: Iterable[Field], columns: Sequence[Column], rows: Any
+        self, item: Field | None, fields: Iterable[Field], columns: Sequence[Column], rows: Any
     ) -> None:
         super().__init__()
         self._item = item
@@ -125,6 +126,9 @@ class _InFront(dict[str, Array]):
         return found
 
     def _found(self, name: str) -> Array:
+        first, _, rest = name.partition(".")
+        if rest:
+            return self._member(first, rest)
         for column in self._columns:
             if column.role == "count" and column.name == name:
                 return np.asarray(self._rows[name])
@@ -137,6 +141,24 @@ class _InFront(dict[str, Array]):
             if number is not None and not number.dimensions:
                 return np.asarray(self._rows[number.name])
         raise KeyError(name)
+
+    def _member(self, first: str, rest: str) -> Array:
+        """The number of a member of a struct."""
+        for item in takewhile(lambda item: item is not self._item, self._fields):
+            if item.name == first and isinstance(item.type, Struct):
+                column = held_by(item, self._columns)
+                inside = _in_rows(column, self._rows)
+                return _InFront(None, item.type.fields, members_of(column), inside)[rest]
+        raise KeyError(first)
+
+
+def _said(expression: Expression, scope: Scope) -> Array:
+    """The numbers that an expression has in each row."""
+    name = plain_name(expression)
+    if name is not None:
+        return scope[name]
+    found = value_of(expression, lambda operand: np.asarray(scope[operand.name]).astype("i8"))
+    return np.asarray(found).astype("i8")
 
 
 def _at_places(scope: Scope, places: Callable[[], Array]) -> Scope:
@@ -245,7 +267,7 @@ def _size(extent: Extent, left: Sequence[Dimension]) -> int:
 
 def _counts(extent: Extent, left: Sequence[Dimension], scope: Scope) -> Array | None:
     """Number of elements or bytes in each row; None: always as many as there is room for."""
-    name = left[0].counted_by if left else None
     if isinstance(extent, Counted):
-        name = extent.field
-    return None if name is None else scope[name].astype("i4")
+        return _said(extent.by, scope).astype("i4")
+    name = left[0].counted_by if left else None
+    return scope[name].astype("i4") if isinstance(name, str) else None

@@ -19,6 +19,7 @@ from protogen.convert.writers.value_steps import (
     chosen,
     count_of,
     rest_digits,
+    said,
     text_of,
 )
 from protogen.model.types import Array, Field, Octets, Struct, Switch, Text, Type
@@ -149,7 +150,7 @@ class Cell:
             for case in type.cases
         }
         other = () if rest is None or path[0] else self.rest(rest, at)
-        return chosen(at.scope[type.selector], bodies, other)
+        return chosen(said(type.selector, at), bodies, other)
 
     def rest(self, rest: Column, at: Spot) -> Iterator[Step]:
         """The bytes of a value that no case stands for."""

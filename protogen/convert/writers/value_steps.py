@@ -23,6 +23,7 @@ from protogen.convert.columns.held_columns import (
     members_of,
     rest_of,
 )
+from protogen.model.expressions import Expression, Interval, Operand, plain_name
 from protogen.model.types import (
     Array,
     Case,
@@ -30,6 +31,7 @@ from protogen.model.types import (
     Extent,
     Field,
     Fixed,
+    Integer,
     Octets,
     Struct,
     Switch,
@@ -42,6 +44,7 @@ from protogen.native.print_steps import (
     Place,
     Spelling,
     Step,
+    Worked,
     characters,
     choose,
     hex_digits,
@@ -49,6 +52,8 @@ from protogen.native.print_steps import (
     number,
     repeat,
 )
+from protogen.targets.c.formulas import CPrinter
+from protogen.targets.c.spelling import number as number_in_c
 
 Scope = ChainMap[str, Count]
 """The numbers in front, which count and choose: their places, or constant ones themselves."""
@@ -88,8 +93,21 @@ class Spot:
             yield item, column, here
             if column is None and isinstance(item.const, int):
                 scope[item.name] = item.const
-            elif column is not None and isinstance(column.shape, Number) and not column.dimensions:
-                scope[item.name] = here.place(column)
+            elif column is not None:
+                scope.update(_numbers(item.name, item.type, column, here))
+
+
+def _numbers(name: str, type: Type, column: Column, at: Spot) -> Iterator[tuple[str, Count]]:
+    """The numbers of a field that expressions behind it may name: itself, or its members."""
+    if isinstance(column.shape, Number) and not column.dimensions:
+        yield name, at.place(column)
+    if not isinstance(type, Struct) or column.dimensions:
+        return
+    for item, inner in held(type.fields, members_of(column)):
+        if inner is not None:
+            yield from _numbers(f"{name}.{item.name}", item.type, inner, at.moved(inner))
+        elif isinstance(item.const, int):
+            yield f"{name}.{item.name}", item.const
 
 
 class ValueSteps(ABC):
@@ -181,7 +199,7 @@ class ValueSteps(ABC):
         known, rest = cases_of(column), rest_of(column)
         bodies = {it.value: self._case(item, it, known.get(it.value), at) for it in type.cases}
         other = () if rest is None else self.case("", _in_quotes(rest_digits(rest, at)))
-        yield from chosen(at.scope[type.selector], bodies, other)
+        yield from chosen(said(type.selector, at), bodies, other)
 
     def _case(self, item: Field, case: Case, column: Column | None, at: Spot) -> Iterator[Step]:
         if isinstance(case.type, Struct) and not case.type.fields:
@@ -213,10 +231,31 @@ def count_of(extent: Extent, left: Sequence[Dimension], at: Spot) -> Count:
     match extent:
         case Fixed(count=count):
             return count
-        case Counted(field=name):
-            return at.scope[name]
+        case Counted(by=expression):
+            return said(expression, at)
     counted_by = left[0].counted_by if left else None
-    return 0 if counted_by is None else at.scope[counted_by]
+    return at.scope[counted_by] if isinstance(counted_by, str) else 0
+
+
+def said(expression: Expression, at: Spot) -> Count:
+    """The number that an expression has."""
+    name = plain_name(expression)
+    return at.scope[name] if name is not None else Worked(_RowPrinter(at.scope).text(expression))
+
+
+class _RowPrinter(CPrinter):
+    """Prints expressions over numbers of a row, all of them as the widest integer."""
+
+    def __init__(self, scope: Scope) -> None:
+        super().__init__(Integer(bits=64, signed=True))
+        self._scope = scope
+
+    def whole(self, operand: Operand) -> str:
+        found = self._scope[operand.name]
+        return number_in_c(found) if isinstance(found, int) else found.value
+
+    def bounds(self, operand: Operand) -> Interval:
+        return -1, 1  # Any number may be below 0.
 
 
 def text_of(type: Text, column: Column, dimension: Dimension, at: Spot, spelling: Spelling) -> Step:

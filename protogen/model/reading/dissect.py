@@ -5,11 +5,12 @@ from __future__ import annotations
 import struct
 from collections import ChainMap
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import msgspec
 
 from protogen.copying import replace
+from protogen.model.expressions import Expression, reached, value_of
 from protogen.model.frame import Part
 from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
@@ -35,8 +36,8 @@ from protogen.runtime.errors import ByteError
 from protogen.runtime.payload.bits import BitReader
 from protogen.runtime.payload.number import Number
 
-Scope = ChainMap[str, int]
-"""The integers read so far, which count and select what follows."""
+Scope = ChainMap[str, Any]
+"""The integers read so far, which count and select what follows; of a struct a mapping of them."""
 
 ScalarStep = IntegerStep | FloatStep | BytesStep
 
@@ -161,7 +162,9 @@ class _Reader:
             case RecordStep() | RepeatStep() if step.packing is not None:
                 self._packed(step, step.packing, path)
             case RecordStep():
-                self.record(step.steps, f"{path}.", scope.new_child())
+                inner = scope.new_child()
+                scope[step.name] = inner.maps[0]
+                self.record(step.steps, f"{path}.", inner)
             case RepeatStep():
                 self._elements(step, path, scope)
             case ChooseStep():
@@ -180,12 +183,12 @@ class _Reader:
             index += 1
 
     def _case(self, step: ChooseStep, path: str, scope: Scope) -> None:
-        chosen = scope.get(step.selector_name)
+        chosen = _said(step.expression, scope)
         found = step.rest if chosen is None else step.case(chosen)
         if found is not None and not isinstance(found, RestStep):
             self._step(found, path, scope)
             return
-        fault = f"`{step.selector_name}` has no case {chosen}" if found is None else ""
+        fault = f"`{step.expression.text}` has no case {chosen}" if found is None else ""
         if self._cursor.left:
             left = self._cursor.left
             row = self._cursor.take(left, path, "bytes", fault=fault, subject=step.field)
@@ -250,7 +253,17 @@ def _bits(item: PackedNumber, run: BitReader, base: str, offset: int) -> Row:
 
 def _count(count: Count, scope: Scope) -> int | None:
     """The number that the bytes in front say; None: as many as there are."""
-    return scope.get(count.field, 0) if count.field else count.known
+    if count.expression is None:
+        return count.known
+    return max(0, _said(count.expression, scope) or 0)
+
+
+def _said(expression: Expression, scope: Scope) -> int | None:
+    """The value of an expression; None where the bytes in front did not say it."""
+    try:
+        return int(value_of(expression, lambda operand: reached(scope, operand.name)))
+    except KeyError:
+        return None
 
 
 # --- values -------------------------------------------------------------------------------------

@@ -19,6 +19,7 @@ from protogen.model.payload_plan import (
     PayloadPlan,
     RecordStep,
     RepeatStep,
+    said,
 )
 from protogen.model.types import Field, NumberType, Text
 
@@ -100,7 +101,7 @@ def _elements(step: RepeatStep, values: Sequence[Any], records: _Records) -> str
 
 def _case(step: ChooseStep, value: Any, records: _Records) -> str:
     by = step.selector
-    chosen = step.case(by if isinstance(by, int) else records[by.level][by.name])
+    chosen = step.case(by if isinstance(by, int) else said(by, records))
     if isinstance(chosen, RecordStep):
         return _record(chosen.steps, value or {}, records)
     return f"hex:{value}"

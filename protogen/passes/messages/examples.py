@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from protogen.copying import replace
+from protogen.model.expressions import Operand, value_of
 from protogen.model.frame import Frame
 from protogen.model.messages import Contradiction, Example, Exchange, Message, Step
 from protogen.model.types import Array, Field, Octets, Struct, Switch, Type, is_integer
@@ -217,9 +218,22 @@ def _byte_string(value: Any) -> Any:
 
 def _case(switch: Switch, types: Mapping[str, Type], around: Mapping[str, Any]) -> Type | None:
     """Type of a switch for the value that its selector has in the example."""
-    selector = types.get(switch.selector)
-    if selector is None or not is_integer(selector) or switch.selector not in around:
+    try:
+        chosen = value_of(switch.selector, lambda operand: _raw_value(operand, types, around))
+    except LookupError:
         return None
-    named = named_raw_value(selector, around[switch.selector])
-    found = (case.type for case in switch.cases if named is not None and case.value == named[0])
-    return next(found, None)
+    return next((case.type for case in switch.cases if case.value == chosen), None)
+
+
+def _raw_value(operand: Operand, types: Mapping[str, Type], around: Mapping[str, Any]) -> int:
+    """Raw value of a field in an example. Raises LookupError where it has none."""
+    type_, value = types[operand.path[0]], around[operand.path[0]]
+    for name in operand.path[1:]:
+        if not isinstance(type_, Struct) or not isinstance(value, dict):
+            raise LookupError(name)
+        type_ = {field.name: field.type for field in type_.fields}[name]
+        value = value[name]
+    named = named_raw_value(type_, value) if is_integer(type_) else None
+    if named is None:
+        raise LookupError(operand.name)
+    return named[0]

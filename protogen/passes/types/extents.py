@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from protogen.model.expressions import Numeral, named
 from protogen.model.nesting import can_count
 from protogen.model.types import Counted, Extent, Field, Fill, Fixed, is_integer
 from protogen.passes.context import Context, Loc
+from protogen.passes.types.expressions import Worked, number
 from protogen.passes.types.setting import Setting
-from protogen.problems import hint_for
 from protogen.schema.syntax.fields import Fill as FillSyntax
 
 Written = int | str | FillSyntax | None
@@ -28,10 +29,29 @@ def extent_of(
         return _counted_by(field, element, setting.room)
     if field is not None:
         context.error("PG117", loc, *_why_not(field))
-    elif not setting.elsewhere:
-        text = f"no earlier field is called `{written}`"
-        context.error("PG116", loc, text, hint_for(written, setting.outer))
-    return Fixed(count=0)
+        return Fixed(count=0)
+    found = number(context, written, loc, setting)
+    return Fixed(count=0) if found is None else _worked_out(context, found, loc, element, setting)
+
+
+def _worked_out(
+    context: Context, found: Worked, loc: Loc, element: int, setting: Setting
+) -> Extent:
+    """The number of an expression, which is refused where it is out of bounds."""
+    least, greatest = found.bounds
+    if isinstance(found.expression, Numeral):
+        least = greatest = found.expression.value
+    if greatest < 0:
+        text = f"`{found.expression.text}` is never more than {greatest}, and counts nothing"
+        context.error("PG203", loc, text)
+        return Fixed(count=0)
+    if isinstance(found.expression, Numeral):
+        return Fixed(count=greatest)
+    if setting.room is not None and not found.is_ranged:
+        greatest = min(greatest, setting.room // element)
+    least = min(max(0, least), greatest)
+    by, is_stated = found.expression, found.is_ranged
+    return Counted(by=by, least=least, greatest=greatest, stated=is_stated)
 
 
 def _why_not(field: Field) -> tuple[str, str | None]:
@@ -71,9 +91,10 @@ def _no_choice(context: Context, written: FillSyntax, loc: Loc, greatest: int) -
 
 
 def _counted_by(field: Field, element: int, room: int | None) -> Counted:
+    by = named(field.name)
     if isinstance(field.const, int):
-        return Counted(field=field.name, least=field.const, greatest=field.const, stated=True)
+        return Counted(by=by, least=field.const, greatest=field.const, stated=True)
     least, greatest = int(field.least or 0), int(field.greatest or 0)
     if room is not None and not field.ranged:
         greatest = min(greatest, room // element)
-    return Counted(field=field.name, least=least, greatest=greatest, stated=field.ranged)
+    return Counted(by=by, least=least, greatest=greatest, stated=field.ranged)

@@ -30,6 +30,7 @@ from protogen.passes.context import Context, Loc, about
 from protogen.passes.types import meaning
 from protogen.passes.types.constants import named_raw_value
 from protogen.passes.types.declared import Declarations, Effective, Expansion
+from protogen.passes.types.expressions import Selector, number, selector_of
 from protogen.passes.types.extents import Written, extent_of
 from protogen.passes.types.field_keys import check_keys, has_one_form
 from protogen.passes.types.named_types import NamedTypes
@@ -224,23 +225,16 @@ class FieldBuilder:
         if not known:
             return None
         return Switch(
-            selector=selector.name,
+            selector=selector.expression,
             cases=known,
             rest=self._rest(known, item),
             byte_bits=item.setting.layout.byte_bits,
         )
 
-    def _selector(self, item: Effective) -> Field | None:
-        name, outer = item.syntax.switch or "", item.setting.outer
-        selector = outer.get(name)
-        if selector is not None and is_integer(selector.type):
-            return selector
-        if selector is not None:
-            self._context.error("PG116", item.at("switch"), f"`{name}` is not an integer")
-        elif not item.setting.elsewhere:
-            hint = hint_for(name, outer)
-            self._context.error("PG116", item.at("switch"), f"`{name}` is no earlier field", hint)
-        return None
+    def _selector(self, item: Effective) -> Selector | None:
+        written, place = item.syntax.switch or "", item.at("switch")
+        found = number(self._context, written, place, item.setting)
+        return None if found is None else selector_of(found)
 
     def _rest(self, cases: Sequence[Case], item: Effective) -> int | None:
         """Greatest number of bytes for a value without a case; None where the end is not known."""
@@ -271,14 +265,13 @@ class FieldBuilder:
         )
 
     def _case(
-        self, key: object, item: FieldSyntax, loc: Loc, selector: Field, setting: Setting
+        self, key: object, item: FieldSyntax, loc: Loc, selector: Selector, setting: Setting
     ) -> Case | None:
-        assert is_integer(selector.type)
         named = named_raw_value(selector.type, key)
         if named is None:
             enum = selector.type.enum
             hint = hint_for(str(key), [entry.name for entry in enum.values] if enum else [])
-            text = f"`{selector.name}` has no value {key}"
+            text = f"`{selector.expression.text}` has no value {key}"
             self._context.error_at_key("PG121", loc, text, hint)
             return None
         value, name = named

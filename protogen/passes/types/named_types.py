@@ -177,9 +177,9 @@ def _with_extent(one: Text | Octets | Array, other: Text | Octets | Array) -> Ty
 
 def _extent(one: Extent, other: Extent) -> Extent | None:
     match one, other:
-        case Counted(), Counted() if one.field == other.field:
+        case Counted(), Counted() if one.by == other.by:
             return Counted(
-                field=one.field,
+                by=one.by,
                 least=min(one.least, other.least),
                 greatest=max(one.greatest, other.greatest),
                 stated=one.stated and other.stated,

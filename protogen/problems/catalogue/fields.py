@@ -147,7 +147,7 @@ and `max_size`.
         "no-earlier-field",
         "There is no earlier field of that name",
         """\
-`count`, `size` and `switch` name a field that a receiver has already read: one in front, in the
+`count`, `size` and `switch` name fields that a receiver has already read: those in front, in the
 same struct or message or in one around it. A field behind comes too late. Correct the spelling, or
 change the order if the wire has it the other way round.
 """,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
+from protogen.problems.catalogue.expressions import EXPRESSION_CODES
 from protogen.problems.catalogue.fields import FIELD_CODES
 from protogen.problems.catalogue.forms import FORM_CODES
 from protogen.problems.catalogue.frame_sizes import FRAME_SIZE_CODES
@@ -19,6 +20,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *FIELD_CODES,
     *PACKING_CODES,
     *TEXT_NUMBER_CODES,
+    *EXPRESSION_CODES,
     *FRAME_CODES,
     *FRAMING_CODES,
     *FORM_CODES,

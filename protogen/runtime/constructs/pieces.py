@@ -10,12 +10,13 @@ import construct  # type: ignore[import-untyped,unused-ignore]
 from construct import Construct
 
 from protogen.runtime.errors import PayloadFault, Reason
+from protogen.runtime.payload.formula import Formula, number_of
 
 
 class Count(NamedTuple):
-    """The earlier field that gives a number of bytes or elements, from `least` to `greatest`."""
+    """What earlier fields say: a number of bytes or elements, from `least` to `greatest`."""
 
-    field: str
+    by: str | Formula
     least: int
     greatest: int
 
@@ -103,16 +104,21 @@ def extent_of(extent: Extent, context: Any, path: str) -> int:
         return extent
     if isinstance(extent, str):
         return int(look_up(context, extent, path))
-    number = int(look_up(context, extent.field, path))
+    number = said(extent.by, context, path)
     if not extent.least <= number <= extent.greatest:
-        problem = f"{extent.field} counts {extent.least} to {extent.greatest}, not {number}"
+        problem = f"{extent.by} counts {extent.least} to {extent.greatest}, not {number}"
         raise PayloadError("size", path, 0, problem)
     return number
+
+
+def said(what: str | Formula, context: Any, path: str) -> int:
+    """The number that an earlier field has, or that is worked out of some."""
+    return number_of(what, lambda name: look_up(context, name, path))
 
 
 def fixed_extent(extent: Extent, path: str) -> int:
     """The number, if it is always the same. Raises construct's SizeofError."""
     if isinstance(extent, int):
         return extent
-    name = extent if isinstance(extent, str) else extent.field
-    raise construct.SizeofError(f"the size depends on {name}", path=path)
+    what = extent.by if isinstance(extent, Count) else extent
+    raise construct.SizeofError(f"the size depends on {what}", path=path)

@@ -17,8 +17,9 @@ from protogen.runtime.constructs.pieces import (
     bytes_left,
     extent_of,
     fixed_extent,
-    look_up,
+    said,
 )
+from protogen.runtime.payload.formula import Formula
 
 
 class Struct(construct.Struct):  # type: ignore[misc]
@@ -148,13 +149,16 @@ def _as_list(obj: Any, path: str, stream: BinaryIO) -> list[Any]:
 
 
 class Cases(Piece):
-    """One of several pieces, chosen by an earlier field.
+    """One of several pieces, chosen by earlier fields.
 
     A value without a case is parsed by `rest`, or is an error where there is none.
     """
 
     def __init__(
-        self, selector: str, cases: Mapping[int, Construct], rest: Construct | None = None
+        self,
+        selector: str | Formula,
+        cases: Mapping[int, Construct],
+        rest: Construct | None = None,
     ) -> None:
         super().__init__()
         self._selector = selector
@@ -169,7 +173,7 @@ class Cases(Piece):
         return self._case(stream, context, path)._build(obj, stream, context, path)
 
     def _case(self, stream: BinaryIO, context: Any, path: str) -> Any:
-        value = look_up(context, self._selector, path)
+        value = said(self._selector, context, path)
         case = self._cases.get(value, self._rest)
         if case is None:
             problem = f"there is no case for {self._selector} = {value}"

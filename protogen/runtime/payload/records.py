@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from protogen.runtime.attributes import ATTRIBUTES
+from protogen.runtime.attributes import ATTRIBUTES, attribute
 from protogen.runtime.errors import EncodeError
+from protogen.runtime.payload.formula import Formula, number_of
 from protogen.runtime.payload.rules import OctetsRule, Rule, Scope, SeveralRule, Violation
 
 FieldRules = tuple[tuple[str, Rule], ...]
@@ -37,8 +38,7 @@ class StructRule(Rule):
         inner = scope.new_child()
         values = {}
         for name, rule in self.record.RULES:
-            attribute = ATTRIBUTES.get(name, name)
-            values[attribute] = rule.chosen(inner).from_wire(raw[name], inner)
+            values[ATTRIBUTES.get(name, name)] = rule.chosen(inner).from_wire(raw[name], inner)
             inner[name] = raw[name]
         return self.record(**values)
 
@@ -79,15 +79,16 @@ class StructRule(Rule):
         # Of a list, this is a mark: one is made for each record. No field counts or selects by it.
         defaults = self.record.__init__.__kwdefaults__ or {}
         for name, rule in self.record.RULES:
-            attribute = ATTRIBUTES.get(name, name)
+            own = ATTRIBUTES.get(name, name)
             if name in data:
                 try:
                     value = rule.chosen(inner).from_json(data[name], inner)
                 except EncodeError as error:
                     raise error.inside(name) from None
-                values[attribute] = inner[name] = value
-            elif attribute in defaults:
-                inner[name] = defaults[attribute]
+                values[own] = value
+                inner[name] = _seen(value)
+            elif own in defaults:
+                inner[name] = defaults[own]
             else:
                 raise EncodeError(name, "the value is missing")
         return self.record(**values)
@@ -100,13 +101,34 @@ class StructRule(Rule):
                 raise EncodeError(str(name), f"there is no such field; there are: {has}")
 
 
+class _Members(Mapping[str, Any]):
+    """The fields of a record, for formulas that ask for one of them."""
+
+    def __init__(self, record: Any) -> None:
+        self._record = record
+
+    def __getitem__(self, name: str) -> Any:
+        return _seen(getattr(self._record, attribute(name)))
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name, _ in self._record.RULES)
+
+    def __len__(self) -> int:
+        return len(self._record.RULES)
+
+
+def _seen(value: Any) -> Any:
+    """A value as formulas behind it see it."""
+    return _Members(value) if hasattr(value, "RULES") else value
+
+
 class ArrayRule(SeveralRule[Sequence[Any]]):
-    """Values of one kind: `count` of them, or as many as the field `count` says."""
+    """Values of one kind: `count` of them, or as many as earlier fields say."""
 
     def __init__(
         self,
         element: Rule,
-        count: int | str | None = None,
+        count: int | str | Formula | None = None,
         greatest: int | None = None,
         const: Sequence[Any] | None = None,
         least: int = 0,
@@ -174,13 +196,16 @@ _NOTHING = NothingRule()
 
 
 class SwitchRule(Rule):
-    """One of several rules, chosen by the raw value of the field `selector`.
+    """One of several rules, chosen by the raw values of earlier fields.
 
     A case of None has no bytes. A value without a case is `rest`, or can't be sent without one.
     """
 
     def __init__(
-        self, selector: str, cases: Mapping[int, Rule | None], rest: OctetsRule | None = None
+        self,
+        selector: str | Formula,
+        cases: Mapping[int, Rule | None],
+        rest: OctetsRule | None = None,
     ) -> None:
         self.selector = selector
         self.cases = cases
@@ -188,7 +213,7 @@ class SwitchRule(Rule):
 
     def chosen(self, scope: Scope) -> Rule:
         """The rule that the selector chooses. Raises EncodeError if there is none."""
-        value = int(scope[self.selector])
+        value = number_of(self.selector, scope.__getitem__)
         if value in self.cases:
             return (self.cases[value] or _NOTHING).chosen(scope)
         if self.rest is None:

@@ -16,6 +16,7 @@ from typing import Any, Generic, Literal, NamedTuple, TypeVar
 
 from protogen.runtime.errors import EncodeError, join_path
 from protogen.runtime.payload.enums import Flags, OpenEnum
+from protogen.runtime.payload.formula import Formula, number_of
 from protogen.runtime.payload.nearest import nearest_reading
 from protogen.runtime.payload.number import as_integer
 
@@ -391,14 +392,14 @@ def _is_bit(value: Any) -> bool:
 
 
 class SeveralRule(Rule, Generic[ConstT]):
-    """Base of rules for values of which there may be several: `size`, or as the field `size` says.
+    """Base of rules for values of which there may be several: `size`, or as earlier fields say.
 
     None: to the end of the payload, `least` to `greatest`.
     """
 
     def __init__(
         self,
-        size: int | str | None = None,
+        size: int | str | Formula | None = None,
         greatest: int | None = None,
         const: ConstT | None = None,
         least: int = 0,
@@ -409,9 +410,10 @@ class SeveralRule(Rule, Generic[ConstT]):
         self.const = const
 
     def _check_count(self, count: int, scope: Scope, what: str) -> None:
-        exactly = int(scope[self.size]) if isinstance(self.size, str) else self.size
+        exactly, says = self.size, ""
+        if isinstance(exactly, str | Formula):
+            exactly, says = number_of(exactly, scope.__getitem__), f", as {self.size} says"
         if exactly is not None and count != exactly:
-            says = f", as {self.size} says" if isinstance(self.size, str) else ""
             raise EncodeError("", f"needs exactly {exactly} {what}{says}, not {count}")
         _check_most(count, self.greatest, what)
         if count < self.least:
@@ -424,7 +426,7 @@ def _check_most(count: int, greatest: int | None, what: str) -> None:
 
 
 class OctetsRule(SeveralRule[bytes]):
-    """Bytes: `size` of them, or as many as the field `size` says; None: `least` to `greatest`."""
+    """Bytes: `size` of them, or as many as earlier fields say; None: `least` to `greatest`."""
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> bytes:
         """The bytes."""
@@ -451,8 +453,8 @@ class OctetsRule(SeveralRule[bytes]):
 class TextRule(SeveralRule[str]):
     """Text of one byte a character, which is ASCII; a decoder keeps whatever byte there is.
 
-    `size` is a number: the text has at most so many characters, and NUL pads it. It is the name of
-    a field: exactly as many as that says. None: `least` to `greatest`.
+    `size` is a number: the text has at most so many characters, and NUL pads it. It is what earlier
+    fields say: exactly as many. None: `least` to `greatest`.
     """
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> str:

@@ -25,7 +25,7 @@ from protogen.schema.syntax.base import (
     TypeForm,
     pair_of,
 )
-from protogen.schema.syntax.names import CaseKey, FieldName, Kind, Ref, TypeName
+from protogen.schema.syntax.names import CaseKey, ExpressionText, Kind, Ref, TypeName
 from protogen.schema.syntax.octets import OctetsForm, to_octets
 from protogen.schema.syntax.parts import ByteOrder
 
@@ -90,16 +90,16 @@ def _to_fill(value: Any) -> Any:
 def _extent_form(value: Any) -> str:
     if isinstance(value, dict | Fill) or value == "fill":
         return "fill"
-    return "name" if isinstance(value, str) else "number"
+    return "expression" if isinstance(value, str) else "number"
 
 
 Extent = Annotated[
     Annotated[Count, Tag("number")]
-    | Annotated[FieldName, Tag("name")]
+    | Annotated[ExpressionText, Tag("expression")]
     | Annotated[Fill, BeforeValidator(_to_fill, json_schema_input_type=str | Fill), Tag("fill")],
     Discriminator(_extent_form),
 ]
-"""Number of elements or bytes: a number, the name of an earlier field, or `fill`."""
+"""Number of elements or bytes: a number, an expression over earlier fields, or `fill`."""
 
 
 BitOrder = Literal["lsb_first", "msb_first"]
@@ -168,22 +168,24 @@ class FieldSyntax(Syntax):
     fields: dict[Name, FieldRef] | None = Field(
         None, description="The field is a struct of these fields."
     )
-    switch: FieldName | None = Field(
-        None, description="The field is one of several, chosen by this earlier field."
+    switch: ExpressionText | None = Field(
+        None,
+        description="The field is one of several, chosen by this earlier field, or expression "
+        "over earlier fields.",
     )
     cases: dict[CaseKey, FieldRef] | None = Field(
         None,
-        description="What the field is for each value (name or number) of the switch field.",
+        description="What the field is for each value (name or number) of the switch.",
     )
     count: Extent | None = Field(
         None,
-        description="The field is an array: number of elements, the earlier field that counts "
-        "them, or fill (to the end of the payload).",
+        description="The field is an array: number of elements, the earlier field or expression "
+        "that counts them, or fill (to the end of the payload).",
     )
     size: Extent | None = Field(
         None,
-        description="Bytes of an ascii or bytes field: a number, the earlier field that gives it, "
-        "or fill (to the end of the payload).",
+        description="Bytes of an ascii or bytes field: a number, the earlier field or expression "
+        "that gives it, or fill (to the end of the payload).",
     )
     packed: BitOrder | None = Field(
         None,

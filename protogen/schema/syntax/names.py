@@ -10,7 +10,9 @@ from enum import Enum
 from typing import Annotated, Any
 
 import msgspec
+from pydantic import Field
 
+from protogen.schema.expressions import GREATEST_LENGTH
 from protogen.schema.syntax.base import Name, Text, TypeForm, written_as
 
 
@@ -38,6 +40,10 @@ class Ref(msgspec.Struct, frozen=True):
     """Code of the problem where nothing has the name; None: the passes ask for more than that."""
 
 
+class Formula(msgspec.Struct, frozen=True):
+    """Mark of an expression over fields, in front of this one or around it."""
+
+
 class FieldPath(msgspec.Struct, frozen=True):
     """Mark of keys that are MESSAGE.FIELD, or a declared type."""
 
@@ -50,7 +56,7 @@ class BySender(msgspec.Struct, frozen=True):
     """Mark of a mapping from endpoints to what may also stand there once, for all of them."""
 
 
-Mark = Ref | FieldPath | FieldValues | BySender
+Mark = Ref | Formula | FieldPath | FieldValues | BySender
 
 EndpointName = Annotated[Name, Ref(Kind.ENDPOINT, missing="PG108")]
 """An endpoint."""
@@ -64,8 +70,10 @@ PartName = Annotated[str, Ref(Kind.PART)]
 TypeName = Annotated[Text, written_as(TypeForm), Ref(Kind.TYPE, missing="PG104")]
 """A built-in type, or one declared under `types`."""
 
-FieldName = Annotated[Name, Ref(Kind.FIELD)]
-"""A field beside this one, or around it."""
+ExpressionText = Annotated[
+    Text, written_as(Annotated[str, Field(min_length=1, max_length=GREATEST_LENGTH)]), Formula()
+]
+"""An expression over fields in front: `count`, `n - 2`, `header.flags.has_gps`."""
 
 FormName = Annotated[Name, Ref(Kind.FORM, missing="PG170")]
 """A form of frame."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import lru_cache
 
+from protogen.model.expressions import plain_name
 from protogen.model.numbers import Numeral
 from protogen.model.protocol import Protocol
 from protogen.model.types import (
@@ -23,6 +24,7 @@ from protogen.model.types import (
     Text,
     Type,
 )
+from protogen.targets.python.formulas import formula
 from protogen.targets.python.literals import call, mapping, octets_in_class, text
 from protogen.targets.python.names import Names
 
@@ -128,14 +130,14 @@ def _string(type_: Text | Octets) -> str:
 
 
 def extent(of: Extent) -> str:
-    """A number, or the name of the field that counts."""
+    """A number, or what earlier fields count by."""
     match of:
         case Fixed():
             return str(of.count)
-        case Counted(stated=True):
-            return call("_c.Count", text(of.field), str(of.least), str(of.greatest))
+        case Counted() if of.stated or plain_name(of.by) is None:
+            return call("_c.Count", formula(of.by), str(of.least), str(of.greatest))
         case Counted():
-            return text(of.field)
+            return formula(of.by)
         case Fill():
             return str(of.greatest)
 
@@ -156,7 +158,7 @@ def _switch(type_: Switch, names: Names) -> str:
     cases = mapping({str(case.value): _case(case, names) for case in type_.cases})
     seven = _seven_bit(type_)
     rest = None if type_.rest is None else call("_c.OctetsFill", str(type_.rest), seven_bit=seven)
-    return call("_c.Cases", text(type_.selector), cases, rest=rest)
+    return call("_c.Cases", formula(type_.selector), cases, rest=rest)
 
 
 def _case(case: Case, names: Names) -> str:

@@ -22,6 +22,7 @@ from protogen.model.types import (
     Type,
 )
 from protogen.targets.python.formats import constant, is_empty
+from protogen.targets.python.formulas import formula
 from protogen.targets.python.literals import call, mapping, number, text
 from protogen.targets.python.names import Names
 
@@ -116,7 +117,7 @@ def _extent(key: str, extent: Extent) -> dict[str, str | None]:
         case Fixed():
             return {key: str(extent.count)}
         case Counted():
-            return {key: text(extent.field)}
+            return {key: formula(extent.by)}
         case Fill():
             least = str(extent.least) if extent.least else None
             return {"greatest": str(extent.greatest), "least": least}
@@ -133,7 +134,7 @@ def _array(type_: Array, field: Field | None, names: Names) -> str:
 def _switch(type_: Switch, names: Names) -> str:
     cases = mapping({str(case.value): _case(case, names) for case in type_.cases})
     rest = None if type_.rest is None else call("_rt.OctetsRule", greatest=str(type_.rest))
-    return call("_rt.SwitchRule", text(type_.selector), cases, rest=rest)
+    return call("_rt.SwitchRule", formula(type_.selector), cases, rest=rest)
 
 
 def _case(case: Case, names: Names) -> str:

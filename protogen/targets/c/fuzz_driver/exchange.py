@@ -10,11 +10,13 @@ from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
     ConstantStep,
+    Formula,
     NumberStep,
     PayloadPlan,
     RepeatStep,
     RestStep,
 )
+from protogen.targets.c.formulas import FormulaPrinter
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.walk import Walk
@@ -36,6 +38,11 @@ class _Exchange(Walk):
             self._scalar(self.filled(step.count))
         if step.holds_values:
             super().step(step, place)
+
+    def printer(self, formula: Formula) -> FormulaPrinter:
+        """Prints a formula without the functions of the module."""
+        references = formula.references
+        return FormulaPrinter(formula, lambda operand: self.referred(references[operand.name]))
 
     def _scalar(self, place: str) -> None:
         self.lines.add(f"scalar(&{place}, (uint8_t)sizeof {place});")

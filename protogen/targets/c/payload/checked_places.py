@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.payload.walk import Walk
+from protogen.targets.c.payload.walk import RESERVED, Walk
 from protogen.targets.c.spelling import unsigned
 
 
@@ -20,6 +20,7 @@ class CheckedWalk(Walk):
     ) -> None:
         super().__init__(helpers, lines)
         self._error = f"return {prefix.upper()}_ERROR_"
+        self._locals = set(RESERVED)
         self._fixed = fixed
         self._needs = needs
         self._at = ""

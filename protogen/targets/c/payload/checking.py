@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from protogen.model.names import free_name
 from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     AnyStep,
@@ -20,27 +19,23 @@ from protogen.model.payload_plan import (
     ConstantStep,
     Count,
     FloatStep,
+    Formula,
     IntegerStep,
     NumberStep,
     RecordStep,
     Reference,
     RepeatStep,
     RestStep,
+    packed_numbers,
 )
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.checked_places import CheckedWalk
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import loaded
 from protogen.targets.c.payload.numerals import Digits
-from protogen.targets.c.payload.packing import Placed, faults_in
-from protogen.targets.c.payload.walk import out_of_bounds, times
+from protogen.targets.c.payload.packing import Placed, faults_in, number_in
+from protogen.targets.c.payload.walk import is_unfit, out_of_bounds, times, type_of
 from protogen.targets.c.spelling import hexadecimal, integer_type, unsigned
-
-_RESERVED = frozenset(
-    {"payload", "size", "need", "at", "end", "bool", "size_t", "i", "j", "k", "l", "m", "n"}
-    | {f"{sign}int{bits}_t" for sign in ("", "u") for bits in (8, 16, 32, 64)}
-)
-"""Names that a local variable may not have."""
 
 
 def _carried(step: BytesStep | NumberStep) -> int:
@@ -54,6 +49,12 @@ def _outside(count: Count, number: str, size: int) -> str:
     return out_of_bounds(number, count.least * size, greatest, greatest + 1)
 
 
+def _is_needed(step: RecordStep | RepeatStep) -> bool:
+    """True if a packed number counts or selects something behind it."""
+    inner = step.steps if isinstance(step, RecordStep) else ()
+    return any(item.step.is_needed for item in packed_numbers(inner))
+
+
 class Checker(CheckedWalk):
     """Prints a check of the payload."""
 
@@ -62,8 +63,7 @@ class Checker(CheckedWalk):
     ) -> None:
         super().__init__(helpers, lines, prefix, fixed=fixed, needs=needs)
         self._ended = False  # True once something has taken all bytes that there were.
-        self._locals = set(_RESERVED)
-        self._numbers: dict[tuple[int, str], str] = {}  # Variables, by the level of their record.
+        self._numbers: dict[str, str] = {}  # Variables, by the places of the numbers they hold.
         self._branches = 0
 
     def finish(self, unfit: str) -> None:
@@ -80,13 +80,26 @@ class Checker(CheckedWalk):
 
     def referred(self, number: Reference) -> str:
         """The variable of an earlier number."""
-        return self._numbers[number.level, number.name]
+        return self._numbers[super().referred(number)]
 
     def count(self, count: Count) -> int | str:
         """Number of elements or bytes."""
-        if count.by is not None:
-            self._bounded(count, count.by)
+        if count.by is None:
+            return super().count(count)
+        if count.by.plain is not None:
+            self._bounded(count, count.by.plain)
         return super().count(count)
+
+    def worked_out(self, count: Count, by: Formula) -> str:
+        """A variable with a number that a struct has room for."""
+        self._flush()
+        name = self.declared(by)
+        self._refuse(is_unfit(name, count, by), "SIZE")
+        if not type_of(by).signed:
+            return f"(size_t){name}"
+        amount = self.variable("amount")
+        self.lines.add(f"const size_t {amount} = (size_t){name};")
+        return amount
 
     def filled(self, count: Count) -> str:
         """Nothing that was read says how much there is of what fills."""
@@ -113,17 +126,18 @@ class Checker(CheckedWalk):
             self._flush()
         self._offset += step.type.size
         if isinstance(step, IntegerStep) and step.is_needed:
-            self._remember(step)
+            self._remember(step, place)
 
-    def _remember(self, step: IntegerStep) -> None:
+    def _remember(self, step: IntegerStep, place: str) -> None:
         """Put the number in front of the place into a variable, as it counts or selects."""
-        name = free_name(self.helpers.member(step.name), self._locals)
-        self._locals.add(name)
         size = step.type.size
         address = self._address(self._offset - size)
-        value = loaded(self.helpers, step.type, self._byte(-size), address)
+        self._keep(step, place, loaded(self.helpers, step.type, self._byte(-size), address))
+
+    def _keep(self, step: IntegerStep, place: str, value: str) -> None:
+        name = self.variable(self.helpers.member(step.name))
         self.lines.add(f"const {integer_type(step.type)} {name} = {value};")
-        self._numbers[len(self._records) - 1, step.name] = name
+        self._numbers[place] = name
 
     def _number(self, step: NumberStep) -> None:
         type_ = step.type
@@ -151,7 +165,7 @@ class Checker(CheckedWalk):
 
     def packed(self, step: RecordStep | RepeatStep, place: str) -> None:
         """Numbers that are packed; where none of them can be wrong, only what is left behind."""
-        if step.packing is not None and not step.checks - {Check.PADDING}:
+        if step.packing is not None and not step.checks - {Check.PADDING} and not _is_needed(step):
             self.run(step.packing, ())
         else:
             self.runs(step, place)
@@ -161,10 +175,14 @@ class Checker(CheckedWalk):
         items = [item for item, _ in placed]
         faults = list(faults_in(self.helpers, packing, items, self._byte))
         self._flush()
-        if faults:
+        needed = [(item, place) for item, place in placed if item.step.is_needed]
+        if faults or needed:
             self._require(packing.size)
         for fault in faults:
             self._refuse(fault, "VALUE")
+        for item, place in needed:
+            value = number_in(self.helpers, packing, item, self._byte)
+            self._keep(item.step, place, value)
         self._offset += packing.size
 
     @contextmanager
@@ -222,12 +240,12 @@ class Checker(CheckedWalk):
 
     def _right_count(self, found: Count, count: int, size: int) -> None:
         """Refuse another size: a constant of another size is another constant."""
-        if found.known is not None and not found.field:
+        if found.known is not None and found.expression is None:
             return
         self._flush()
         self._require(0)
         if found.by is not None:
-            self._refuse(f"{self.referred(found.by)} != {unsigned(count)}", "VALUE")
+            self._refuse(self.differs(found.by, count), "VALUE")
         elif found.fills:
             here = f"size - {self._sum(self._offset)}" if self._at or self._offset else "size"
             self._refuse(f"{here} != {unsigned(count * size)}", "VALUE")
@@ -378,8 +396,7 @@ class Checker(CheckedWalk):
         if size and not self._needs and not step.element.can_be_wrong:
             self._filling_of(size, count)
             return
-        index = free_name("count", self._locals)
-        self._locals.add(index)
+        index = self.variable("count")
         begin = f"size_t {index} = 0"
         if count.least:
             self.lines.add(f"{begin};")

@@ -13,8 +13,10 @@ from math import copysign, inf, isfinite, nextafter
 import msgspec
 
 from protogen.copying import replace
+from protogen.model.expressions import ArithmeticOperator
 from protogen.model.payload_plan import FloatStep
-from protogen.model.types import Float, NumberType, is_text, storage_bits
+from protogen.model.types import Float, Integer, NumberType, is_text, storage_bits
+from protogen.targets.c.formulas import floored
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.spelling import (
     Names,
@@ -194,6 +196,15 @@ class Helpers:
         body = _LOAD_RUN.format(upper=self._upper, load=self.load(type_))
         arguments = (f"{integer_type(type_)} *numbers", _AT, "size_t count")
         return self.helper(f"load_{layout_name(type_)}_run", "void", arguments, body)
+
+    # --- arithmetic -------------------------------------------------------------------------------
+
+    def floored(self, operator: ArithmeticOperator, type_: Integer) -> str:
+        """The function that divides by a number above 0, rounding down, or gives what remains."""
+        kind = integer_type(type_)
+        body = [f"return ({kind})({floored(operator, 'number', 'by')});"]
+        key = f"{'quotient' if operator == '//' else 'remainder'}{type_.bits}"
+        return self.helper(key, kind, (f"{kind} number", f"{kind} by"), body)
 
     # --- floats ---------------------------------------------------------------------------------
 

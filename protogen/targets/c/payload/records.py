@@ -113,7 +113,7 @@ class Records:
                 if case.step.holds_values:
                     self._member(lines, case.step, self._names.member(case.step.name))
             if step.rest is not None:
-                text = f"The bytes where {step.selector_name} has another value."
+                text = f"The bytes where {step.expression.text} has another value."
                 lines.add(*comments.comment([text], 2 * INDENT))
                 count = step.rest.count
                 with lines.block("struct", f"}} {step.rest.name};"):

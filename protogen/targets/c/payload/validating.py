@@ -9,6 +9,7 @@ from protogen.model.payload_plan import (
     ConstantStep,
     Count,
     FloatStep,
+    Formula,
     IntegerStep,
     NumberStep,
     PayloadPlan,
@@ -19,8 +20,8 @@ from protogen.model.sizes import SizeSet
 from protogen.model.types import Text, counting_bits
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.payload.walk import Walk, amount, out_of_bounds
-from protogen.targets.c.spelling import constant, unsigned
+from protogen.targets.c.payload.walk import Walk, amount, is_unfit, out_of_bounds
+from protogen.targets.c.spelling import constant
 
 
 def can_be_refused(plan: PayloadPlan, sizes: SizeSet) -> bool:
@@ -92,7 +93,7 @@ class Validate(Walk):
             return
         const = step.field.const
         size = len(const) if isinstance(const, str | bytes | tuple) else 0
-        self._refuse(f"{self.referred(value.count.by)} != {unsigned(size)}")
+        self._refuse(self.differs(value.count.by, size))
 
     def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
         """A text, or bytes."""
@@ -103,10 +104,16 @@ class Validate(Walk):
         """Number of elements or bytes, which a struct has to have room for."""
         if count.fills:
             self._bounded(self.filled(count), count, counting_bits(count.greatest))
-        elif count.by is not None:
-            assert count.by.type is not None
-            self._bounded(self.referred(count.by), count, count.by.type.width)
+        elif count.by is not None and count.by.plain is not None:
+            assert count.by.plain.type is not None
+            self._bounded(self.referred(count.by.plain), count, count.by.plain.type.width)
         return super().count(count)
+
+    def worked_out(self, count: Count, by: Formula) -> str:
+        """A variable with a number that a struct has to have room for."""
+        name = self.declared(by)
+        self._refuse(is_unfit(name, count, by))
+        return f"(size_t){name}"
 
     def _bounded(self, number: str, count: Count, bits: int) -> None:
         self._refuse(out_of_bounds(number, count.least, count.greatest, (1 << bits) - 1))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
+from protogen.model.expressions import ArithmeticOperator, Expression, Numeral, Operand
+from protogen.model.names import free_name
 from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     AnyStep,
@@ -12,6 +14,7 @@ from protogen.model.payload_plan import (
     ChooseStep,
     ConstantStep,
     Count,
+    Formula,
     NumberStep,
     PackedNumber,
     PayloadPlan,
@@ -20,10 +23,12 @@ from protogen.model.payload_plan import (
     RepeatStep,
     RestStep,
 )
+from protogen.model.types import Integer
+from protogen.targets.c.formulas import FormulaPrinter, type_for
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.packing import Placed, groups_of, members_of
-from protogen.targets.c.spelling import constant, unsigned
+from protogen.targets.c.spelling import constant, integer_type, unsigned
 
 _INDICES = "ijklmnopqrstuvw"
 """Names of indices; those of loops that are nested deeper have a number."""
@@ -32,6 +37,14 @@ _INDICES = "ijklmnopqrstuvw"
 def amount(count: int | str) -> str:
     """A number of elements or bytes as an argument."""
     return unsigned(count) if isinstance(count, int) else count
+
+
+def type_of(formula: Formula) -> Integer:
+    """The type of what `number_of` gives."""
+    if formula.plain is None:
+        return type_for(formula.hull)
+    assert formula.plain.type is not None
+    return formula.plain.type
 
 
 def times(count: int | str, size: int) -> int | str:
@@ -53,6 +66,37 @@ def _behind(start: str, item: PackedNumber) -> str:
     return f"{start} + {item.index}" if item.index else start
 
 
+def is_unfit(number: str, count: Count, by: Formula) -> str:
+    """The condition that a number that is worked out is out of bounds; empty where none is."""
+    (least, most), type_ = by.bounds, type_of(by)
+    tests = [f"{number} < {constant(count.least, type_)}"] if count.least > least else []
+    tests += [f"{number} > {constant(count.greatest, type_)}"] if count.greatest < most else []
+    return " || ".join(tests)
+
+
+_TYPES = {f"{sign}int{bits}_t" for sign in ("", "u") for bits in (8, 16, 32, 64)}
+RESERVED = frozenset(
+    {"payload", "size", "need", "at", "end", "bool", "size_t", "i", "j", "k", "l", "m", "n"}
+    | _TYPES
+)
+"""Names that a local variable may not have."""
+_PARAMETERS = frozenset({"message", "capacity", "writer", "put", "user", "needed", *_INDICES})
+"""Names that it may have only where these are no parameters."""
+
+
+class _Formula(FormulaPrinter):
+    """Prints a formula with functions for what C has no operators for."""
+
+    def __init__(self, helpers: Helpers, formula: Formula, whole: Callable[[Operand], str]) -> None:
+        super().__init__(formula, whole)
+        self._helpers = helpers
+
+    def floored(self, operator: ArithmeticOperator, left: Expression, right: Numeral) -> str:
+        """A call of the function that rounds down."""
+        function = self._helpers.floored(operator, self.type)
+        return f"{function}({self.text(left)}, {self.numeral(right)})"
+
+
 class Walk:
     """Order of the steps. A subclass says what is printed for each kind of step.
 
@@ -64,6 +108,7 @@ class Walk:
         self.lines = lines
         self._loops = 0
         self._records: list[str] = []  # What the members of each record around begin with.
+        self._locals = set(RESERVED | _PARAMETERS)
 
     def message(self, plan: PayloadPlan) -> None:
         """Walk over all steps of a message."""
@@ -144,17 +189,53 @@ class Walk:
             return count.known
         if count.by is None:
             return self.filled(count)
-        name = self.referred(count.by)
-        assert count.by.type is not None
-        return f"(size_t){name}" if count.by.type.bits > 16 else name
+        if count.by.plain is None:
+            return self.worked_out(count, count.by)
+        number = self.referred(count.by.plain)
+        assert count.by.plain.type is not None
+        return f"(size_t){number}" if count.by.plain.type.bits > 16 else number
+
+    def worked_out(self, count: Count, by: Formula) -> str:
+        """A variable with the number of elements or bytes that a formula says."""
+        name = self.variable("amount")
+        self.lines.add(f"const size_t {name} = (size_t)({self.number_of(by)});")
+        return name
+
+    def declared(self, by: Formula) -> str:
+        """A variable with the value of a formula, which may be below 0."""
+        name, kind = self.variable("amount"), integer_type(type_of(by))
+        self.lines.add(f"const {kind} {name} = ({kind})({self.number_of(by)});")
+        return name
+
+    def variable(self, name: str) -> str:
+        """The name of a new variable."""
+        found = free_name(name, self._locals)
+        self._locals.add(found)
+        return found
 
     def filled(self, count: Count) -> str:
         """The member for the number of what fills the payload."""
         return self._records[-1] + count.member
 
+    def number_of(self, formula: Formula) -> str:
+        """The expression of a number that earlier ones say."""
+        if formula.plain is not None:
+            return self.referred(formula.plain)
+        return self.printer(formula).text(formula.expression)
+
+    def printer(self, formula: Formula) -> FormulaPrinter:
+        """Prints a formula over the members of records."""
+        whole = lambda operand: self.referred(formula.references[operand.name])  # noqa: E731
+        return _Formula(self.helpers, formula, whole)
+
+    def differs(self, formula: Formula, value: int) -> str:
+        """The condition that a number that earlier ones say is another one."""
+        return f"{self.number_of(formula)} != {constant(value, type_of(formula))}"
+
     def referred(self, number: Reference) -> str:
         """The expression of an earlier number."""
-        return self._records[number.level] + self.helpers.member(number.name)
+        members = map(self.helpers.member, number.name.split("."))
+        return self._records[number.level] + ".".join(members)
 
     # --- what subclasses say ----------------------------------------------------------------------
 
@@ -206,9 +287,8 @@ class Walk:
         if isinstance(step.selector, int):
             self._chosen(step.case(step.selector), place)
             return
-        selector = step.selector.type
-        assert selector is not None
-        number = self.referred(step.selector)
+        selector = type_of(step.selector)
+        number = self.number_of(step.selector)
         with self.lines.switch(f"(uint8_t){number}" if selector.role == "bool" else number):
             for case in step.cases:
                 label = f"case {constant(case.value, selector)}"

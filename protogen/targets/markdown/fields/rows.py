@@ -126,7 +126,7 @@ class _PayloadRows:
 
     def _choice(self, step: ChooseStep, place: Place, path: Path) -> Iterator[Row]:
         for case in step.cases:
-            name = f"{code(path.shown)} if {code(step.selector_name)} is {_case_value(case)}"
+            name = f"{code(path.shown)} if {code(step.expression.text)} is {_case_value(case)}"
             inner = path.case(case.name)
             alone = _only_value(case.step)
             if alone is None:

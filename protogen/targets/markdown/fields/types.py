@@ -38,7 +38,7 @@ def type_text(step: AnyStep) -> str:
         case ConstantStep():
             return type_text(step.value)
         case ChooseStep():
-            return f"depends on {code(step.selector_name)}"
+            return f"depends on {code(step.expression.text)}"
         case RecordStep():
             return "struct" + _packed(step)
 
@@ -71,6 +71,6 @@ def _extended(element: str, count: Count, noun: str) -> str:
         amount = plural(count.greatest, noun)
         amount = f"{count.least} to {amount}" if count.least else f"at most {amount}"
         return f"{element} to the end, {amount}"
-    if count.field:
-        return f"{element} x {code(count.field)}"
+    if count.expression is not None:
+        return f"{element} x {code(count.expression.text)}"
     return element if noun == "byte" else f"{element} x {count.known}"

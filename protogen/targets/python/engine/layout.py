@@ -137,3 +137,8 @@ def holds_records(steps: Sequence[AnyStep], sizes: SizeSet) -> bool:
 def outer_names(struct: Struct) -> tuple[str, ...]:
     """The fields of outer records that count or select something in the struct."""
     return tuple(sorted(struct.needs))
+
+
+def outer_parameters(struct: Struct) -> dict[str, str]:
+    """The parameters that stand for them."""
+    return {name: f"{name.replace('.', '__')}_" for name in outer_names(struct)}

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import msgspec
 
+from protogen.model.expressions import plain_name
 from protogen.model.messages import Message
 from protogen.model.payload_builder import plan_of
 from protogen.model.payload_plan import (
@@ -33,13 +34,16 @@ from protogen.targets.python.engine.layout import (
     is_pair,
     order_of,
     outer_names,
+    outer_parameters,
     outside,
     outside_of,
 )
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.packing import Record, unpack_record
 from protogen.targets.python.engine.place import Place
+from protogen.targets.python.engine.raw import Raw
 from protogen.targets.python.formats import constant
+from protogen.targets.python.formulas import in_python
 from protogen.targets.python.literals import tuple_of
 
 
@@ -76,7 +80,7 @@ def struct_reader(struct: Struct, constants: Constants) -> tuple[str, ...]:
     fields in front.
     """
     reader = _Reader(Lines(constants), Place("at"))
-    reader.raw = {name: f"{name}_" for name in outer_names(struct)}
+    reader.raw = outer_parameters(struct)
     if struct.packed is None:
         reader.record("item", struct.name, plan_of(struct.fields).steps)
     else:
@@ -105,22 +109,21 @@ class _Run(msgspec.Struct):
     """Target, variable and step of each value that is to be converted."""
 
 
-class _Reader(Converter):
+class _Reader(Converter, Raw):
     """Writes the body of one function."""
 
     def __init__(
         self, lines: Lines, place: Place, *, sizes: SizeSet | None = None, is_ascii: bool = False
     ) -> None:
         """With the `sizes` of a message, which are checked in front, to read that."""
-        super().__init__(lines, is_ascii=is_ascii)
+        Converter.__init__(self, lines, is_ascii=is_ascii)
+        Raw.__init__(self)
         self.place = place
         self.sizes = sizes
         self.is_at_end = False
         """True once a field of the message itself has taken all that was left."""
         self.whole: tuple[int, int] | None = None
         """Bytes around the message, where one `struct` reads it and checks its size."""
-        self.raw: dict[str, str] = {}
-        """Raw values of the fields in front, by name."""
         self._run = _Run()
 
     def record(self, target: str, name: str, steps: Sequence[AnyStep]) -> None:
@@ -142,10 +145,12 @@ class _Reader(Converter):
             inner = self.lines.local("s")
             self._record(inner, step.type.name, step.steps)
             self.lines.add(f"{target} = {inner}")
+            self.raw[step.name] = inner
         else:
             self._flush()
             self.lines.add(f"{target} = {self._value(step)}")
             self._constant(target, step)
+            self.raw[step.name] = target
 
     # --- runs of values of a fixed size -----------------------------------------------------------
 
@@ -256,7 +261,7 @@ class _Reader(Converter):
 
     def _struct(self, struct: Struct) -> str:
         value = self.lines.local("s")
-        outer = "".join(f", {self.raw[name]}" for name in outer_names(struct))
+        outer = "".join(f", {self.raw_at(name)}" for name in outer_names(struct))
         call = f"_read_{struct.name}(data, {self.place.text}{outer})"
         size = struct.sizes.fixed
         if size is not None:
@@ -285,11 +290,16 @@ class _Reader(Converter):
         return self.string(value, step)
 
     def _count(self, count: Count) -> str:
-        """The number of bytes or elements that an earlier field gives, or that never changes."""
+        """The number of bytes or elements that earlier fields give, or that never changes."""
         if count.is_fixed:
             return str(count.known)
-        raw = self.raw[count.field]
-        if count.stated:
+        assert count.expression is not None
+        raw, is_plain = in_python(count.expression, self.raw_of), plain_name(count.expression)
+        if not is_plain:
+            name = self.lines.local("n")
+            self.lines.add(f"{name} = {raw}")
+            raw = name
+        if count.stated or not is_plain:
             self.lines.refuse_if(f"not {count.least} <= {raw} <= {count.greatest}")
         else:
             self.lines.refuse_if(f"{raw} < 0")
@@ -297,7 +307,7 @@ class _Reader(Converter):
 
     def _choose(self, step: ChooseStep) -> str:
         value = self.lines.local("case")
-        selector = self.raw[step.selector_name]
+        selector = in_python(step.expression, self.raw_of)
         self._move_to(self.place.text)
         self.lines.add(f"{value}: _typing.Any = None")
         # Python compiles only so many levels of `elif`; a `match` of any length is one level.
@@ -419,7 +429,7 @@ class _Reader(Converter):
         return f"[{self.named('value', element)} for value in {values}]"
 
     def _struct_elements(self, element: RecordStep, size: int, count: str) -> str:
-        outer = "".join(f", {self.raw[name]}" for name in outer_names(element.type))
+        outer = "".join(f", {self.raw_at(name)}" for name in outer_names(element.type))
         start = self.place.text
         stop = f"{start} + {size} * {count}"
         if common_order(element.steps) is not None:

@@ -12,7 +12,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.targets.python.engine import cutting, framing, identities
 from protogen.targets.python.engine.frames import EngineFrame
-from protogen.targets.python.engine.layout import outer_names
+from protogen.targets.python.engine.layout import outer_parameters
 from protogen.targets.python.engine.lines import Constants
 from protogen.targets.python.engine.reading import message_reader, struct_reader
 from protogen.targets.python.engine.writing import struct_writer
@@ -145,7 +145,7 @@ def _records(
     ascii_messages = _seen_to_be_ascii(protocol)
     for struct in classes_of(protocol):
         name = constants.classes[struct.name]
-        outer = "".join(f", {name}_: int" for name in outer_names(struct))
+        outer = "".join(f", {name}: int" for name in outer_parameters(struct).values())
         given = name if struct.sizes.fixed is not None else f"tuple[{name}, int]"
         body = struct_reader(struct, constants)
         functions.append(

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import msgspec
 
+from protogen.model.expressions import plain_name
 from protogen.model.messages import Message
 from protogen.model.payload_builder import plan_of
 from protogen.model.payload_plan import (
@@ -32,12 +33,15 @@ from protogen.targets.python.engine.layout import (
     is_pair,
     order_of,
     outer_names,
+    outer_parameters,
     outside,
     outside_of,
 )
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.packing import Record, packed, packed_record
+from protogen.targets.python.engine.raw import Raw
 from protogen.targets.python.formats import constant
+from protogen.targets.python.formulas import in_python
 from protogen.targets.python.literals import number, tuple_of
 
 _GREATEST_FLOAT32 = "3.4028234663852886e38"
@@ -84,7 +88,7 @@ class Packed(msgspec.Struct, frozen=True):
 def struct_writer(struct: Struct, constants: Constants) -> tuple[str, ...]:
     """The body of `_write_NAME(item, OUTER...)`; OUTER are raw values of fields in front."""
     writer = _Writer(Lines(constants))
-    writer.raw = {name: f"{name}_" for name in outer_names(struct)}
+    writer.raw = outer_parameters(struct)
     if struct.packed is not None:
         data = packed_record(writer.lines, "item", Record.of_struct(struct))
         writer.lines.add(f"return {data}")
@@ -176,13 +180,12 @@ class Packer(msgspec.Struct):
         return self._pieces
 
 
-class _Writer:
+class _Writer(Raw):
     """Writes the body of one function."""
 
     def __init__(self, lines: Lines) -> None:
+        super().__init__()
         self.lines = lines
-        self.raw: dict[str, str] = {}
-        """Raw values of the fields in front, by name."""
         self._bytes = Packer(lines)
 
     def begin(self, head: Sequence[Packed], integers: Sequence[str]) -> None:
@@ -202,7 +205,7 @@ class _Writer:
             value = self.lines.local()
             self.lines.add(f"{value} = {source}.{attribute(step.name)}")
             bare = without_constant(step)
-            if isinstance(bare, IntegerStep):
+            if isinstance(bare, IntegerStep | RecordStep):
                 self.raw[step.name] = value
             self._value(value, bare, step.field)
             if isinstance(step, ConstantStep):
@@ -363,14 +366,16 @@ class _Writer:
         elif count.fills:
             self.lines.refuse_if(outside_of(count, f"len({value})"))
         else:
-            self.lines.refuse_if(f"len({value}) != {self.raw[count.field]}")
-            if count.stated:
+            assert count.expression is not None
+            number = in_python(count.expression, self.raw_of)
+            self.lines.refuse_if(f"len({value}) != {number}")
+            if count.stated or plain_name(count.expression) is None:
                 self.lines.refuse_if(f"not {count.least} <= len({value}) <= {count.greatest}")
 
     def _choose(self, value: str, step: ChooseStep) -> None:
         self._bytes.flush()
         data = self.lines.local("case")
-        selector = self.raw[step.selector_name]
+        selector = in_python(step.expression, self.raw_of)
         with self.lines.block(f"match {selector}:"):
             empty = [str(case.value) for case in step.cases if case.is_empty]
             if empty:
@@ -398,7 +403,7 @@ class _Writer:
         if isinstance(element, RecordStep) and _are_plain(element.steps):
             self._plain_records(value, element)
         elif isinstance(element, RecordStep):
-            outer = "".join(f", {self.raw[name]}" for name in outer_names(element.type))
+            outer = "".join(f", {self.raw_at(name)}" for name in outer_names(element.type))
             self._bytes.flush()
             data = self.lines.local()
             written = f"_write_{element.type.name}(each{outer})"

@@ -1,0 +1,347 @@
+"""Expressions over earlier fields, with their names looked up and their bounds checked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import NamedTuple
+
+from protogen.copying import replace
+from protogen.model.expressions import (
+    GREATEST_BITS,
+    Arithmetic,
+    Comparison,
+    Expression,
+    Interval,
+    Junction,
+    Membership,
+    Minus,
+    Not,
+    Numeral,
+    Operand,
+    bounds_of,
+    every,
+    folded,
+    inside,
+    operands,
+    plain_name,
+)
+from protogen.model.numbers import IntegerRole
+from protogen.model.types import Field, Integer, Struct, is_integer
+from protogen.passes.context import Context, Loc
+from protogen.passes.types.setting import Scope, Setting
+from protogen.problems import hint_for
+from protogen.schema.expressions import ExpressionError, parse_expression
+
+_Names = Mapping[str, int]
+"""Values by their names."""
+_NO_NAMES: _Names = {}
+
+
+class Worked(NamedTuple):
+    """An expression whose names were found."""
+
+    expression: Expression
+    fields: Mapping[str, Field]
+    """The fields, by the names that the expression has for them."""
+
+    @property
+    def bounds(self) -> Interval:
+        """The bounds of the value, as far as the ranges of the fields say."""
+        return bounds_of(self.expression, lambda operand: allowed_in(self.fields, operand))
+
+    @property
+    def is_ranged(self) -> bool:
+        """True if the schema bounds all fields."""
+        whole = (it for it in operands(self.expression) if it.run is None)
+        numbers = (self.fields[operand.name] for operand in whole)
+        return all(field.ranged or field.const is not None for field in numbers)
+
+
+def allowed_in(fields: Mapping[str, Field], operand: Operand) -> Interval:
+    """What an encoder allows a field, or what the bits of it hold."""
+    if operand.run is not None:
+        low, high = operand.run
+        return 0, (1 << (high - low + 1)) - 1
+    field = fields[operand.name]
+    if isinstance(field.const, int):
+        return int(field.const), int(field.const)
+    assert is_integer(field.type)
+    least, greatest = field.least, field.greatest
+    bounds = field.type.least if least is None else int(least)
+    return bounds, field.type.greatest if greatest is None else int(greatest)
+
+
+def capacity_in(fields: Mapping[str, Field], operand: Operand) -> Interval:
+    """What the bits of a field hold, whatever is allowed."""
+    if operand.run is not None:
+        return allowed_in(fields, operand)
+    type_ = fields[operand.name].type
+    assert is_integer(type_)
+    return type_.least, type_.greatest
+
+
+class Selector(NamedTuple):
+    """What chooses between cases."""
+
+    expression: Expression
+    type: Integer
+    """A type that has just its values, and the names of those."""
+
+
+def selector_of(found: Worked) -> Selector:
+    """The expression as what chooses between cases."""
+    item = found.expression
+    if not isinstance(item, Operand):
+        return Selector(item, _type_of(*bounds_of(item, partial(capacity_in, found.fields))))
+    type_ = found.fields[item.name].type
+    assert is_integer(type_)
+    if item.run is None:
+        return Selector(item, type_)
+    enum = next((run.enum for run in type_.bit_fields if run.name == item.bits), None)
+    low, high = item.run
+    role: IntegerRole = "bool" if low == high and enum is None else "number"
+    return Selector(item, Integer(bits=high - low + 1, role=role, enum=enum))
+
+
+def _type_of(least: int, greatest: int) -> Integer:
+    """The narrowest integer that holds these numbers."""
+    bits = max(1, greatest.bit_length(), (-least - 1).bit_length() if least < 0 else 0)
+    return Integer(bits=bits + (least < 0), signed=least < 0)
+
+
+class _WrongError(Exception):
+    """Something that an expression can't have."""
+
+    def __init__(self, code: str, at: int, width: int, text: str, hint: str | None = None) -> None:
+        super().__init__(text)
+        self.code = code
+        self.at = at
+        self.width = width
+        self.text = text
+        self.hint = hint
+
+
+def number(context: Context, written: str, loc: Loc, setting: Setting) -> Worked | None:
+    """The expression of a number; None where it was reported to be none."""
+    return _worked(context, written, loc, setting, _Reader(setting.outer).number)
+
+
+def condition(context: Context, written: str, loc: Loc, setting: Setting) -> Worked | None:
+    """The expression of a condition; None where it was reported to be none."""
+    return _worked(context, written, loc, setting, _Reader(setting.outer).condition)
+
+
+def _worked(
+    context: Context,
+    written: str,
+    loc: Loc,
+    setting: Setting,
+    read: Callable[[Expression], Worked],
+) -> Worked | None:
+    try:
+        return read(parse_expression(written))
+    except ExpressionError as wrong:
+        context.error_inside("PG200", loc, (wrong.at, 1), wrong.text, wrong.hint)
+    except _WrongError as wrong:
+        # Where no message uses a type, its names may mean fields around it.
+        if wrong.code != "PG116" or not setting.elsewhere:
+            place = (wrong.at, wrong.width)
+            context.error_inside(wrong.code, loc, place, wrong.text, wrong.hint)
+    return None
+
+
+class _Reader:
+    """Looks up the names of one expression; raises _WrongError."""
+
+    def __init__(self, scope: Scope) -> None:
+        self._scope = scope
+        self._fields: dict[str, Field] = {}
+
+    def number(self, parsed: Expression) -> Worked:
+        """The expression of a number."""
+        found = self._read(parsed, _NO_NAMES)
+        self._is_number(found)
+        return self._within(found)
+
+    def condition(self, parsed: Expression) -> Worked:
+        """The expression of a condition, or of a number that is one."""
+        return self._within(self._read(parsed, _NO_NAMES))
+
+    def _within(self, found: Expression) -> Worked:
+        """Check that every machine can hold the numbers on the way."""
+        most = 1 << GREATEST_BITS
+        if plain_name(found) is None:
+            for item in every(found):
+                inner = [bounds_of(it, self._capacity) for it in inside(item)]
+                whole = bounds_of(item, self._capacity)
+                if _farthest(whole) >= most > max(map(_farthest, inner), default=0):
+                    text = f"`{item.text}` can have more than {GREATEST_BITS} bits"
+                    raise _WrongError("PG203", *_place(item), text)
+        return Worked(found, self._fields)
+
+    def _capacity(self, operand: Operand) -> Interval:
+        return capacity_in(self._fields, operand)
+
+    # --- the tree ---------------------------------------------------------------------------------
+
+    def _read(self, item: Expression, names: _Names) -> Expression:
+        """The expression with names looked up; `names` stand for values here."""
+        match item:
+            case Operand():
+                return self._named(item, names)
+            case Minus():
+                return replace(item, operand=self._number(item.operand))
+            case Arithmetic():
+                return self._arithmetic(item)
+            case Comparison():
+                left = self._number(item.left, self._names_beside(item.right))
+                right = self._number(item.right, self._names_beside(item.left))
+                return replace(item, left=left, right=right)
+            case Membership():
+                return self._membership(item)
+            case Junction():
+                left, right = self._read(item.left, _NO_NAMES), self._read(item.right, _NO_NAMES)
+                return replace(item, left=left, right=right)
+            case Not():
+                return replace(item, operand=self._read(item.operand, _NO_NAMES))
+        return item
+
+    def _number(self, item: Expression, names: _Names = _NO_NAMES) -> Expression:
+        found = self._read(item, names)
+        self._is_number(found)
+        return found
+
+    def _is_number(self, item: Expression) -> None:
+        if item.is_condition:
+            text = f"`{item.text}` is true or false, and a number is due here"
+            raise _WrongError("PG202", *_place(item), text)
+
+    def _arithmetic(self, item: Arithmetic) -> Expression:
+        left, right = self._number(item.left), self._number(item.right)
+        if item.operator in ("//", "%"):
+            right = folded(right, self._constant)
+            if not isinstance(right, Numeral) or right.value < 1:
+                text = f"`{item.operator}` divides by a number above 0 that never changes"
+                raise _WrongError("PG204", item.at, len(item.operator), text)
+        return replace(item, left=left, right=right)
+
+    def _constant(self, operand: Operand) -> int | None:
+        return self._fields[operand.name].constant_number
+
+    def _membership(self, item: Membership) -> Expression:
+        operand = self._number(item.operand)
+        names = self._names_beside(item.operand)
+        values = tuple(folded(self._number(it, names), self._constant) for it in item.values)
+        for value, written in zip(values, item.values, strict=True):
+            if not isinstance(value, Numeral):
+                text = f"`{written.text}` is no number that never changes"
+                raise _WrongError("PG202", *_place(written), text, "compare them by `==`")
+        named = tuple(
+            replace(value, name=written.name if isinstance(written, Numeral) else written.text)
+            for value, written in zip(values, item.values, strict=True)
+            if isinstance(value, Numeral)
+        )
+        return replace(item, operand=operand, values=named)
+
+    # --- names ------------------------------------------------------------------------------------
+
+    def _named(self, item: Operand, names: _Names) -> Expression:
+        first, *rest = item.path
+        if not rest and first in names:
+            if first in self._scope:
+                text = f"`{first}` is a field, and a value of what it is compared with"
+                raise _WrongError("PG201", *_place(item), text, "write the number of the value")
+            return Numeral(names[first], name=first, at=item.at)
+        found = self._found(item, names)
+        self._fields.setdefault(found.name, self._member(found))
+        return found
+
+    def _member(self, operand: Operand) -> Field:
+        field = self._scope[operand.path[0]]
+        for name in operand.path[1:]:
+            assert isinstance(field.type, Struct)
+            field = next(it for it in field.type.fields if it.name == name)
+        return field
+
+    def _found(self, item: Operand, names: _Names = _NO_NAMES) -> Operand:
+        """The field, member or bits of a name."""
+        field = self._scope.get(item.path[0])
+        if field is None:
+            known = [*self._scope, *names]
+            text = f"no earlier field is called `{item.path[0]}`"
+            raise _WrongError("PG116", *_place(item), text, hint_for(item.path[0], known))
+        for depth, name in enumerate(item.path[1:], start=1):
+            members = field.type.fields if isinstance(field.type, Struct) else ()
+            inner = next((it for it in members if it.name == name), None)
+            if inner is None:
+                return self._bits(item, field, depth)
+            field = inner
+        if not is_integer(field.type):
+            text = f"`{item.name}` is no integer"
+            raise _WrongError("PG201", *_place(item), text, _what_is_asked(field))
+        return Operand(item.path, at=item.at)
+
+    def _bits(self, item: Operand, field: Field, depth: int) -> Operand:
+        """The bits of a field that the last of the names stands for."""
+        runs = _runs(field)
+        name = ".".join(item.path[depth:])
+        if name not in runs:
+            text = f"`{'.'.join(item.path[:depth])}` has nothing called `{name}`"
+            hint = hint_for(name, [*runs, *_members(field)])
+            raise _WrongError("PG201", *_place(item), text, hint)
+        return Operand(item.path[:depth], runs[name], name, at=item.at)
+
+    def _names_beside(self, other: Expression) -> _Names:
+        """The names of values that something may be compared with."""
+        if not isinstance(other, Operand) or other.path[0] not in self._scope:
+            return _NO_NAMES
+        try:
+            found = self._found(other)
+        except _WrongError:
+            return _NO_NAMES  # Reported where it is read.
+        return _value_names(self._member(found), found)
+
+
+def _members(field: Field) -> list[str]:
+    return [it.name for it in field.type.fields] if isinstance(field.type, Struct) else []
+
+
+def _farthest(bounds: Interval) -> int:
+    return max(map(abs, bounds))
+
+
+def _what_is_asked(field: Field) -> str | None:
+    names = _members(field)
+    return f"name one of its fields, such as `{field.name}.{names[0]}`" if names else None
+
+
+def _runs(field: Field) -> dict[str, Interval]:
+    """The bits of a field that have a name."""
+    if not isinstance(field.type, Integer):
+        return {}
+    runs = {run.name: (run.low, run.high) for run in field.type.bit_fields}
+    flags = field.type.flags.bits if field.type.flags else ()
+    return {**runs, **{flag.name: (flag.bit, flag.bit) for flag in flags}}
+
+
+def _value_names(field: Field, operand: Operand) -> dict[str, int]:
+    """The names of the values that a field, or a run of its bits, can have."""
+    type_ = field.type
+    assert is_integer(type_)
+    if operand.run is not None:
+        enums = [run.enum for run in type_.bit_fields if run.name == operand.bits]
+        return {it.name: it.value for enum in enums if enum for it in enum.values}
+    if type_.role == "bool":
+        return {"false": 0, "true": 1}
+    named = (*(type_.enum.values if type_.enum else ()), *field.special)
+    return {it.name: it.value for it in named}
+
+
+def _place(item: Expression) -> tuple[int, int]:
+    """Where the part of an expression begins in its text, and how wide it is there."""
+    firsts = [it for it in every(item) if isinstance(it, Operand | Numeral)]
+    first = min(firsts, key=lambda it: it.at)
+    start = min(first.at, item.at)
+    width = len(first.label if isinstance(first, Operand) else first.text)
+    return (start, width) if isinstance(item, Operand | Numeral) else (start, 1)

@@ -1,0 +1,47 @@
+"""Expressions worked out by Python itself, from their text: an independent judge of every engine.
+
+The text of an expression is Python but for runs of bits, `key[4..6]`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from protogen.model.expressions import Expression
+
+_RUN = re.compile(r"(?P<name>[a-z][a-z0-9_.]*)\[(?P<low>\d+)\.\.(?P<high>\d+)\]")
+
+
+def worked_out(expression: Expression, scope: Mapping[str, Any]) -> int:
+    """The value of an expression; of a condition, 0 or 1."""
+    text = str(expression)
+    if text in scope:
+        return int(scope[text])
+    return int(eval(_RUN.sub(_shifted, text), {"__builtins__": {}}, _Members(scope)))
+
+
+def _shifted(run: re.Match[str]) -> str:
+    width = int(run["high"]) - int(run["low"]) + 1
+    return f"(({run['name']} >> {run['low']}) & {2**width - 1})"
+
+
+class _Members(Mapping[str, Any]):
+    """Values by name, whose members are attributes."""
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        self._values = values
+
+    def __getitem__(self, name: str) -> Any:
+        value = self._values[name]
+        return _Members(value) if isinstance(value, Mapping) else value
+
+    def __getattr__(self, name: str) -> Any:
+        return self[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
