@@ -76,6 +76,8 @@ class _Reader:
     def fields(self, fields: Sequence[Field], scope: Scope) -> Scope:
         inner, numbers = dict(scope), Scope()
         for field in fields:
+            if field.when is not None and not worked_out(field.when, inner):
+                continue
             found = self._value(field.type, inner, constant=field.const is not None)
             if field.const is not None and not _is(found, field.const):
                 raise Wrong("value")

@@ -150,6 +150,8 @@ def fill(record: Any, fields: Sequence[Field], values: Mapping[str, Any], scope:
     """Put values into a struct."""
     inner = dict(scope)
     for field in fields:
+        if field.when is not None and not worked_out(field.when, inner):
+            continue
         value = field.const if field.const is not None else values[field.name]
         if isinstance(field.type, Integer | Struct):
             inner[field.name] = value
@@ -230,7 +232,9 @@ def read(record: Any, fields: Sequence[Field], scope: Scope) -> Values:
     inner = dict(scope)
     found: Values = {}
     for field in fields:
-        if field.const is not None:
+        if field.when is not None and not worked_out(field.when, inner):
+            found[field.name] = None
+        elif field.const is not None:
             found[field.name] = _shown(field.type, field.const)
         else:
             count = 0

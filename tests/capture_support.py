@@ -64,6 +64,8 @@ def _record(columns: tuple[Column, ...], row: Any, around: Scope) -> dict[str, A
     scope = around.new_child(_numbers(columns, row))
     return {
         column.source: _value(column, row[column.name], 0, scope)
+        if column.when is None or _said(column.when, scope)
+        else None
         for column in columns
         if column.role == "field"
     }
@@ -177,7 +179,8 @@ def _without_constants(record: Any) -> dict[str, Any]:
 
 def _stripped(cls: Any, shown: dict[str, Any]) -> dict[str, Any]:
     kept: dict[str, Any] = {}
-    for name, rule in cls.RULES:
+    for name, each in cls.RULES:
+        rule = getattr(each, "rule", each)
         if getattr(rule, "const", None) is not None:
             continue
         value = _stripped_value(rule, shown[name], shown)
@@ -188,6 +191,8 @@ def _stripped(cls: Any, shown: dict[str, Any]) -> dict[str, Any]:
 
 def _stripped_value(rule: Any, value: Any, shown: dict[str, Any]) -> Any:
     """The value without constants; an ellipsis where nothing is left."""
+    if value is None:
+        return value if _holds(rule) else ...
     match type(rule).__name__:
         case "StructRule":
             found = _stripped(rule.record, value)

@@ -19,7 +19,8 @@ def worked_out(expression: Expression, scope: Mapping[str, Any]) -> int:
     text = str(expression)
     if text in scope:
         return int(scope[text])
-    return int(eval(_RUN.sub(_shifted, text), {"__builtins__": {}}, _Members(scope)))
+    found = eval(_RUN.sub(_shifted, text), {"__builtins__": {}}, _Members(scope))
+    return int(bool(found) if expression.is_condition else found)
 
 
 def _shifted(run: re.Match[str]) -> str:

@@ -159,7 +159,7 @@ def flat(value: Any, path: str = "") -> list[tuple[str, object]]:
         return [leaf for inner, item in pairs for leaf in flat(item, inner)]
     if isinstance(value, list):
         return [leaf for i, item in enumerate(value) for leaf in flat(item, f"{path}[{i}]")]
-    return [(path, value)]
+    return [] if value is None else [(path, value)]
 
 
 def check_witness(witness: Witness, modules: Mapping[str, ModuleType]) -> None:

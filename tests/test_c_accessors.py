@@ -11,8 +11,10 @@ from compiled import ROOT, SCHEMAS, name_of, protocol_of
 from test_c_codecs import FLAGS, MACHINES, SAMPLERS, Case, run
 from tooling import require_compiler, require_tool
 
+from protogen.model.payload_builder import plan_of
 from protogen.model.types import Array, Field, Fill, Fixed, Struct
 from protogen.targets.c.emit import unit_of
+from protogen.targets.c.formulas import FormulaPrinter
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.accessors import is_readable
 from protogen.targets.c.protocol_names import names_of
@@ -118,8 +120,12 @@ def count_of(fields: tuple[Field, ...], field: Field, names: Names) -> str:
         return f"{extent.count}u"
     if isinstance(extent, Fill):
         return f"message.{count_name(fields, field)}"
-    counter = next(item for item in fields if item.name == extent.field)
-    return f"message.{names.member(counter.name)}" if counter.const is None else f"{counter.const}u"
+    count = next(step.count for step in plan_of(fields).steps if step.field is field)
+    assert count is not None
+    if count.by is None:
+        return f"{count.known}u"
+    printer = FormulaPrinter(count.by, lambda operand: f"message.{names.member(operand.name)}")
+    return f"(size_t)({printer.text(count.by.expression)})"
 
 
 def test_there_is_one_for_each_array_of_elements_of_one_size_at_a_known_place() -> None:

@@ -280,13 +280,14 @@ def spoilings(
     used |= counting_names(fields)
     scope = outer | values
     for field in fields:
-        if field.const is None and field.name not in used:
+        is_there = field.when is None or worked_out(field.when, scope)
+        if field.const is None and field.name not in used and is_there:
             for value in others(field.type, values[field.name], used, scope):
                 yield {**values, field.name: value}
 
 
 def counting_names(fields: Sequence[Field]) -> frozenset[str]:
-    needed = frozenset[str]().union(*(field.type.needs for field in fields))
+    needed = frozenset[str]().union(*(field.needs for field in fields))
     return frozenset(name.partition(".")[0] for name in needed)
 
 

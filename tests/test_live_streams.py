@@ -112,6 +112,8 @@ AWAITED_BY_THE_REFERENCE = {
     ("hdlc", "station"),  # One flag ends a frame and starts the next.
     ("hdlc_lenient", "station"),
     ("slip", "station"),
+    ("told_numbers", "station"),
+    ("told_presence", "station"),
 }
 
 

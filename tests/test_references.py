@@ -47,6 +47,10 @@ messages:
       name: {type: ascii, size: size}
       list: {type: uint8, count: size}
       choice: {switch: state, cases: {busy: kind}}
+      pair: {fields: {n: uint8, mask: {type: uint8, bits: {low: {bits: 0..3, values: {one: 1}}}}}}
+      more: {type: uint8, when: "pair.mask.low == one or state in [busy] and size > pair.n"}
+      bytes: {type: bytes, size: (pair.n + size) * 2}
+      chosen: {switch: pair.mask.low, cases: {one: kind}}
     examples:
       first:
         content: {hex: 00}

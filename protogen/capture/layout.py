@@ -29,9 +29,11 @@ from protogen.model.payload_plan import (
     FloatStep,
     Formula,
     IntegerStep,
+    OptionalStep,
     RecordStep,
     RepeatStep,
     RestStep,
+    held_step,
 )
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import NumberType, counting_bits
@@ -136,16 +138,21 @@ def _columns(
     steps: Sequence[AnyStep], outer: Sequence[str], taken: Sequence[str] = ()
 ) -> Iterator[Column]:
     for step in steps:
-        if isinstance(step, BytesStep | RepeatStep) and step.fills:
+        held, when = held_step(step), None
+        if isinstance(step, OptionalStep):
+            by = step.condition
+            when = by if isinstance(by, int) else _referred(by, outer)
+        if isinstance(held, BytesStep | RepeatStep) and held.fills:
             yield Column(
-                name=_free(step.count.member, taken),
+                name=_free(held.count.member, taken),
                 role="count",
                 source=step.name,
-                shape=_counting(step.count.greatest),
+                shape=_counting(held.count.greatest),
                 field=step.field,
+                when=when,
             )
         if step.holds_values:
-            yield _column(step, outer, taken)
+            yield replace(_column(held, outer, taken), when=when)
 
 
 def _column(step: AnyStep, outer: Sequence[str], taken: Sequence[str] = ()) -> Column:

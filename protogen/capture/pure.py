@@ -157,10 +157,20 @@ def _fill(found: Rows, columns: Sequence[Column], records: Values, scope: Scope)
         name = attribute(column.source)
         values = [getattr(record, name) for record in records]
         if column.role == "count":
-            found[column.name] = [len(value) for value in values]
-        else:
+            found[column.name] = [0 if value is None else len(value) for value in values]
+        elif column.when is None:
             found[column.name] = _array(column, column.dimensions, values, scope)
+        else:
+            there = [place for place, value in enumerate(values) if value is not None]
+            inner = [values[place] for place in there]
+            seen = _at_places(scope, there)
+            found[column.name][there] = _array(column, column.dimensions, inner, seen)
         scope[column.name] = values
+
+
+def _at_places(scope: Scope, places: Sequence[int]) -> Scope:
+    """Contents of the columns in some rows."""
+    return Scope({name: [item[place] for place in places] for name, item in scope.items()})
 
 
 def _array(column: Column, dimensions: Sequence[Dimension], values: Values, scope: Scope) -> Rows:
@@ -213,7 +223,7 @@ def _chosen(choice: Choice, values: Values, scope: Scope) -> Rows:
     for value in dict.fromkeys(map(int, chosen)):
         places = [place for place, number in enumerate(chosen) if number == value]
         inner = [values[place] for place in places]
-        seen = Scope({name: [item[place] for place in places] for name, item in scope.items()})
+        seen = _at_places(scope, places)
         if value in known:
             case = known[value]
             found[case.name][places] = _array(case, case.dimensions, inner, seen)

@@ -129,6 +129,9 @@ class Column(msgspec.Struct, frozen=True, kw_only=True):
     shape: Shape
     dimensions: tuple[Dimension, ...] = ()
     """The innermost one of bytes and text is their size."""
+    when: str | int | Expression | None = None
+    """The condition on which there is a value, over columns as those of a `Dimension`; 0: there
+    never is one; None: there always is."""
     position: int = 0
     """Bytes from the beginning of the row or record."""
     field: Field | None = None

@@ -68,6 +68,9 @@ class FieldComparison(msgspec.Struct, frozen=True):
     ) -> Iterator[Change]:
         types = TypeComparison(self._change, self.compare, renamed)
         yield from types.compare(old.type, new.type, path)
+        if (old.when and types.now(old.when)) != new.when:
+            words = named(_condition(old), _condition(new))
+            yield self._change("field-presence", path, words)
         if old.const != new.const:
             yield self._change("field-constant", path, named(_shown(old.const), _shown(new.const)))
         if old.default != new.default:
@@ -181,6 +184,10 @@ def _joined(prefix: str, name: str) -> str:
 
 def _shown(value: object) -> str:
     return "none" if value is None else repr(value)
+
+
+def _condition(field: Field) -> str:
+    return "always there" if field.when is None else f"there if {field.when.text}"
 
 
 def _bounds(field: Field) -> str:

@@ -108,7 +108,7 @@ class TypeComparison:
 
     def _extents(self, old: Extent, new: Extent, path: str) -> Iterator[Change]:
         if isinstance(old, Counted):
-            old = replace(old, by=self._now(old.by))
+            old = replace(old, by=self.now(old.by))
         if old == new:
             return
         words = named(_amount(old), _amount(new))
@@ -120,7 +120,7 @@ class TypeComparison:
             yield self._report("field-encoding", path, words)
 
     def _switches(self, old: Switch, new: Switch, path: str) -> Iterator[Change]:
-        if self._now(old.selector) != new.selector:
+        if self.now(old.selector) != new.selector:
             chosen = f"the cases of {old.selector.text}", f"those of {new.selector.text}"
             words = named(*chosen)
             yield self._report("field-cases", path, words)
@@ -142,7 +142,7 @@ class TypeComparison:
             words = "values without a case are " + ("taken" if old.rest is None else "refused")
             yield self._report("field-cases", path, words)
 
-    def _now(self, expression: Expression) -> Expression:
+    def now(self, expression: Expression) -> Expression:
         """The expression with the new names of the fields beside this one."""
 
         def change(item: Expression) -> Expression:

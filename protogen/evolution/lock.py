@@ -18,6 +18,7 @@ from msgspec import NODEFAULT
 from protogen.copying import defaults_of, is_record, replace
 from protogen.model import (
     checksums,
+    expressions,
     frame,
     framing,
     meanings,
@@ -30,6 +31,7 @@ from protogen.model import types as model_types
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.passes.framing.frame_plan import plan_frame
+from protogen.passes.spec_hash import CALLED
 from protogen.problems.span import Span
 from protogen.version import VERSION
 
@@ -48,10 +50,12 @@ _LEFT_OUT: Mapping[str, Any] = {
     "decisions": (),
     "plan": None,
     "renamed_from": None,
+    "at": 0,
 }
 """Keys of text for readers and of derived facts, with what stands for them in a lock."""
 _MODULES = (
     checksums,
+    expressions,
     frame,
     framing,
     meanings,
@@ -61,6 +65,12 @@ _MODULES = (
     protocol,
     sizes,
 )
+
+
+_NOW = {before: name for name, before in CALLED.items()}
+"""Names of members that were called otherwise."""
+_NAMES = frozenset({"by", "selector", "when", "left", "right", "operand"})
+"""Members that are expressions."""
 
 
 class LockError(Exception):
@@ -115,12 +125,14 @@ def _plain(value: Any) -> Any:
             return [_plain(item) for item in value]
         case Mapping():
             return {"map": {key: _plain(item) for key, item in value.items()}}
+        case expressions.Operand() if expressions.plain_name(value):
+            return str(value)
     found: dict[str, Any] = {"class": type(value).__name__}
     kind: Any = type(value)
     for name, default in _kept(kind):
         item = getattr(value, name)
         if default is NODEFAULT or item != default:
-            found[name] = _plain(item)
+            found[CALLED.get(name, name)] = _plain(item)
     if isinstance(value, Sender):  # The protocol holds its messages.
         found["messages"] = [message.name for message in value.messages]
     return found
@@ -144,10 +156,19 @@ def _restored(value: Any) -> Any:
     if "map" in value:
         return {key: _restored(item) for key, item in value["map"].items()}
     kind = _kinds()[value["class"]]
-    given = {name: _restored(item) for name, item in value.items() if name != "class"}
     names = defaults_of(kind)
+    given: dict[str, Any] = {}
+    for written, item in value.items():
+        name = str(written if written in names else _NOW.get(written, written))
+        given[name] = _restored_name(item) if name in _NAMES else _restored(item)
+    given.pop("class")
     found = kind(**{name: item for name, item in _LEFT_OUT.items() if name in names}, **given)
     return _with_messages(found) if isinstance(found, Protocol) else found
+
+
+def _restored_name(value: Any) -> Any:
+    """What counts or selects: in most cases it is no more than the name of a field."""
+    return expressions.named(value) if isinstance(value, str) else _restored(value)
 
 
 def _with_messages(item: Protocol) -> Protocol:

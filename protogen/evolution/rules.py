@@ -112,6 +112,7 @@ RULES: tuple[Rule, ...] = (
     Rule("field-kind", _S, "the same bytes are shown another way", "check the code that uses it"),
     Rule("field-count", _W, "a field has another number of elements or bytes", _BOTH),
     Rule("field-cases", _W, "a switch has other cases", _BOTH),
+    Rule("field-presence", _W, "a field is there in other payloads", _BOTH),
     Rule("field-constant", _W, "a constant has another value", _BOTH),
     Rule("field-default", _S, "a field has another default", "check the senders"),
     Rule("field-range-narrowed", _S, "senders may use fewer values", "check the senders"),

@@ -24,6 +24,7 @@ from protogen.model.payload_plan import (
     Count,
     FloatStep,
     IntegerStep,
+    OptionalStep,
     PayloadPlan,
     RecordStep,
     RepeatStep,
@@ -114,13 +115,20 @@ class _Exchange(ABC):
                 return self.record(steps, given or {})
             case RepeatStep():
                 return self._elements(step, given)
-            case ChooseStep():
-                chosen = step.case(said(step.selector, self._records))
-                is_empty = isinstance(chosen, RecordStep) and not chosen.steps
-                return None if chosen is None or is_empty else self._value(chosen, given)
+            case ChooseStep() | OptionalStep():
+                chosen = self._chosen(step)
+                return None if chosen is None else self._value(chosen, given)
             case RestStep():
                 data = bytes.fromhex(given or "")
                 return self.octets(data, self._filled(step.count, len(data))).hex()
+
+    def _chosen(self, step: ChooseStep | OptionalStep) -> AnyStep | RestStep | None:
+        """The step that there is; None where there is none, or nothing in it."""
+        if isinstance(step, OptionalStep):
+            return step.step if said(step.condition, self._records) else None
+        chosen = step.case(said(step.selector, self._records))
+        is_empty = isinstance(chosen, RecordStep) and not chosen.steps
+        return None if is_empty else chosen
 
     def _number(self, given: int, size: int, *, signed: bool = False) -> int:
         data = self.octets(number(given, size, signed=signed), size)

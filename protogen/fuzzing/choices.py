@@ -26,6 +26,7 @@ from protogen.model.payload_plan import (
     FloatStep,
     Formula,
     IntegerStep,
+    OptionalStep,
     RecordStep,
     Reference,
     RepeatStep,
@@ -131,11 +132,12 @@ def _needs(step: AnyStep, level: int) -> Iterator[tuple[Reference, Need]]:
             if isinstance(step, RepeatStep):
                 yield from _needs(step.element, level)
         case ChooseStep():
-            if isinstance(step.selector, Formula):
-                values = tuple(case.value for case in step.cases)
-                yield from _needs_of_choice(step.selector, values, others=step.rest is not None)
+            yield from _needs_of_choice(step)
             for case in step.cases:
                 yield from _needs(case.step, level)
+        case OptionalStep():
+            yield from _needs_of_formula(step.condition, (0, 1))
+            yield from _needs(step.step, level)
 
 
 def _needs_of_count(count: Count) -> Iterator[tuple[Reference, Need]]:
@@ -149,19 +151,22 @@ def _needs_of_count(count: Count) -> Iterator[tuple[Reference, Need]]:
     yield count.by.references[line.name], Need(*line.within(least, greatest))
 
 
-def _needs_of_choice(
-    formula: Formula, values: tuple[int, ...], *, others: bool
-) -> Iterator[tuple[Reference, Need]]:
-    if formula.plain is not None:
-        yield formula.plain, Need(cases=values, others=others)
+def _needs_of_choice(step: ChooseStep) -> Iterator[tuple[Reference, Need]]:
+    if isinstance(step.selector, int):
+        return
+    values = tuple(case.value for case in step.cases)
+    if step.selector.plain is not None:
+        yield step.selector.plain, Need(cases=values, others=step.rest is not None)
     else:
-        yield from _needs_of_formula(formula, values)
+        yield from _needs_of_formula(step.selector, values)
 
 
 def _needs_of_formula(
-    formula: Formula, values: Iterable[int] = ()
+    formula: int | Formula, values: Iterable[int] = ()
 ) -> Iterator[tuple[Reference, Need]]:
     """Numbers that make a difference to a formula, or give it one of these values."""
+    if isinstance(formula, int):
+        return
     line = linear(formula.expression)
     written = [it.value for it in every(formula.expression) if isinstance(it, Numeral)]
     for operand in operands(formula.expression):

@@ -34,6 +34,7 @@ from protogen.model.payload_plan import (
     ConstantStep,
     Count,
     Formula,
+    OptionalStep,
     RecordStep,
     RepeatStep,
     RestStep,
@@ -195,6 +196,10 @@ class _Sampler:
                 return self._array(step, chooser)
             case ChooseStep():
                 return self._case(step, chooser)
+            case OptionalStep():
+                # What is there half of the time takes twice the rounds.
+                is_there = said(step.condition, self._records)
+                return self._value(step.step, chooser.inside(2)) if is_there else None
             case ConstantStep():
                 return self._taken(step, constant_value(step))
             case _:

@@ -342,6 +342,26 @@ def bounds_of(expression: Expression, of: Callable[[Operand], Interval]) -> Inte
     return 0, 1
 
 
+def is_settled(expression: Expression, of: Callable[[Operand], Interval]) -> bool | None:
+    """True or False where a comparison always or never holds, whatever the fields are; else None.
+
+    A list of values of which one is never met is settled, too, as that one is.
+    """
+    if isinstance(expression, Membership):
+        low, high = bounds_of(expression.operand, of)
+        values = (value_of(value, _nothing) for value in expression.values)
+        return None if all(low <= value <= high for value in values) else False
+    if not isinstance(expression, Comparison):
+        return None
+    left, right = bounds_of(expression.left, of), bounds_of(expression.right, of)
+    compare = _COMPARISONS[expression.operator]
+    if expression.operator in ("==", "!="):
+        is_apart = left[1] < right[0] or right[1] < left[0]
+        return expression.operator == "!=" if is_apart else None
+    ends = {compare(one, other) for one in left for other in right}
+    return ends.pop() if len(ends) == 1 else None
+
+
 def hull_of(expression: Expression, of: Callable[[Operand], Interval]) -> Interval:
     """The bounds of all numbers on the way to the value, itself included."""
     found = [bounds_of(item, of) for item in every(expression)]

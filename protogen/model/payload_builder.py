@@ -18,6 +18,7 @@ from protogen.model.payload_plan import (
     Formula,
     IntegerStep,
     NumberStep,
+    OptionalStep,
     PayloadPlan,
     RecordStep,
     Reference,
@@ -92,7 +93,8 @@ class _Builder:
             step = self._step(field, field.type, field.name, at_end, member)
             if isinstance(step, IntegerStep) and field.name in needed[index]:
                 step = replace(step, is_needed=True)
-            steps.append(_constant(field, step) if field.const is not None else step)
+            step = _constant(field, step) if field.const is not None else step
+            steps.append(step if field.when is None else self._optional(field, field.when, step))
             for rest in _inside(needed[index], field.name) | {""}:
                 self._remember(_member(field, rest), f"{field.name}.{rest}" if rest else field.name)
         return tuple(steps)
@@ -178,6 +180,21 @@ class _Builder:
             case Switch():
                 return self._choose(field, type_, name, is_last)
 
+    def _optional(self, field: Field, when: Expression, step: AnyStep) -> OptionalStep:
+        return OptionalStep(
+            name=field.name,
+            field=field,
+            sizes=field.sizes,
+            checks=step.checks,
+            is_refusable=step.is_refusable,
+            holds_values=step.holds_values,
+            is_last=step.is_last,
+            type=field.type,
+            expression=when,
+            condition=self._formula(when),
+            step=step,
+        )
+
     def _inner(self, type_: Struct, name: str, is_last: bool) -> tuple[AnyStep, ...]:
         """The steps of a struct, made once for all places where they are the same."""
         outer = tuple((name, self._find(name)) for name in sorted(type_.needs))
@@ -254,7 +271,7 @@ def _needed_behind(fields: Sequence[Field], needed: frozenset[str]) -> list[froz
     found: list[frozenset[str]] = []
     for field in reversed(fields):
         found.append(needed)
-        needed = beyond(needed, field.name) | field.type.needs
+        needed = beyond(needed, field.name) | field.needs
     return found[::-1]
 
 

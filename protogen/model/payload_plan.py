@@ -296,7 +296,31 @@ class ChooseStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
         return next((case.step for case in self.cases if case.value == value), self.rest)
 
 
-AnyStep = IntegerStep | FloatStep | BytesStep | ConstantStep | RecordStep | RepeatStep | ChooseStep
+class OptionalStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
+    """A step that is there or not, as earlier numbers say."""
+
+    expression: Expression
+    """The condition, as the schema has it."""
+    condition: int | Formula
+    """The condition; of constants 0 where it does not hold."""
+    step: AnyStep
+
+    @property
+    def fills(self) -> bool:
+        """True if it takes all elements or bytes that are left of the payload."""
+        return self.step.fills
+
+
+AnyStep = (
+    IntegerStep
+    | FloatStep
+    | BytesStep
+    | ConstantStep
+    | RecordStep
+    | RepeatStep
+    | ChooseStep
+    | OptionalStep
+)
 
 
 class PayloadPlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
@@ -336,6 +360,11 @@ def said(number: int | Formula, records: Sequence[Mapping[str, Any]]) -> int:
     return number.value(lambda reference: reached(records[reference.level], reference.name))
 
 
+def held_step(step: AnyStep) -> AnyStep:
+    """The step of the value itself, whether that is always there or not."""
+    return step.step if isinstance(step, OptionalStep) else step
+
+
 def without_constant(step: AnyStep) -> AnyStep:
     """The step that reads or writes the same bytes as a value."""
     return step.value if isinstance(step, ConstantStep) else step
@@ -354,6 +383,8 @@ def every_step(steps: Iterable[AnyStep]) -> Iterator[AnyStep]:
                 yield from every_step((step.value,))
             case ChooseStep():
                 yield from every_step(case.step for case in step.cases)
+            case OptionalStep():
+                yield from every_step((step.step,))
 
 
 class PackedNumber(msgspec.Struct, frozen=True):

@@ -358,9 +358,21 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     unit: str | None = None
     special: tuple[NamedValue, ...] = ()
     unknown: bool = False
+    when: Expression | None = None
+    """The condition on which the field is there; None: it always is."""
     renamed_from: str | None = None
     """Name in the version before, where that was another one."""
     about: About = NOTHING
+
+    @property
+    def sizes(self) -> SizeSet:
+        """Wire bytes; none where the field is not there."""
+        return self.type.sizes if self.when is None else self.type.sizes | SizeSet.exactly(0)
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """Names of earlier fields that say whether it is there, count or select."""
+        return self.type.needs if self.when is None else self.type.needs | names_in(self.when)
 
     @property
     def scaled(self) -> bool:
@@ -372,7 +384,7 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def size(self) -> int | None:
         """Wire bytes, where they do not vary."""
-        return self.type.sizes.fixed
+        return self.sizes.fixed
 
     @property
     def element(self) -> Type:
@@ -402,8 +414,8 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def constant_number(self) -> int | None:
-        """The value of a constant integer."""
-        if isinstance(self.type, Integer) and isinstance(self.const, int):
+        """The value of a constant integer, which is always there."""
+        if self.when is None and isinstance(self.type, Integer) and isinstance(self.const, int):
             return int(self.const)
         return None
 
@@ -412,14 +424,14 @@ def total(fields: tuple[Field, ...]) -> SizeSet:
     """Sizes of fields that follow each other."""
     sizes = SizeSet.exactly(0)
     for field in fields:
-        sizes += field.type.sizes
+        sizes += field.sizes
     return sizes
 
 
 def _needed_by(fields: Sequence[Field]) -> frozenset[str]:
     needed = _NO_NAMES
     for field in reversed(fields):
-        needed = beyond(needed, field.name) | field.type.needs
+        needed = beyond(needed, field.name) | field.needs
     return needed
 
 

@@ -254,6 +254,11 @@ def choose(
     return Step([*_switch(place, blocks, block(rest))])
 
 
+def where(holds: Place | Worked, body: Iterable[Step], other: Iterable[Step]) -> Step:
+    """Take steps where a number is not 0, and others where it is."""
+    return Step([*_either(f"{_count(holds)} != 0", block(body), [*block(other)])])
+
+
 def when(condition: Condition, body: Iterable[Step]) -> Step:
     """Take steps where a condition holds."""
     return Step([*_either(condition.value, block(body))])

@@ -31,8 +31,8 @@ _LEFT_OUT = frozenset(
 )  # fmt: skip
 """Text for readers, and facts that follow from the rest."""
 
-_CALLED = {"by": "field"}
-"""Names in the hash of members that were called otherwise: hashes of old schemas stay."""
+CALLED = {"by": "field"}
+"""Members by names that they had before: hashes and locks of old schemas stay."""
 
 _LISTED = frozenset({"messages", "enums", "flags", "structs"})
 """Members of a protocol that stand in other places, too: messages under their senders."""
@@ -88,7 +88,7 @@ def _kind(kind: Any) -> _Kind:
     left_out = _LEFT_OUT | _LISTED if kind is Protocol else _LEFT_OUT
     kept = {name: default for name, default in defaults_of(kind).items() if name not in left_out}
     fields = tuple(sorted(kept))
-    called = tuple(_CALLED.get(name, name) for name in fields)
+    called = tuple(CALLED.get(name, name) for name in fields)
     return _Kind(kind.__name__, called, tuple(map(kept.get, fields)), _getter(fields))
 
 

@@ -35,12 +35,13 @@ from protogen.runtime.payload.numerals import Numeral
 from protogen.runtime.payload.physical import (
     BitRange,
     EnumRange,
+    IfThere,
     Physical,
     PhysicalList,
     PhysicalListOrNone,
     PhysicalOrNone,
 )
-from protogen.runtime.values import OMITTED, Frozen, as_dict, replace
+from protogen.runtime.values import OMITTED, Frozen, as_dict, count_of, replace
 
 __all__ = [
     "OMITTED",
@@ -71,6 +72,7 @@ __all__ = [
     "Frozen",
     "Identities",
     "IdentityPart",
+    "IfThere",
     "IntegerRule",
     "InvalidEvent",
     "LengthPart",
@@ -102,7 +104,9 @@ __all__ = [
     "UnknownEvent",
     "ValuePart",
     "Violation",
+    "WhenRule",
     "as_dict",
+    "count_of",
     "lazily",
     "replace",
 ]
@@ -112,7 +116,13 @@ if TYPE_CHECKING:
 
     from protogen.runtime.framing.frame_format import FrameFormat
     from protogen.runtime.payload.formula import Formula
-    from protogen.runtime.payload.records import ArrayRule, FieldRules, StructRule, SwitchRule
+    from protogen.runtime.payload.records import (
+        ArrayRule,
+        FieldRules,
+        StructRule,
+        SwitchRule,
+        WhenRule,
+    )
     from protogen.runtime.payload.rules import (
         BoolRule,
         FloatRule,
@@ -133,6 +143,7 @@ else:
                 "FieldRules",
                 "StructRule",
                 "SwitchRule",
+                "WhenRule",
             ),
             ".payload.rules": (
                 "BoolRule",

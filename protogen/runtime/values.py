@@ -13,7 +13,16 @@ from typing import Any, ClassVar, NoReturn, Self, TypeVar, dataclass_transform
 from protogen.runtime.attributes import schema_name
 
 OMITTED: Any = type("Omitted", (), {"__repr__": lambda self: "..."})()
-"""Default of an argument for which each object gets a new list."""
+"""Default of an argument for which each object gets a new list, or a number of its own."""
+
+
+def count_of(values: Any) -> int:
+    """The number of elements or bytes of a field; 0 of what is no value of it."""
+    try:
+        return len(values)
+    except TypeError:
+        return 0
+
 
 ItemT = TypeVar("ItemT", bound="Value")
 

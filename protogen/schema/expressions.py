@@ -30,8 +30,8 @@ _GREATEST_DEPTH = 32
 
 _NAME = r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*"
 _TOKEN = re.compile(
-    rf"\s*(?:(?P<number>0x[0-9A-Fa-f]+|[0-9]+)(?![0-9A-Za-z_])|(?P<character>'[^'\\]')"
-    rf"|(?P<name>{_NAME}(?:\.{_NAME})*)(?![0-9A-Za-z_])|(?P<sign>//|[=!<>]=|[-+*%<>()\[\],]))"
+    rf"\s*(?:(?P<number>0x[0-9A-Fa-f]+|[0-9]+)(?![0-9A-Za-z_.])|(?P<character>'[^'\\]')"
+    rf"|(?P<name>{_NAME}(?:\.{_NAME})*)(?![0-9A-Za-z_.])|(?P<sign>//|[=!<>]=|[-+*%<>()\[\],]))"
 )
 _WORDS = ("and", "or", "not", "in")
 _COMPARISONS = ("==", "!=", "<", "<=", ">", ">=")

@@ -8,7 +8,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from protogen.copying import replace
-from schema_fuzzing import forms
+from schema_fuzzing import expressions, forms
 from schema_fuzzing.names import FIELDS, fresh
 from schema_fuzzing.numbers import ORDERS, counter, integer, number
 from schema_fuzzing.packed import can_pack, packed_arrays, packed_structs
@@ -45,9 +45,10 @@ class _Scope:
         self._size = NOTHING
         self._last = False
         self._fills = False
+        self._operands: dict[str, Size] = {}
 
     def built(self) -> Built:
-        return Built(self._fields, self._size, fills=self._fills)
+        return Built(self._fields, self._size, fills=self._fills, operands=self._operands)
 
     def add(self, *, last: bool) -> bool:
         """Add a field, with those that count or choose it; False: nothing can follow."""
@@ -73,11 +74,15 @@ class _Scope:
 
     def _put(self, built: Built) -> str:
         """Add a field that was drawn, and note what it can count or choose."""
+        built = self._sometimes(built)
         name = self._draw(fresh(FIELDS, self._fields))
         self._fields[name] = built.data
         self._size += built.size
         self._fills = built.fills
         behind = _hiding(self._setting.behind(built.size), name)
+        found = {f"{name}{rest}": bounds for rest, bounds in built.operands.items()}
+        self._operands.update({f".{path}": bounds for path, bounds in found.items()})
+        behind = replace(behind, operands={**behind.operands, **found})
         if built.counts is not None:
             behind = replace(behind, counters={**behind.counters, name: built.counts})
         if built.keys:
@@ -85,6 +90,16 @@ class _Scope:
             behind = replace(behind, selectors=(*behind.selectors, chooser))
         self._setting = behind
         return name
+
+    def _sometimes(self, built: Built) -> Built:
+        """The field, which is there only on some condition now and then."""
+        numbers = expressions.usable(self._setting)
+        if not numbers or built.size.greatest == 0 or not self._draw(forms.one_in(6)):
+            return built
+        data = {"type": built.data} if isinstance(built.data, str) else dict(built.data)
+        data.pop("default", None)
+        data["when"] = self._draw(expressions.conditions(numbers))
+        return Built(data, built.size | NOTHING, fills=built.fills)
 
     # -- arrays and texts that an earlier field counts ---------------------------------------
 
@@ -108,12 +123,29 @@ class _Scope:
             return
         else:
             name = self._put(self._draw(counter(replace(here, budget=widest), most)))
-        self._put(self._draw(_extended(element, name, self._setting.counters[name])))
+            if name not in self._setting.counters:
+                return  # It is not always there.
+        count, bounds = name, self._setting.counters[name]
+        if self._draw(st.booleans()):
+            told = self._draw(expressions.counts(self._countable(), most))
+            count, bounds = told or (count, bounds)
+        self._put(self._draw(_extended(element, count, bounds)))
+
+    def _countable(self) -> dict[str, Size]:
+        """What a number of elements may be worked out of: counters, and few bits."""
+        bits = {
+            name: size
+            for name, size in self._setting.operands.items()
+            if "." in name and size.least >= 0 and size.greatest <= _USUAL_BYTES
+        }
+        return {**bits, **self._setting.counters}
 
     def _add_counted_by_room(self, element: Built) -> None:
         """A count that may say more than there is room for; what is there bounds the array."""
         bits = self._setting.byte_bits
-        name = self._put(Built(f"uint{bits}", Size(1, 1)))
+        name = self._put(Built({"type": f"uint{bits}"}, NOTHING + Size(1, 1)))
+        if "when" in self._fields[name]:
+            return
         room = self._setting.room or 0
         most = min((1 << bits) - 1, room // max(1, element.size.least))
         self._put(self._draw(_extended(element, name, Size(0, most))))
@@ -123,7 +155,11 @@ class _Scope:
     def _add_switch(self, here: Setting) -> None:
         if not here.selectors or self._draw(st.booleans()):
             self._put(self._draw(_selector(replace(here, budget=max(1, min(2, here.budget - 1))))))
+        if not self._setting.selectors:
+            return  # What was to choose is not always there.
         chosen = self._draw(st.sampled_from(self._setting.selectors))
+        if self._draw(forms.one_in(3)):
+            chosen = self._draw(expressions.selectors(self._setting)) or chosen
         here = self._here()
         # What no case takes could be more than is left where something in front varies.
         closed = here.may_fill and here.room is not None and not here.exact
@@ -140,12 +176,15 @@ def _hiding(setting: Setting, name: str) -> Setting:
     """The setting behind a field of this name, which hides one of the structs around."""
     counters = {other: bounds for other, bounds in setting.counters.items() if other != name}
     selectors = tuple(item for item in setting.selectors if item.name != name)
-    return replace(setting, counters=counters, selectors=selectors)
+    operands = {
+        path: bounds for path, bounds in setting.operands.items() if path.partition(".")[0] != name
+    }
+    return replace(setting, counters=counters, selectors=selectors, operands=operands)
 
 
 def _kinds(setting: Setting) -> list[str]:
     """Kinds of fields that may be drawn here."""
-    kinds = ["number"] * 6 + ["string", "string", "array", "array", "counted", "switch"]
+    kinds = ["number"] * 6 + ["string", "string", "array", "array", "counted", "counted", "switch"]
     if setting.depth < GREATEST_DEPTH:
         kinds += ["struct", "struct"]
     if can_pack(setting):
@@ -173,16 +212,18 @@ def _elements(draw: st.DrawFn, setting: Setting) -> Built:
     if setting.depth < GREATEST_DEPTH and draw(forms.one_in(4)):
         inner = replace(setting.inside(last=False), budget=min(setting.budget, _USUAL_BYTES))
         built = draw(structs(inner, greatest=3))
-        return replace(built, data={"fields": built.data}, counts=None, keys=())
+        return replace(built, data={"fields": built.data}, counts=None, keys=(), operands={})
     if can_pack(setting) and draw(forms.one_in(8)):
         return draw(packed_structs(replace(setting, budget=min(setting.budget, _USUAL_BYTES))))
     fitting = [declared for declared in setting.types if _fits(declared, setting)]
     if draw(forms.one_in(4)) and fitting:
-        return draw(_use(setting, draw(st.sampled_from(fitting))))
+        used = draw(_use(setting, draw(st.sampled_from(fitting))))
+        return replace(used, operands={})
     if draw(forms.one_in(6)):
         return draw(_STRING)
     built = draw(number(setting))
-    return replace(built, data=_without_constants(built.data), counts=None, keys=())
+    data = _without_constants(built.data)
+    return replace(built, data=data, counts=None, keys=(), operands={})
 
 
 _STRING = st.sampled_from(["bytes", "ascii"]).map(lambda kind: Built({"type": kind}, Size(1, 1)))

@@ -78,7 +78,7 @@ def _with_about(draw: st.DrawFn, built: Built) -> Built:
     if draw(forms.one_in(10)):
         data["unknown"] = True
     written = forms.short(data, "type")
-    return Built(written, built.size, built.counts, built.keys)
+    return Built(written, built.size, built.counts, built.keys, operands=built.operands)
 
 
 @st.composite
@@ -101,7 +101,21 @@ def integer(draw: st.DrawFn, setting: Setting) -> Built:
     free = "const" not in data and not data.get("closed") and dress not in ("flags", "bits")
     counts = Size(least, greatest) if free and not kind.signed else None
     keys = draw(_keys(data, kind, least, greatest)) if "const" not in data else ()
-    return Built(data, Size(kind.size, kind.size), counts, keys)
+    size = Size(kind.size, kind.size)
+    return Built(data, size, counts, keys, operands=_operands(data, kind))
+
+
+def _operands(data: dict[str, Any], kind: Kind) -> dict[str, Size]:
+    """What an expression may be worked out of: the number, and bits of it that have a name."""
+    if "const" in data:
+        return {}
+    found = {"": Size(kind.least, kind.greatest)}
+    found.update({f".{name}": Size(0, 1) for name in data.get("flags", {})})
+    for name, entry in data.get("bits", {}).items():
+        written = entry["bits"] if isinstance(entry, dict) else entry
+        low, _, high = str(written).partition("..")
+        found[f".{name}"] = Size(0, (1 << (int(high or low) - int(low) + 1)) - 1)
+    return found
 
 
 @st.composite
@@ -112,7 +126,8 @@ def counter(draw: st.DrawFn, setting: Setting, greatest: int) -> Built:
     low = draw(st.integers(0, high))
     data: dict[str, Any] = {"type": kind.type, **_order(draw, setting, kind.size)}
     data["range"] = [low, high]
-    return Built(data, Size(kind.size, kind.size), Size(low, high))
+    size = Size(kind.size, kind.size)
+    return Built(data, size, Size(low, high), operands={"": Size(kind.least, kind.greatest)})
 
 
 def _written(draw: st.DrawFn, setting: Setting, kind: Kind, data: dict[str, Any]) -> Kind:
@@ -152,7 +167,8 @@ def _bool(draw: st.DrawFn) -> Built:
     if key:
         data[key] = draw(st.sampled_from([True, False, 0, 1]))
     keys = () if key == "const" else (0, 1)
-    return Built(data, Size(1, 1), None, keys)
+    operands = {} if key == "const" else {"": Size(0, 1)}
+    return Built(data, Size(1, 1), None, keys, operands=operands)
 
 
 @st.composite

@@ -50,7 +50,8 @@ def payload_bytes(fields: Sequence[Field], values: Mapping[str, Any], outer: Sco
     scope = dict(outer)
     found = b""
     for field in fields:
-        found += _value(field.type, values[field.name], scope)
+        if field.when is None or worked_out(field.when, scope):
+            found += _value(field.type, values[field.name], scope)
         scope[field.name] = values[field.name]
     return found
 

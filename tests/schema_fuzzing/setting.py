@@ -47,13 +47,18 @@ class Selector:
 
 @dataclass(frozen=True, slots=True)
 class Built:
-    """A drawn field. `counts`: the bounds of its value, where it may count something."""
+    """A drawn field. `counts`: the bounds of its value, where it may count something.
+
+    `operands`: the bounds of what the bits of its numbers hold, by what stands behind its name:
+    nothing, `.bits`, `.member.bits`.
+    """
 
     data: Any
     size: Size
     counts: Size | None = None
     keys: tuple[Any, ...] = ()
     fills: bool = False
+    operands: Mapping[str, Size] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +90,7 @@ class Setting:
     """True if everything in front has one size, so that `room` is what is really left."""
     depth: int = 0
     counters: Mapping[str, Size] = field(default_factory=dict)
+    operands: Mapping[str, Size] = field(default_factory=dict)
     selectors: tuple[Selector, ...] = ()
     types: tuple[Declared, ...] = ()
 

@@ -10,7 +10,7 @@ from schema_fuzzing.frames import FramePlan
 _FIELD_KEYS = (
     "values", "closed", "flags", "bits", "const", "default", "range", "scale", "offset", "unit",
     "special", "byte_order", "unknown", "switch", "packed", "digits",
-    "code", "chars",
+    "code", "chars", "when",
 )  # fmt: skip
 
 _CODES = (
@@ -33,6 +33,7 @@ COMMON = (
     "number: fixed", "number: counted", "number: fill", "number: fill, bounded", "struct: fixed",
     "struct: counted", "struct: fill", "ascii: fixed", "ascii: counted", "bytes: counted",
     "bytes: fill", "number: fill from a least number", "bytes: fill from a least number",
+    "number: worked out", "ascii: worked out", "switch by an expression",
     "greatest frame", *(f"field with {key}" for key in _FIELD_KEYS),
     *(f"identity parts: {count}" for count in range(4)),
     *(f"checksums: {count}" for count in range(3)),
@@ -157,6 +158,8 @@ def _field(item: Any) -> Iterator[str]:
     for key in _FIELD_KEYS:
         if key in item:
             yield f"field with {key}"
+    if "switch" in item and not item["switch"].replace("_", "").isalnum():
+        yield "switch by an expression"
     for key in ("count", "size"):
         if key in item:
             element = kind if kind in ("ascii", "bytes", "struct") else "number"
@@ -173,4 +176,6 @@ def _extent(extent: Any) -> str:
         if extent.get("min"):
             return "fill from a least number"
         return "fill, bounded" if "max" in extent else "fill"
-    return "fill" if extent == "fill" else "counted"
+    if extent == "fill":
+        return extent
+    return "counted" if extent.replace("_", "").isalnum() else "worked out"

@@ -33,8 +33,8 @@ _USUAL_COUNT = 5
 _GREATEST_COUNT = 300
 _ASCII = st.characters(max_codepoint=0x7F)
 
-Scope = dict[str, int]
-"""The integers in front, which count and choose."""
+Scope = dict[str, Any]
+"""The integers in front, which count and choose, and structs that hold some."""
 
 
 @st.composite
@@ -89,10 +89,11 @@ def _struct(draw: st.DrawFn, fields: Sequence[Field], outer: Scope) -> dict[str,
     found: dict[str, Any] = {}
     for index, field in enumerate(fields):
         uses = list(_uses(field.name, fields[index + 1 :]))
-        found[field.name] = draw(_field(field, scope, uses))
+        is_there = field.when is None or worked_out(field.when, scope)
+        found[field.name] = draw(_field(field, scope, uses)) if is_there else None
         scope.pop(field.name, None)
-        if isinstance(field.type, Integer):
-            scope[field.name] = int(found[field.name])
+        if isinstance(field.type, Integer | Struct):
+            scope[field.name] = found[field.name]
     return found
 
 

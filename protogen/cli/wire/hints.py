@@ -15,6 +15,7 @@ from protogen.model.payload_plan import (
     IntegerStep,
     RecordStep,
     RepeatStep,
+    held_step,
     without_constant,
 )
 
@@ -39,7 +40,8 @@ def _hint_inside(
     scope = around.new_child(dict(given))
     for step in steps:
         if step.name in way[:1]:
-            return _hint(without_constant(step), given.get(step.name), way[1:], scope, path)
+            bare = without_constant(held_step(step))
+            return _hint(bare, given.get(step.name), way[1:], scope, path)
     return None
 
 

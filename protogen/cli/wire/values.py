@@ -27,8 +27,10 @@ from protogen.model.payload_plan import (
     ChooseStep,
     FloatStep,
     IntegerStep,
+    OptionalStep,
     RecordStep,
     RepeatStep,
+    held_step,
     without_constant,
 )
 from protogen.model.types import Field, Text
@@ -85,11 +87,12 @@ def _members(
     values: dict[str, Raw] = {}
     for step in steps:
         if step.name in written:
-            value = _value(without_constant(step), written[step.name], prefix + step.name, scope)
+            bare = without_constant(held_step(step))
+            value = _value(bare, written[step.name], prefix + step.name, scope)
             values[step.name] = scope[step.name] = value
         elif isinstance(step, ChooseStep) and _is_empty(chosen_case(step, scope)):
             values[step.name] = None
-        else:
+        elif not isinstance(step, OptionalStep):
             scope[step.name] = _what_is_sent(step.field)
     return values
 

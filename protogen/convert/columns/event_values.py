@@ -6,8 +6,8 @@ from collections import ChainMap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from protogen.model.expressions import Expression, value_of
 from protogen.model.expressions import reached as reached_in
-from protogen.model.expressions import value_of
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Type
 
 Scope = ChainMap[str, Any]
@@ -25,8 +25,13 @@ def plain_fields(
     plain = {}
     for item in fields:
         scope[item.name] = values[item.name]
-        plain[item.name] = _plain(item.type, values[item.name], scope)
+        is_there = item.when is None or _said(item.when, scope)
+        plain[item.name] = _plain(item.type, values[item.name], scope) if is_there else None
     return plain
+
+
+def _said(expression: Expression, scope: Scope) -> int:
+    return int(value_of(expression, lambda operand: reached_in(scope, operand.name)))
 
 
 def _plain(type: Type, value: Any, scope: Scope) -> Any:
@@ -46,7 +51,7 @@ def _plain(type: Type, value: Any, scope: Scope) -> Any:
 
 
 def _plain_case(type: Switch, value: Any, scope: Scope) -> dict[str, Any]:
-    chosen = value_of(type.selector, lambda operand: reached_in(scope, operand.name))
+    chosen = _said(type.selector, scope)
     for case in type.cases:
         if case.value == chosen:
             if isinstance(case.type, Struct):

@@ -54,7 +54,20 @@ def _reach(
     item = next(item for item in fields if item.name == path[0])
     column = held_by(item, columns)
     scope = around.new_child(_InFront(item, fields, columns, rows))
-    return _inside(path[1:], item, item.type, column, _in_rows(column, rows), scope)
+    held = _in_rows(column, rows)
+    if item.when is None:
+        return _inside(path[1:], item, item.type, column, held, scope)
+    having, places = _having(np.broadcast_to(_said(item.when, scope) != 0, len(held)))
+    scope = _at_places(scope, lambda: having)
+    return Scattered(_inside(path[1:], item, item.type, column, held[having], scope), places)
+
+
+def _having(there: Array) -> tuple[Array, Array]:
+    """The rows that have something, and for each row its place among those; -1: it has not."""
+    having = np.flatnonzero(there)
+    places = np.full(len(there), -1, "i8")
+    places[having] = np.arange(len(having))
+    return having, places
 
 
 def _inside(
@@ -79,9 +92,7 @@ def _case(
         there = ~np.isin(chosen, np.array([case.value for case in type.cases], chosen.dtype))
     else:
         there = chosen == case.value
-    having = np.flatnonzero(there)
-    places = np.full(len(there), -1, "i8")
-    places[having] = np.arange(len(having))
+    having, places = _having(there)
     if case is None:
         return Scattered(_rest(column, held[having]), places)
     within = cases_of(column).get(case.value)

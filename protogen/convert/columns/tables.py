@@ -317,7 +317,8 @@ def _field_at(fields: Sequence[Field], path: Path) -> Field | None:
 
 def _columns(fields: Sequence[Field], prefix: Path, *, nullable: bool) -> Iterator[Column]:
     for item in fields:
-        yield from _value_columns(item, item.type, (*prefix, item.name), nullable=nullable)
+        may_be_absent = nullable or item.when is not None
+        yield from _value_columns(item, item.type, (*prefix, item.name), nullable=may_be_absent)
 
 
 def _value_columns(item: Field, type: Type, path: Path, *, nullable: bool) -> Iterator[Column]:
@@ -360,7 +361,8 @@ def column_type(type: Type) -> ColumnType:
             count = (extent.count or None) if isinstance(extent, Fixed) else None
             return Listed(column_type(element), count)
         case Struct(fields=fields):
-            return Record(tuple((item.name, column_type(item.type)) for item in fields))
+            gaps = any(item.when is not None for item in fields)
+            return Record(tuple((item.name, _member_type(item)) for item in fields), gaps)
         case Switch(cases=cases, rest=rest):
             members = [
                 (case.name, _of_any_count(column_type(case.type)))
@@ -371,8 +373,14 @@ def column_type(type: Type) -> ColumnType:
             return Record((*members, *tail), gaps=True)
 
 
+def _member_type(item: Field) -> ColumnType:
+    """Type of a member of a record."""
+    found = column_type(item.type)
+    return found if item.when is None else _of_any_count(found)
+
+
 def _of_any_count(type: ColumnType) -> ColumnType:
-    """Type of a case: its lists have no elements where another case was chosen.
+    """Type of what may be missing: its lists have no elements then.
 
     Arrow does not read from Parquet what it has written there of lists of a fixed size in a struct
     that is missing.

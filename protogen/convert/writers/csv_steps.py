@@ -18,6 +18,7 @@ from protogen.convert.writers.value_steps import (
     ValueSteps,
     chosen,
     count_of,
+    if_there,
     rest_digits,
     said,
     text_of,
@@ -131,7 +132,7 @@ class Cell:
         """The cell of what a path leads to in a record."""
         every = at.fields(fields, columns)
         item, column, here = next(found for found in every if found[0].name == path[0])
-        return self._inside(path[1:], item, item.type, column, here)
+        return if_there(item, here, self._inside(path[1:], item, item.type, column, here))
 
     def _inside(
         self, path: Path, item: Field, type: Type, column: Column | None, at: Spot

@@ -14,7 +14,13 @@ from protogen.convert.columns.python_values import present_json
 from protogen.convert.columns.tables import Tables
 from protogen.convert.writers.csv_steps import Cell, CellValues, event_cell
 from protogen.convert.writers.jsonl_steps import places_of
-from protogen.convert.writers.value_steps import Spot, count_of, rest_digits, text_of
+from protogen.convert.writers.value_steps import (
+    Spot,
+    count_of,
+    if_there,
+    rest_digits,
+    text_of,
+)
 from protogen.model.types import Array, Field, Float, Octets, Text, Type
 from protogen.native.print_steps import (
     IN_JSON,
@@ -98,7 +104,8 @@ class _InsideValues(CellValues):
         yield literal("{")
         for item, column, here in at.fields(fields, columns):
             value = self.value(item, item.type, column, dimensions_of(column), here)
-            yield from _there(item.type, column, here, _member(item.name, value))
+            member = _there(item.type, column, here, _member(item.name, value))
+            yield from if_there(item, here, member)
         yield without_comma()
         yield literal("}")
 

@@ -23,7 +23,13 @@ from protogen.convert.columns.held_columns import (
     members_of,
     rest_of,
 )
-from protogen.model.expressions import Expression, Interval, Operand, plain_name
+from protogen.model.expressions import (
+    GREATEST_BITS,
+    Expression,
+    Interval,
+    Operand,
+    plain_name,
+)
 from protogen.model.types import (
     Array,
     Case,
@@ -51,6 +57,7 @@ from protogen.native.print_steps import (
     literal,
     number,
     repeat,
+    where,
 )
 from protogen.targets.c.formulas import CPrinter
 from protogen.targets.c.spelling import number as number_in_c
@@ -139,7 +146,8 @@ class ValueSteps(ABC):
         yield literal("{")
         for place, (item, column, here) in enumerate(at.fields(fields, columns)):
             yield literal(f"{', ' if place else ''}{self.name(item.name)}: ")
-            yield from self.value(item, item.type, column, dimensions_of(column), here)
+            value = self.value(item, item.type, column, dimensions_of(column), here)
+            yield from if_there(item, here, value, [literal("null")])
         yield literal("}")
 
     def value(
@@ -226,6 +234,20 @@ def chosen(
         yield choose(selector, bodies, rest)
 
 
+def if_there(
+    item: Field, at: Spot, body: Iterable[Step], other: Iterable[Step] = ()
+) -> Iterator[Step]:
+    """The steps of a field where it is there, and others where it is not."""
+    if item.when is None:
+        yield from body
+        return
+    condition = said(item.when, at)
+    if isinstance(condition, int):
+        yield from body if condition else other
+    else:
+        yield where(condition, body, other)
+
+
 def count_of(extent: Extent, left: Sequence[Dimension], at: Spot) -> Count:
     """The elements or bytes that there are."""
     match extent:
@@ -255,7 +277,7 @@ class _RowPrinter(CPrinter):
         return number_in_c(found) if isinstance(found, int) else found.value
 
     def bounds(self, operand: Operand) -> Interval:
-        return -1, 1  # Any number may be below 0.
+        return -(1 << GREATEST_BITS), 1 << GREATEST_BITS  # Any number may be below 0.
 
 
 def text_of(type: Text, column: Column, dimension: Dimension, at: Spot, spelling: Spelling) -> Step:

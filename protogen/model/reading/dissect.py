@@ -22,6 +22,7 @@ from protogen.model.payload_plan import (
     Count,
     FloatStep,
     IntegerStep,
+    OptionalStep,
     PackedNumber,
     PayloadPlan,
     RecordStep,
@@ -171,6 +172,9 @@ class _Reader:
                 self._case(step, path, scope)
             case ConstantStep():
                 self._step(step.value, path, scope)
+            case OptionalStep():
+                if _said(step.expression, scope):
+                    self._step(step.step, path, scope)
             case _:
                 self._scalar(step, path, scope)
 

@@ -16,6 +16,7 @@ from protogen.model.payload_plan import (
     ConstantStep,
     FloatStep,
     IntegerStep,
+    OptionalStep,
     PayloadPlan,
     RecordStep,
     RepeatStep,
@@ -90,6 +91,8 @@ def _reading(step: AnyStep, value: Any, records: _Records) -> str:
             return quoted(value) if isinstance(step.type, Text) else f"hex:{value}"
         case ConstantStep():
             return _reading(step.value, value, records)
+        case OptionalStep():
+            return "absent" if value is None else _reading(step.step, value, records)
 
 
 def _elements(step: RepeatStep, values: Sequence[Any], records: _Records) -> str:

@@ -196,7 +196,7 @@ class _Resolution:
         """The place of what makes the payload as long as it can be."""
         if isinstance(self._syntax.fields, str):
             return (*self._loc, "max_size")
-        greatest = max(self._fields, key=lambda field: field.type.sizes.greatest).name
+        greatest = max(self._fields, key=lambda field: field.sizes.greatest).name
         loc = (*self._loc, "fields", greatest)
         written = self._syntax.fields[greatest].model_fields_set
         return next(((*loc, key) for key in ("count", "size") if key in written), loc)

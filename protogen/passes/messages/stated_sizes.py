@@ -17,7 +17,7 @@ _Choose = Callable[[Iterable[int]], int]
 
 def greatest_stated(fields: Iterable[Field]) -> int:
     """The bytes that the frame must have room for."""
-    return sum(_size(field.type, _most, max) for field in fields)
+    return sum(_size_of(field, _most, max) for field in fields)
 
 
 def least_stated(fields: Iterable[Field]) -> int:
@@ -25,7 +25,7 @@ def least_stated(fields: Iterable[Field]) -> int:
 
     A frame that has to be longer than that can't carry some payload that the schema states.
     """
-    return sum(_size(field.type, _fewest, min) for field in fields)
+    return sum(_size_of(field, _fewest, min) for field in fields)
 
 
 def _most(extent: Extent) -> int:
@@ -35,6 +35,11 @@ def _most(extent: Extent) -> int:
 def _fewest(extent: Extent) -> int:
     stated = extent.stated and not isinstance(extent, Fill)
     return extent.counts.least if stated else extent.counts.greatest
+
+
+def _size_of(field: Field, count: _Count, choose: _Choose) -> int:
+    size = _size(field.type, count, choose)
+    return size if field.when is None else choose((0, size))
 
 
 def _size(type_: Type, count: _Count, choose: _Choose) -> int:
@@ -47,5 +52,5 @@ def _size(type_: Type, count: _Count, choose: _Choose) -> int:
         case Array():
             return count(type_.extent) * _size(type_.element, count, choose)
         case Struct():
-            return sum(_size(field.type, count, choose) for field in type_.fields)
+            return sum(_size_of(field, count, choose) for field in type_.fields)
     return choose(_size(case, count, choose) for case in inner_types(type_))

@@ -23,6 +23,7 @@ from protogen.model.expressions import (
     every,
     folded,
     inside,
+    is_settled,
     operands,
     plain_name,
 )
@@ -178,10 +179,22 @@ class _Reader:
                 if _farthest(whole) >= most > max(map(_farthest, inner), default=0):
                     text = f"`{item.text}` can have more than {GREATEST_BITS} bits"
                     raise _WrongError("PG203", *_place(item), text)
+                self._is_open(item)
         return Worked(found, self._fields)
 
     def _capacity(self, operand: Operand) -> Interval:
         return capacity_in(self._fields, operand)
+
+    def _is_open(self, item: Expression) -> None:
+        """Check that it is a question whether a comparison holds."""
+        settled = is_settled(item, self._capacity)
+        if settled is None:
+            return
+        text = f"`{item.text}` {'always' if settled else 'never'} holds"
+        if isinstance(item, Membership):
+            low, high = bounds_of(item.operand, self._capacity)
+            text = f"`{item.operand.text}` is from {low} to {high}, and never has all these values"
+        raise _WrongError("PG205", *_place(item), text)
 
     # --- the tree ---------------------------------------------------------------------------------
 
@@ -271,16 +284,24 @@ class _Reader:
             known = [*self._scope, *names]
             text = f"no earlier field is called `{item.path[0]}`"
             raise _WrongError("PG116", *_place(item), text, hint_for(item.path[0], known))
+        self._is_there(item, field)
         for depth, name in enumerate(item.path[1:], start=1):
             members = field.type.fields if isinstance(field.type, Struct) else ()
             inner = next((it for it in members if it.name == name), None)
             if inner is None:
                 return self._bits(item, field, depth)
             field = inner
+            self._is_there(item, field)
         if not is_integer(field.type):
             text = f"`{item.name}` is no integer"
             raise _WrongError("PG201", *_place(item), text, _what_is_asked(field))
         return Operand(item.path, at=item.at)
+
+    def _is_there(self, item: Operand, field: Field) -> None:
+        if field.when is not None:
+            text = f"`{field.name}` is not always there, so nothing can be worked out of it"
+            hint = "put both into a struct that has the `when`"
+            raise _WrongError("PG201", *_place(item), text, hint)
 
     def _bits(self, item: Operand, field: Field, depth: int) -> Operand:
         """The bits of a field that the last of the names stands for."""

@@ -25,13 +25,15 @@ def extent_of(
     if not isinstance(written, str):
         return Fixed(count=written or 0)
     field = setting.outer.get(written)
-    if field is not None and can_count(field.type):
-        return _counted_by(field, element, setting.room)
-    if field is not None:
+    if field is not None and not can_count(field.type):
         context.error("PG117", loc, *_why_not(field))
         return Fixed(count=0)
     found = number(context, written, loc, setting)
-    return Fixed(count=0) if found is None else _worked_out(context, found, loc, element, setting)
+    if found is None:
+        return Fixed(count=0)
+    if field is not None:
+        return _counted_by(field, element, setting.room)
+    return _worked_out(context, found, loc, element, setting)
 
 
 def _worked_out(

@@ -41,6 +41,14 @@ def check_keys(context: Context, name: str, item: Effective) -> None:
         context.error_at_key("PG110", item.at("size"), text, hint)
     if syntax.count is not None:
         _count_fits(context, item)
+    if syntax.when is not None and syntax.default is not None:
+        text = f"`{name}` has no `default`: where it is there, its value has to be given"
+        hint = "leave out the `default`"
+        context.error_at_key("PG206", item.at("default"), text, hint)
+    if any(link.when is not None for link, _ in item.chain[1:]):
+        text = "a declared type is there wherever it is used"
+        hint = "write `when` where the type is used"
+        context.error_at_key("PG206", item.at("when"), text, hint)
 
 
 def _only_for_integers(context: Context, item: Effective) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from protogen.copying import replace
+from protogen.model.expressions import Expression
 from protogen.model.nesting import takes_rest
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
@@ -30,7 +31,7 @@ from protogen.passes.context import Context, Loc, about
 from protogen.passes.types import meaning
 from protogen.passes.types.constants import named_raw_value
 from protogen.passes.types.declared import Declarations, Effective, Expansion
-from protogen.passes.types.expressions import Selector, number, selector_of
+from protogen.passes.types.expressions import Selector, condition, number, selector_of
 from protogen.passes.types.extents import Written, extent_of
 from protogen.passes.types.field_keys import check_keys, has_one_form
 from protogen.passes.types.named_types import NamedTypes
@@ -81,7 +82,7 @@ class FieldBuilder:
                 self._behind(filler, (*loc, name))
             inner = setting.inside(name, behind, scope, [name] == final)
             built[name] = self.field(name, item, (*loc, name), inner)
-            behind += built[name].type.sizes
+            behind += built[name].sizes
             if setting.layout.packed is not None:
                 built[name] = replace(built[name], bit=bits)
                 bits += bits_of(built[name].type)
@@ -99,7 +100,8 @@ class FieldBuilder:
         check_keys(self._context, name, effective)
         if not check_packing(self._context, name, effective):
             return unknown
-        return meaning.attach(self._context, name, self._type(effective), effective)
+        found = meaning.attach(self._context, name, self._type(effective), effective)
+        return replace(found, when=self._when(effective))
 
     def _effective(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Effective:
         return self._declarations.effective(item, loc, setting)
@@ -108,6 +110,14 @@ class FieldBuilder:
         text = f"nothing can follow `{filler}`, which fills the payload to its end"
         hint = f"move `{filler}` to the end, or give it a count"
         self._context.error_at_key("PG111", loc, text, hint)
+
+    def _when(self, item: Effective) -> Expression | None:
+        """The condition on which a field is there."""
+        if item.syntax.when is None:
+            return None
+        self._expansion.vary()
+        found = condition(self._context, item.syntax.when, item.at("when"), item.setting)
+        return None if found is None else found.expression
 
     # -- types --------------------------------------------------------------------------------
 
@@ -279,9 +289,9 @@ class FieldBuilder:
         return Case(value=value, name=name, type=self._case_struct(item, loc, inner))
 
     def _case_struct(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Struct:
-        """A case that is no struct becomes one of a single field."""
+        """A case that is no struct, or not always one, becomes one of a single field."""
         effective = self._effective(item, loc, setting).syntax
-        if effective.fields is None or effective.count is not None:
+        if effective.fields is None or (effective.count or effective.when) is not None:
             inner = replace(setting, owner=f"{setting.owner}_value", position=0)
             field = self.field("value", item, loc, inner)
             struct = Struct(name=setting.owner, fields=(field,))

@@ -118,7 +118,7 @@ def _placed(fields: Iterable[Field]) -> tuple[Field, ...]:
     behind = SizeSet.exactly(0)
     for field in fields:
         found.append(replace(field, position=behind.fixed))
-        behind += field.type.sizes
+        behind += field.sizes
     return tuple(found)
 
 

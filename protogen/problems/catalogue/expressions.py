@@ -98,4 +98,39 @@ frame that has a zero there. `//` rounds down, and what `%` leaves is never nega
             rows: {type: uint16, count: length // width}
         """),
     ),
+    Code(
+        "PG205",
+        "settled-comparison",
+        "A comparison that always or never holds",
+        """\
+Whatever the fields are, the comparison comes to the same, because what a field is compared with is
+out of what its bits can hold. Something else was meant: another number, or another field.
+""",
+        with_fields("""
+            kind: {type: uint8, bits: {size: 0..2, group: 3..7}}
+            more: {type: uint8, when: kind.size == 8}
+        """),
+        with_fields("""
+            kind: {type: uint8, bits: {size: 0..2, group: 3..7}}
+            more: {type: uint8, when: kind.size == 7}
+        """),
+    ),
+    Code(
+        "PG206",
+        "bad-when",
+        "A `when` that does not fit",
+        """\
+A field with `when` is there in some payloads and not in others. Whoever sends it says which by
+giving a value or none, so it has no `default`. Whether it is there is said where the field is, not
+where a type is declared.
+""",
+        with_fields("""
+            has_level: bool
+            level: {type: uint16, when: has_level, default: 3}
+        """),
+        with_fields("""
+            has_level: bool
+            level: {type: uint16, when: has_level}
+        """),
+    ),
 )

@@ -34,7 +34,15 @@ from protogen.runtime.constructs.numbers import (
 )
 from protogen.runtime.constructs.pieces import Count, PayloadError, Piece
 from protogen.runtime.constructs.strings import Latin1, Latin1Fill, Octets, OctetsFill
-from protogen.runtime.constructs.structs import Cases, Counted, Fill, Struct, Whole, prefix_size
+from protogen.runtime.constructs.structs import (
+    Cases,
+    Counted,
+    Fill,
+    Struct,
+    When,
+    Whole,
+    prefix_size,
+)
 
 __all__ = [
     "Bit",
@@ -63,6 +71,7 @@ __all__ = [
     "SevenBit",
     "SevenBitFloat",
     "Struct",
+    "When",
     "Whole",
     "prefix_size",
 ]

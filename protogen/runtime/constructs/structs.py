@@ -188,6 +188,37 @@ class Cases(Piece):
         return sizes.pop()
 
 
+class When(Around):
+    """A piece that is there only where a condition on earlier fields holds; else its value is None.
+
+    Building takes None for a constant that is there, too.
+    """
+
+    def __init__(self, condition: str | Formula, subcon: Construct) -> None:
+        super().__init__(subcon)
+        self._condition = condition
+        self.flagbuildnone = True
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
+        if not said(self._condition, context, path):
+            return None
+        return self.subcon._parsereport(stream, context, path)
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
+        is_there = bool(said(self._condition, context, path))
+        is_given = obj is not None or self.subcon.flagbuildnone
+        if is_there and is_given:
+            return self.subcon._build(obj, stream, context, path)
+        if is_there or obj is not None:
+            problem = "is missing" if is_there else f"must be None, not {obj!r}"
+            problem = f"{problem}, as {self._condition} {'holds' if is_there else 'does not hold'}"
+            raise PayloadError("value", path, stream.tell(), problem)
+        return None
+
+    def _sizeof(self, context: Any, path: str) -> int:
+        raise construct.SizeofError(f"the size depends on {self._condition}", path=path)
+
+
 class Whole(Around):
     """A format that has to take all bytes."""
 

@@ -57,7 +57,8 @@ class _PhysicalView(_View[ValueT]):
     @cached_property
     def _rule(self) -> IntegerRule | FloatRule:
         rule = dict(self._owner.RULES)[self._field]
-        chosen: Any = getattr(rule, "element", rule)  # An array's says it of each element.
+        held = getattr(rule, "rule", rule)  # What may be absent has a rule for where it is there.
+        chosen: Any = getattr(held, "element", held)  # An array's says it of each element.
         return cast("IntegerRule | FloatRule", chosen)
 
     def _shown(self, raw: Any) -> Any:
@@ -117,7 +118,8 @@ class BitRange(_View[int]):
         run = as_integer(value)
         if not 0 <= run <= self._greatest:
             raise ValueError(f"{run} is not in 0..{self._greatest}")
-        others = as_integer(getattr(record, self._attribute)) & ~(self._greatest << self._low)
+        whole = getattr(record, self._attribute)
+        others = 0 if whole is None else as_integer(whole) & ~(self._greatest << self._low)
         return others | run << self._low
 
 
@@ -134,3 +136,27 @@ class EnumRange(BitRange, Generic[EnumT]):
     def __get__(self, record: object, owner: type) -> EnumT: ...
     def __get__(self, record: object | None, owner: type) -> Self | EnumT:
         return self if record is None else self._named(self._read(record))
+
+
+class IfThere(_View[ValueT | None], Generic[ValueT]):
+    """What another view shows of a field that may be absent: None while it is.
+
+    Writing None makes the field absent.
+    """
+
+    def __init__(self, view: _View[ValueT]) -> None:
+        super().__init__(view._field)
+        self._view = view
+
+    def __set_name__(self, owner: Any, name: str) -> None:
+        prepare = getattr(self._view, "__set_name__", None)
+        if prepare is not None:
+            prepare(owner, name)
+
+    def _read(self, record: object) -> ValueT | None:
+        if getattr(record, self._field) is None:
+            return None
+        return self._view.__get__(record, type(record))
+
+    def _raw(self, record: object, value: ValueT | None) -> Any:
+        return None if value is None else self._view._raw(record, value)

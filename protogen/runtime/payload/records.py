@@ -195,6 +195,75 @@ class NothingRule(Rule):
 _NOTHING = NothingRule()
 
 
+class WhenRule(Rule):
+    """A rule for a value that is there only where a condition on earlier fields holds.
+
+    Else the value is None.
+    """
+
+    def __init__(self, condition: str | Formula, rule: Rule) -> None:
+        self.condition = condition
+        self.rule = rule
+
+    def chosen(self, scope: Scope) -> Rule:
+        """The rule for a value that is there, or for none."""
+        if number_of(self.condition, scope.__getitem__):
+            return _There(self.rule.chosen(scope), self.condition)
+        return _Absent(self.condition)
+
+
+class _There(Rule):
+    """A value that has to be there; a constant needs not be given."""
+
+    def __init__(self, rule: Rule, condition: str | Formula) -> None:
+        self._rule = rule
+        self._condition = condition
+
+    def to_wire(self, value: Any, scope: Scope, strict: bool) -> Any:
+        """The value that FORMAT builds."""
+        constant = getattr(self._rule, "const", None)
+        if value is None and constant is None and not isinstance(self._rule, NothingRule):
+            raise EncodeError("", f"is missing, as {self._condition} holds")
+        given = constant if value is None else value
+        return self._rule.to_wire(given, scope, strict)
+
+    def from_wire(self, raw: Any, scope: Scope) -> Any:
+        """The attribute's value."""
+        return self._rule.from_wire(raw, scope)
+
+    def violations(self, value: Any, scope: Scope) -> list[Violation]:
+        """Those of the value."""
+        return [] if value is None else self._rule.violations(value, scope)
+
+    def to_json(self, value: Any, scope: Scope) -> Any:
+        """The value as JSON shows it."""
+        return None if value is None else self._rule.to_json(value, scope)
+
+    def from_json(self, data: Any, scope: Scope) -> Any:
+        """The value of what JSON shows."""
+        return None if data is None else self._rule.from_json(data, scope)
+
+
+class _Absent(NothingRule):
+    """A value that is not there."""
+
+    def __init__(self, condition: str | Formula) -> None:
+        self._condition = condition
+
+    def to_wire(self, value: Any, scope: Scope, strict: bool) -> None:
+        """Nothing."""
+        if value is not None:
+            raise EncodeError("", f"must be None, as {self._condition} does not hold")
+
+    def to_json(self, value: Any, scope: Scope) -> None:
+        """Nothing."""
+
+    def from_json(self, data: Any, scope: Scope) -> None:
+        """Nothing."""
+        if data is not None:
+            raise EncodeError("", f"must be null, as {self._condition} does not hold")
+
+
 class SwitchRule(Rule):
     """One of several rules, chosen by the raw values of earlier fields.
 

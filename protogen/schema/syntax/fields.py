@@ -206,6 +206,11 @@ class FieldSyntax(Syntax):
     code: CharacterCode | None = Field(
         None, description="Each character is some bits of the integer, the highest ones first."
     )
+    when: ExpressionText | None = Field(
+        None,
+        description="The field is there only where this expression over earlier fields is true "
+        "(a number: is not 0).",
+    )
     values: ValueNames | None = Field(
         None,
         description="Enum: names of raw values. Unknown values are kept unless closed.",

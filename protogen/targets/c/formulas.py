@@ -33,10 +33,18 @@ def type_for(hull: Interval) -> Integer:
 
 def floored(operator: ArithmeticOperator, number: str, divisor: str) -> str:
     """C that rounds down, from which nothing negative remains; in it no number overflows."""
+    word = "/" if operator == "//" else operator
+    return f"{number} < 0 ? {_below_zero(operator, number, divisor)} : {number} {word} {divisor}"
+
+
+def _below_zero(operator: ArithmeticOperator, number: str, divisor: str) -> str:
+    """The same of a number below 0."""
     turned = f"(-1 - {number})"
-    if operator == "//":
-        return f"{number} < 0 ? -1 - {turned} / {divisor} : {number} / {divisor}"
-    return f"{number} < 0 ? {divisor} - 1 - {turned} % {divisor} : {number} % {divisor}"
+    return (
+        f"-1 - {turned} / {divisor}"
+        if operator == "//"
+        else f"{divisor} - 1 - {turned} % {divisor}"
+    )
 
 
 class CPrinter(Printer):
@@ -75,11 +83,14 @@ class CPrinter(Printer):
 
     def arithmetic(self, arithmetic: Arithmetic) -> str:
         """C rounds towards 0, and what remains of a negative number is negative."""
-        least, _ = bounds_of(arithmetic.left, self.bounds)
+        least, greatest = bounds_of(arithmetic.left, self.bounds)
         if arithmetic.operator not in ("//", "%") or least >= 0:
             return super().arithmetic(arithmetic)
         assert isinstance(arithmetic.right, Numeral)
-        return self.floored(arithmetic.operator, arithmetic.left, arithmetic.right)
+        if greatest >= 0:
+            return self.floored(arithmetic.operator, arithmetic.left, arithmetic.right)
+        number = self.inside(arithmetic.left, Level.SIGN)
+        return f"({_below_zero(arithmetic.operator, number, self.numeral(arithmetic.right))})"
 
     def floored(self, operator: ArithmeticOperator, left: Expression, right: Numeral) -> str:
         """A quotient that is rounded down, or what remains of it, of what may be negative."""
@@ -104,10 +115,12 @@ class CPrinter(Printer):
         """A condition, also where it is written as a number."""
         if expression.is_condition:
             return self.inside(expression, level)
-        return self._compared(expression, "!=")
+        return self.truth(expression, holds=True)
 
-    def _compared(self, expression: Expression, operator: str) -> str:
-        return f"{self.inside(expression, Level.SUM)} {operator} {constant(0, self.type)}"
+    def truth(self, expression: Expression, *, holds: bool) -> str:
+        """The condition that a number is not 0, or that it is."""
+        word = "!=" if holds else "=="
+        return f"{self.inside(expression, Level.SUM)} {word} {constant(0, self.type)}"
 
     def bare(self, expression: Expression) -> str:
         """The expression without brackets around it."""
@@ -118,7 +131,7 @@ class CPrinter(Printer):
             case Not() if expression.operand.is_condition:
                 return f"!{self.inside(expression.operand, Level.ATOM)}"
             case Not():
-                return self._compared(expression.operand, "==")
+                return self.truth(expression.operand, holds=False)
         return super().bare(expression)
 
     def _side(self, side: Expression, around: Junction) -> str:
@@ -143,6 +156,23 @@ class FormulaPrinter(CPrinter):
     def bounds(self, operand: Operand) -> Interval:
         """The bounds of a field, or of the bits that count of it."""
         return self._formula.bounds_of(operand)
+
+    def operand(self, operand: Operand) -> str:
+        """A field, or bits of one."""
+        if self._is_bool(operand):
+            ends = constant(1, self.type), constant(0, self.type)
+            return f"({self.whole(operand)} ? {' : '.join(ends)})"
+        return super().operand(operand)
+
+    def truth(self, expression: Expression, *, holds: bool) -> str:
+        """The condition that a number is not 0, or that it is."""
+        if isinstance(expression, Operand) and self._is_bool(expression):
+            return f"{'' if holds else '!'}{self.whole(expression)}"
+        return super().truth(expression, holds=holds)
+
+    def _is_bool(self, operand: Operand) -> bool:
+        type_ = self._formula.references[operand.name].type
+        return type_ is not None and type_.role == "bool"
 
     def cast(self, operand: Operand) -> str:
         """What makes a field's number one of the common type; nothing where it is one."""

@@ -11,11 +11,10 @@ WIDTH = 100
 INDENT = 4
 
 _PLACE = re.compile(
-    r" +(?:const )?(?:uint8_t \*|size_t )(?P<declared>(?:at|amount)\w*) = |    (?P<moved>at) \+= "
+    r" +(?:const )?(?:uint8_t \*|size_t )(?P<declared>at\w*) = |    (?P<moved>at) \+= "
     r"| +const (?:bool|u?int\d+_t) (?P<remembered>\w+) = "
 )
-"""A line that says where the next value lies, or how much there is, or remembers a number; one that
-moves is in no loop."""
+"""A line that says where the next value lies, or remembers one; one that moves is in no loop."""
 _DECLARATION = re.compile(r"const |size_t |uint8_t \*")
 
 

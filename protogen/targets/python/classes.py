@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from functools import lru_cache
 
 import msgspec
 
+from protogen.model.computed import Computed, computed
 from protogen.model.identities import Identities
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type
+from protogen.runtime.attributes import attribute
 from protogen.targets.escape import paragraphs, python_comment
 from protogen.targets.python import describing
 from protogen.targets.python.formats import constant, field_format, is_empty
@@ -162,13 +164,13 @@ def _record(
     names: Names,
     packed: str = "",
 ) -> RecordClass:
-    own, fields = names.records[item.name], item.fields
+    own, fields, counts = names.records[item.name], item.fields, computed(item.fields)
     scope = _Scope(names, own, frozenset(own.fields.values()))
     return RecordClass(
         name=names.classes[item.name],
         base=base,
         doc=doc,
-        attributes=tuple(_attribute(field, scope) for field in fields),
+        attributes=tuple(_attribute(field, scope, counts) for field in fields),
         constants=constants,
         format=tuple(_format_line(field, names, 4 if packed else 3) for field in fields),
         packed=packed,
@@ -192,17 +194,34 @@ def _natural(name: str) -> list[tuple[int, str]]:
 
 def _constructor(fields: tuple[Field, ...], scope: _Scope) -> Constructor:
     """The constructor of a record, which takes keywords only."""
-    parameters, body = ["*"], []
+    parameters, body, counts = ["*"], [], computed(fields)
     for field in fields:
         name = value = scope.own.fields[field.name]
-        kind, default = _annotation(field.type, scope), _default(field, scope.module)
-        if isinstance(default, list):
-            value = f"{default} if {name} is _rt.OMITTED else {name}"
+        kind, default = _field_annotation(field, scope), _default(field, scope.module)
+        if isinstance(default, list) or field.name in counts:
+            made = _counted(counts[field.name]) if field.name in counts else str(default)
+            value = f"{made} if {name} is _rt.OMITTED else {name}"
             default = "_rt.OMITTED"
         parameters.append(f"{name}: {kind}" + (f" = {default}" if default else ""))
         body.append(f"self.{name} = {value}")
+    body.sort(key=lambda line: "_rt.count_of(" in line)  # What is counted has to be there first.
     head = method("def __init__(", ", ".join(["self", *parameters]), ") -> None:", _INDENT)
     return Constructor(slots_of(scope.own.fields.values()), head, tuple(body))
+
+
+def _counted(item: Computed) -> str:
+    """The number that tells how many elements or bytes a field has."""
+    count, (_, factor, offset) = f"_rt.count_of(self.{attribute(item.field)})", item.line
+    if factor < 0:
+        count = f"{offset} - {count}"
+    elif offset:
+        count = f"{count} {_signed(-offset)}"
+    whole = f"({count})" if " " in count else count
+    return count if abs(factor) == 1 else f"{whole} // {abs(factor)}"
+
+
+def _signed(number: int) -> str:
+    return f"- {-number}" if number < 0 else f"+ {number}"
 
 
 def _format_line(field: Field, names: Names, depth: int) -> str:
@@ -237,10 +256,18 @@ def _rule_line(field: Field, names: Names) -> str:
     return wrapped(expression, 3 * _INDENT, 3 * _INDENT) + ","
 
 
-def _attribute(field: Field, scope: _Scope) -> Attribute:
+def _attribute(field: Field, scope: _Scope, counts: Container[str]) -> Attribute:
     name = scope.own.fields[field.name]
-    line = union(f"{name}: ", _annotation(field.type, scope), _INDENT)
-    return Attribute(line, remark(describing.field(field), _INDENT))
+    line = union(f"{name}: ", _field_annotation(field, scope), _INDENT)
+    about = describing.field(field, is_computed=field.name in counts)
+    return Attribute(line, remark(about, _INDENT))
+
+
+def _field_annotation(field: Field, scope: _Scope) -> str:
+    """The type of a field's attribute, which is None where the field is not there."""
+    kind = _annotation(field.type, scope)
+    is_absent = field.when is not None and not kind.endswith("None")
+    return f"{kind} | None" if is_absent else kind
 
 
 def _annotation(type_: Type, scope: _Scope) -> str:
@@ -290,6 +317,8 @@ def _switch_annotation(type_: Switch, scope: _Scope) -> str:
 
 def _default(field: Field, names: Names) -> str | list[int | str] | None:
     """The default of an attribute, a list as such: a constant needs not be given."""
+    if field.when is not None:
+        return "None"
     value = field.const if field.const is not None else field.default
     match value:
         case None:
@@ -333,7 +362,12 @@ def _physical(field: Field, names: RecordNames) -> Attribute:
     what = next(iter(paragraphs(field.about.doc)), field.name.replace("_", " ").capitalize())
     none = "; None: no reading" if field.special else ""
     texts = describing.escaped([f"{what.rstrip('.')}{unit}{_physical_range(field)}{none}."])
-    return Attribute(f"{name} = _rt.{kind}({text(field.name)})", remark(texts, _INDENT))
+    view = _if_there(field, call(f"_rt.{kind}", text(field.name)))
+    return Attribute(f"{name} = {view}", remark(texts, _INDENT))
+
+
+def _if_there(field: Field, view: str) -> str:
+    return view if field.when is None else call("_rt.IfThere", view)
 
 
 def _physical_range(field: Field) -> str:
@@ -362,4 +396,4 @@ def _bits(field: Field, item: BitField, scope: _Scope) -> Attribute:
     what = next(iter(paragraphs(item.about.doc)), item.name.replace("_", " ").capitalize())
     run = f"bit {item.low}" if item.low == item.high else f"bits {item.low} to {item.high}"
     texts = describing.escaped([f"{what.rstrip('.')}; {run} of {field.name}."])
-    return Attribute(f"{name} = {view}", remark(texts, _INDENT))
+    return Attribute(f"{name} = {_if_there(field, view)}", remark(texts, _INDENT))

@@ -25,7 +25,7 @@ def named(name: str, item: About) -> list[str]:
     return escaped(descriptions.of_named(name, item))
 
 
-def field(item: Field) -> list[str]:
+def field(item: Field, *, is_computed: bool = False) -> list[str]:
     """Docstring of a field, with its unit and bounds."""
     facts = [descriptions.step_of(item)]
     if item.integer is not None and not descriptions.names_values(item):
@@ -33,6 +33,10 @@ def field(item: Field) -> list[str]:
     facts += descriptions.extent_of(item) + descriptions.specials_of(item)
     if item.const is not None:
         facts.append("constant")
+    if item.when is not None:
+        facts.append(f"None unless {item.when.text}")
+    if is_computed:
+        facts.append("computed where it is left out")
     return escaped(descriptions.of_field(item, facts))
 
 

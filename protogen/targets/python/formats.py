@@ -31,9 +31,10 @@ from protogen.targets.python.names import Names
 
 def field_format(field: Field, names: Names) -> str:
     """The declaration of a field, its constant included."""
+    found = _checked(field.type, names)
     if field.const is not None:
-        return call("_c.Fixed", _any_size(field.type, names), constant(field))
-    return _checked(field.type, names)
+        found = call("_c.Fixed", _any_size(field.type, names), constant(field))
+    return found if field.when is None else call("_c.When", formula(field.when), found)
 
 
 def _any_size(type_: Type, names: Names) -> str:

@@ -28,7 +28,12 @@ class _PythonPrinter(Printer):
             return found
         low, high = operand.run
         shifted = f"{found} >> {low}" if low else found
-        return f"({shifted} & {hex((1 << (high - low + 1)) - 1)})"
+        return f"{shifted} & {hex((1 << (high - low + 1)) - 1)}"
+
+    def level(self, expression: Expression) -> Level:
+        """How tightly the expression binds; bits do so more loosely than sums."""
+        is_run = isinstance(expression, Operand) and expression.run is not None
+        return Level.COMPARISON if is_run else super().level(expression)
 
     def membership(self, membership: Membership) -> str:
         """A number that is one of some."""

@@ -29,7 +29,8 @@ from protogen.targets.python.names import Names
 
 def field_rule(field: Field, names: Names) -> str:
     """The rule of a field."""
-    return _rule(field.type, field, names)
+    found = _rule(field.type, field, names)
+    return found if field.when is None else call("_rt.WhenRule", formula(field.when), found)
 
 
 def _rule(type_: Type, field: Field | None, names: Names) -> str:

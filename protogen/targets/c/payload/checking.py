@@ -22,6 +22,7 @@ from protogen.model.payload_plan import (
     Formula,
     IntegerStep,
     NumberStep,
+    OptionalStep,
     RecordStep,
     Reference,
     RepeatStep,
@@ -96,10 +97,8 @@ class Checker(CheckedWalk):
         name = self.declared(by)
         self._refuse(is_unfit(name, count, by), "SIZE")
         if not type_of(by).signed:
-            return f"(size_t){name}"
-        amount = self.variable("amount")
-        self.lines.add(f"const size_t {amount} = (size_t){name};")
-        return amount
+            return f"(size_t){name}" if type_of(by).bits > 16 else name
+        return self.amount_of(by, name)
 
     def filled(self, count: Count) -> str:
         """Nothing that was read says how much there is of what fills."""
@@ -432,10 +431,24 @@ class Checker(CheckedWalk):
         if isinstance(step.selector, int):
             super().choose(step, place)
             return
-        size = step.sizes.fixed
+        with self._joined(step.sizes.fixed):
+            super().choose(step, place)
+
+    def optional(self, step: OptionalStep, place: str) -> None:
+        """A step that may be there; behind it, `at` stands where it has ended."""
+        self._flush()
+        if isinstance(step.condition, int):
+            super().optional(step, place)
+            return
+        with self._joined(step.sizes.fixed):
+            super().optional(step, place)
+
+    @contextmanager
+    def _joined(self, size: int | None) -> Iterator[None]:
+        """Several ways of this size, which go on together."""
         if size is None:
             self._settle()
-        super().choose(step, place)
+        yield
         if size is None:
             self._offset, self._secured = 0, 0
         else:
@@ -444,15 +457,15 @@ class Checker(CheckedWalk):
 
     @contextmanager
     def branch(self) -> Iterator[None]:
-        """Every case begins where the choice does."""
+        """Every way begins where the choice does."""
         before = self._at, self._offset, self._secured
         self._branches += 1
         yield
         self._branches -= 1
         self._at, self._offset, self._secured = before
 
-    def end_case(self, step: ChooseStep) -> None:
-        """Make clear where the case has ended."""
+    def end_branch(self, step: ChooseStep | OptionalStep) -> None:
+        """Make clear where this way has ended."""
         self._flush()
         if step.sizes.fixed is None:
             self._settle()

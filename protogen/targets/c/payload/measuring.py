@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
     ChooseStep,
     ConstantStep,
+    OptionalStep,
     RepeatStep,
     RestStep,
 )
@@ -67,10 +71,24 @@ class Measure(Walk):
         if isinstance(step.selector, int):
             super().choose(step, place)
             return
+        with self._apart():
+            super().choose(step, place)
+
+    def optional(self, step: OptionalStep, place: str) -> None:
+        """A step that is there only where a condition holds."""
+        if isinstance(step.condition, int):
+            super().optional(step, place)
+            return
+        with self._apart():
+            super().optional(step, place)
+
+    @contextmanager
+    def _apart(self) -> Iterator[None]:
+        """Several ways, each of which adds what it has."""
         known, self.known = self.known, 0
-        super().choose(step, place)
+        yield
         self.known = known
 
-    def end_case(self, step: ChooseStep) -> None:
-        """Add what the case has."""
+    def end_branch(self, step: ChooseStep | OptionalStep) -> None:
+        """Add what there is on this way."""
         self._settle()

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from protogen.model.payload_plan import ChooseStep, NumberStep, RepeatStep
+from protogen.model.payload_plan import ChooseStep, NumberStep, OptionalStep, RepeatStep
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.walk import Walk, times
@@ -108,12 +108,23 @@ class PlacedWalk(Walk):
 
     def choose(self, step: ChooseStep, place: str) -> None:
         """One of several cases; behind it, `at` stands where the case has ended."""
+        with self._joined(step, is_known=isinstance(step.selector, int)):
+            super().choose(step, place)
+
+    def optional(self, step: OptionalStep, place: str) -> None:
+        """A step that may be there; behind it, `at` stands where it has ended."""
+        with self._joined(step, is_known=isinstance(step.condition, int)):
+            super().optional(step, place)
+
+    @contextmanager
+    def _joined(self, step: ChooseStep | OptionalStep, *, is_known: bool) -> Iterator[None]:
+        """Several ways, which go on together unless nothing follows."""
         size = step.sizes.fixed
-        joins = not step.is_last and not isinstance(step.selector, int)
+        joins = not step.is_last and not is_known
         if joins and size is None:
             self.settle()
         self.catch_up()
-        super().choose(step, place)
+        yield
         if joins and size is None:
             self.settled()
         elif joins:
@@ -126,7 +137,7 @@ class PlacedWalk(Walk):
         yield
         self._name, self._offset, self._index, self._pending = before
 
-    def end_case(self, step: ChooseStep) -> None:
-        """Settle where the case has ended, if something follows."""
+    def end_branch(self, step: ChooseStep | OptionalStep) -> None:
+        """Settle where this way has ended, if something follows."""
         if not step.is_last and step.sizes.fixed is None:
             self.settle()

@@ -14,8 +14,10 @@ from protogen.model.payload_plan import (
     Count,
     FloatStep,
     IntegerStep,
+    OptionalStep,
     RecordStep,
     RepeatStep,
+    held_step,
 )
 from protogen.model.types import Field, Struct, Text
 from protogen.targets.c import comments
@@ -80,10 +82,11 @@ class Records:
         return "\n".join([*lines.lines, *members.lines, "};"])
 
     def _field(self, lines: Lines, step: AnyStep) -> None:
-        if isinstance(step, BytesStep | RepeatStep) and step.fills:
-            what = "elements" if isinstance(step, RepeatStep) else "bytes"
+        held = held_step(step)
+        if isinstance(held, BytesStep | RepeatStep) and held.fills:
+            what = "elements" if isinstance(held, RepeatStep) else "bytes"
             lines.add(*comments.comment([f"Number of {what} of {step.name}."], INDENT))
-            lines.add(f"{counting_type(step.count.greatest)} {step.count.member};")
+            lines.add(f"{counting_type(held.count.greatest)} {held.count.member};")
         if step.holds_values:
             lines.add(*comments.comment(comments.of_field(step.field), INDENT))
             self._member(lines, step, self._names.member(step.name))
@@ -104,6 +107,8 @@ class Records:
                 self._member(lines, step.element, name + _places(step.count))
             case ChooseStep():
                 self._union(lines, step, name)
+            case OptionalStep():
+                self._member(lines, step.step, name)
             case ConstantStep():
                 raise AssertionError("constants have no member")
 

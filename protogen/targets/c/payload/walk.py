@@ -16,6 +16,7 @@ from protogen.model.payload_plan import (
     Count,
     Formula,
     NumberStep,
+    OptionalStep,
     PackedNumber,
     PayloadPlan,
     RecordStep,
@@ -28,7 +29,7 @@ from protogen.targets.c.formulas import FormulaPrinter, type_for
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.packing import Placed, groups_of, members_of
-from protogen.targets.c.spelling import constant, integer_type, unsigned
+from protogen.targets.c.spelling import constant, integer_type, unsigned, unsigned_type
 
 _INDICES = "ijklmnopqrstuvw"
 """Names of indices; those of loops that are nested deeper have a number."""
@@ -130,18 +131,24 @@ class Walk:
                 self.number(step, place)
             case ConstantStep():
                 self.constant(step)
-            case BytesStep():
-                count = self.count(step.count)
-                if count != 0:
-                    self.bytes(step, place, count)
+            case BytesStep() | RepeatStep():
+                self._several(step, place)
             case RecordStep():
                 self.record(step.steps, f"{place}.")
-            case RepeatStep():
-                count = self.count(step.count)
-                if count != 0 and (step.element.sizes.greatest or step.element.holds_values):
-                    self.repeat(step, place, count)
             case ChooseStep():
                 self.choose(step, place)
+            case OptionalStep():
+                self.optional(step, place)
+
+    def _several(self, step: BytesStep | RepeatStep, place: str) -> None:
+        """Walk over bytes or elements, where there are any."""
+        count = self.count(step.count)
+        if count == 0:
+            return
+        if isinstance(step, BytesStep):
+            self.bytes(step, place, count)
+        elif step.element.sizes.greatest or step.element.holds_values:
+            self.repeat(step, place, count)
 
     # --- packed numbers ---------------------------------------------------------------------------
 
@@ -197,9 +204,14 @@ class Walk:
 
     def worked_out(self, count: Count, by: Formula) -> str:
         """A variable with the number of elements or bytes that a formula says."""
-        name = self.variable("amount")
-        self.lines.add(f"const size_t {name} = (size_t)({self.number_of(by)});")
-        return name
+        return self.amount_of(by, self.number_of(by))
+
+    def amount_of(self, by: Formula, number: str) -> str:
+        """A variable with a number that is not below 0."""
+        name, type_ = self.variable("amount"), type_of(by)
+        kind = unsigned_type(type_.bits)
+        self.lines.add(f"const {kind} {name} = ({kind})({number});")
+        return f"(size_t){name}" if type_.bits > 16 else name
 
     def declared(self, by: Formula) -> str:
         """A variable with the value of a formula, which may be below 0."""
@@ -267,8 +279,8 @@ class Walk:
     def no_case(self) -> None:
         """Print what follows from a value without a case that is invalid."""
 
-    def end_case(self, step: ChooseStep) -> None:
-        """Print the end of a case."""
+    def end_branch(self, step: ChooseStep | OptionalStep) -> None:
+        """Print the end of one of several ways."""
 
     # --- loops and cases ------------------------------------------------------------------------
 
@@ -294,13 +306,25 @@ class Walk:
                 label = f"case {constant(case.value, selector)}"
                 with self.lines.case(label), self.branch():
                     self._chosen(case.step, place)
-                    self.end_case(step)
+                    self.end_branch(step)
             with self.lines.case("default"), self.branch():
                 self._chosen(step.rest, place)
 
+    def optional(self, step: OptionalStep, place: str) -> None:
+        """A step that is there only where a condition holds."""
+        if not isinstance(step.condition, Formula):
+            if step.condition:
+                self.step(step.step, place)
+            return
+        formula = step.condition
+        condition = self.printer(formula).condition(formula.expression)
+        with self.lines.block(f"if ({condition})"), self.branch():
+            self.step(step.step, place)
+            self.end_branch(step)
+
     @contextmanager
     def branch(self) -> Iterator[None]:
-        """Surroundings of what is printed for one of several cases."""
+        """Surroundings of what is printed for one of several ways."""
         yield
 
     def _chosen(self, step: AnyStep | RestStep | None, place: str) -> None:

@@ -6,7 +6,14 @@ from collections.abc import Iterable, Iterator
 
 import msgspec
 
-from protogen.model.payload_plan import AnyStep, ChooseStep, NumberStep, RecordStep, RepeatStep
+from protogen.model.payload_plan import (
+    AnyStep,
+    ChooseStep,
+    NumberStep,
+    OptionalStep,
+    RecordStep,
+    RepeatStep,
+)
 from protogen.model.types import Field
 
 
@@ -56,6 +63,8 @@ def _inside(step: AnyStep, path: Path) -> Iterator[tuple[Path, Field]]:
             yield from named_fields(step.steps, path)
         case RepeatStep():
             yield from _inside(step.element, path.element())
+        case OptionalStep():
+            yield from _inside(step.step, path)
         case ChooseStep():
             for case in step.cases:
                 yield from _inside(case.step, path.case(case.name))

@@ -13,6 +13,7 @@ from protogen.model.payload_plan import (
     CaseStep,
     ChooseStep,
     IntegerStep,
+    OptionalStep,
     RecordStep,
     RepeatStep,
     packed_numbers,
@@ -104,6 +105,8 @@ class _PayloadRows:
                 yield from self._inside(inner, first, path)
             case ChooseStep() as choice:
                 yield from self._choice(choice, place, path)
+            case OptionalStep(step=inner):
+                yield from self._inside(inner, place, path)
 
     def _packed_fields(self, steps: Sequence[AnyStep], path: Path) -> Iterator[Row]:
         first = 0

@@ -12,6 +12,7 @@ from protogen.model.payload_plan import (
     ConstantStep,
     Count,
     NumberStep,
+    OptionalStep,
     RecordStep,
     RepeatStep,
 )
@@ -41,6 +42,8 @@ def type_text(step: AnyStep) -> str:
             return f"depends on {code(step.expression.text)}"
         case RecordStep():
             return "struct" + _packed(step)
+        case OptionalStep():
+            return f"{type_text(step.step)}, if {code(step.expression.text)}"
 
 
 def _packed(step: RecordStep | RepeatStep) -> str:

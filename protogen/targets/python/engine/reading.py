@@ -17,6 +17,7 @@ from protogen.model.payload_plan import (
     Count,
     FloatStep,
     IntegerStep,
+    OptionalStep,
     RecordStep,
     RepeatStep,
     RestStep,
@@ -238,6 +239,8 @@ class _Reader(Converter, Raw):
                 return self._array(step)
             case ChooseStep():
                 return self._choose(step)
+            case OptionalStep():
+                return self._optional(step)
             case BytesStep() if not step.count.is_fixed:
                 return self._variable_string(step)
         target = self.lines.local()
@@ -322,6 +325,17 @@ class _Reader(Converter, Raw):
                         self._case(value, case.step)
             with self.lines.block("case _:"):
                 self._rest(value, step.rest)
+        return value
+
+    def _optional(self, step: OptionalStep) -> str:
+        value = self.lines.local()
+        self._move_to(self.place.text)
+        self.lines.add(f"{value}: _typing.Any = None")
+        with self.lines.block(f"if {in_python(step.expression, self.raw_of)}:"):
+            found = self._value(step.step)
+            self._constant(found, step.step)
+            self.lines.add(f"{value} = {found}")
+            self._move_to(self.place.text)
         return value
 
     def _case(self, target: str, step: AnyStep) -> None:

@@ -17,6 +17,7 @@ from protogen.model.payload_plan import (
     Count,
     FloatStep,
     IntegerStep,
+    OptionalStep,
     RecordStep,
     RepeatStep,
     RestStep,
@@ -258,6 +259,8 @@ class _Writer(Raw):
                 self._array(value, step, item)
             case ChooseStep():
                 self._choose(value, step)
+            case OptionalStep():
+                self._optional(value, step)
 
     def _integer(self, value: str, step: IntegerStep, item: Field | None) -> None:
         type_ = step.type
@@ -392,6 +395,19 @@ class _Writer(Raw):
                 else:
                     self._rest(value, step.rest)
                     self.lines.add(f"{data} = {value}")
+        self._bytes.piece(data)
+
+    def _optional(self, value: str, step: OptionalStep) -> None:
+        self._bytes.flush()
+        data = self.lines.local()
+        with self.lines.block(f"if {in_python(step.expression, self.raw_of)}:"):
+            bare = without_constant(step.step)
+            self.lines.add(f"{data} = {self._apart(value, bare, step.field)}")
+            if isinstance(step.step, ConstantStep):
+                self.lines.refuse_if(f"{value} != {constant(step.field)}")
+        with self.lines.block("else:"):
+            self.lines.refuse_if(f"{value} is not None")
+            self.lines.add(f'{data} = b""')
         self._bytes.piece(data)
 
     # --- arrays -----------------------------------------------------------------------------------

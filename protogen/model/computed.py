@@ -1,0 +1,67 @@
+"""Fields that only count: what they are follows from the fields that they count.
+
+Whoever makes a message may leave them out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import msgspec
+
+from protogen.model.expressions import Expression, Linear, linear, names_in, operands, plain_name
+from protogen.model.nesting import inner_types
+from protogen.model.types import Counted, Field, Struct, Switch, Type
+
+
+class Computed(msgspec.Struct, frozen=True):
+    """The field whose number of elements or bytes tells the number of another one."""
+
+    field: str
+    line: Linear
+    """Its number of elements or bytes, as a line over the other one."""
+
+
+def computed(fields: Sequence[Field]) -> dict[str, Computed]:
+    """For each field of a record that only counts, what it is worked out of."""
+    found: dict[str, Computed] = {}
+    for index, field in enumerate(fields):
+        by = _count(field)
+        line = None if by is None or plain_name(by) is not None else linear(by)
+        if line is None or line.name in found or not _is_left_out(fields[:index], line.name):
+            continue
+        if not any(line.name in names_in(chosen) for chosen in _choosing(fields, line.name)):
+            found[line.name] = Computed(field=field.name, line=line)
+    return found
+
+
+def _is_left_out(fields: Sequence[Field], name: str) -> bool:
+    """True if a field of this name is one of these, and nothing stands for it yet."""
+    field = next((item for item in fields if item.name == name), None)
+    return field is not None and field.const is None and field.default is None
+
+
+def _count(field: Field) -> Expression | None:
+    extent = field.type.extent
+    if field.const is not None or not isinstance(extent, Counted):
+        return None
+    return extent.by if all(operand.run is None for operand in operands(extent.by)) else None
+
+
+def _choosing(fields: Sequence[Field], name: str) -> Iterator[Expression]:
+    """The expressions that choose something, of fields in which the name means the same field."""
+    for field in fields:
+        yield from _choosing_in(field.type, name)
+
+
+def _choosing_in(type_: Type, name: str) -> Iterator[Expression]:
+    if isinstance(type_, Switch):
+        yield type_.selector
+    if isinstance(type_, Struct):
+        names = [field.name for field in type_.fields]
+        # Behind a field of the same name, the name means that one.
+        end = names.index(name) + 1 if name in names else len(names)
+        yield from _choosing(type_.fields[:end], name)
+        return
+    for inner in inner_types(type_):
+        yield from _choosing_in(inner, name)
