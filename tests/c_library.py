@@ -39,7 +39,7 @@ _GUARD = 0xA5
 _GUARDS = 16
 """Bytes around each buffer, which nothing may change."""
 
-_SHIM = """#include "{name}.c"
+_SHIM = """#include "{file}.c"
 
 struct {name}_writer {{
     uint8_t **next;
@@ -66,11 +66,16 @@ enum {name}_result shim_{prefix}_check(const uint8_t *payload, size_t size, size
 """
 
 
-def write_sources(protocol: Protocol, folder: Path, *, payloads_only: bool = False) -> None:
-    """Write the header and the source of a protocol, perhaps without its frames and decoders."""
+def write_sources(protocol: Protocol, folder: Path, *, payloads_only: bool = False) -> str:
+    """Write the header and the source of a protocol, perhaps without its frames and decoders.
+
+    Returns the name of the files, but for its end.
+    """
     header, source = texts(protocol, COptions(), payloads_only=payloads_only)
-    (folder / f"{protocol.name}.h").write_text(header, encoding="utf-8")
-    (folder / f"{protocol.name}.c").write_text(source, encoding="utf-8")
+    name = unit_of(protocol, COptions()).module.file
+    (folder / f"{name}.h").write_text(header, encoding="utf-8")
+    (folder / f"{name}.c").write_text(source, encoding="utf-8")
+    return name
 
 
 def shim_of(protocol: Protocol, module: Module) -> str:
@@ -78,7 +83,12 @@ def shim_of(protocol: Protocol, module: Module) -> str:
     stateless = is_stateless(protocol)
     next_ = f"((struct {module.name}_writer *)user)->next" if stateless else "writer->next"
     take = f"{'(void)put; ' if stateless else ''}*(*{next_})++ = byte"
-    head = {"name": module.name, "writer": writer_parameter(protocol), "take": take}
+    head = {
+        "name": module.name,
+        "file": module.file,
+        "writer": writer_parameter(protocol),
+        "take": take,
+    }
     parts = [_SHIM.format(**head), *module.sinks]
     for message in module.messages:
         given = {

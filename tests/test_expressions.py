@@ -22,7 +22,7 @@ from protogen.model.expressions import (
     Membership,
     Minus,
     Not,
-    Numeral,
+    Number,
     Operand,
     bounds_of,
     every,
@@ -339,7 +339,7 @@ def number(random: Random, depth: int) -> Expression:
     if kind < 0.3:
         return Minus(number(random, depth - 1))
     if kind < 0.5:
-        divisor = Numeral(random.choice([1, 2, 3, 7, 12, 256, 1000, 70000]))
+        divisor = Number(random.choice([1, 2, 3, 7, 12, 256, 1000, 70000]))
         return Arithmetic(random.choice(["//", "%"]), number(random, depth - 1), divisor)
     left, right = number(random, depth - 1), number(random, depth - 1)
     return Arithmetic(random.choice(["+", "-", "*"]), left, right)
@@ -347,7 +347,7 @@ def number(random: Random, depth: int) -> Expression:
 
 def leaf(random: Random) -> Expression:
     if random.random() < 0.3:
-        return Numeral(random.choice([-70000, -3, -1, 0, 1, 2, 5, 255, 256, 32768, 65536, 100000]))
+        return Number(random.choice([-70000, -3, -1, 0, 1, 2, 5, 255, 256, 32768, 65536, 100000]))
     name = random.choice(list(NUMBERS))
     type_ = NUMBERS[name]
     if type_.signed or random.random() < 0.6:
@@ -362,7 +362,7 @@ def condition(random: Random, depth: int) -> Expression:
         operator = random.choice(["==", "!=", "<", "<=", ">", ">="])
         return Comparison(operator, number(random, 2), number(random, 2))
     if kind < 0.5:
-        values = tuple(Numeral(random.randint(-3, 9)) for _ in range(random.randint(1, 3)))
+        values = tuple(Number(random.randint(-3, 9)) for _ in range(random.randint(1, 3)))
         return Membership(number(random, 1), values)
     if kind < 0.6:
         return Not(either(random, depth))

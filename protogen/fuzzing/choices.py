@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from protogen.model.expressions import Numeral, every, linear, operands
+from protogen.model.expressions import Number, every, linear, operands
 from protogen.model.frame import ChoicePart, CounterPart, ValuePart
 from protogen.model.identities import Runs
 from protogen.model.messages import Message
@@ -168,7 +168,7 @@ def _needs_of_formula(
     if isinstance(formula, int):
         return
     line = linear(formula.expression)
-    written = [it.value for it in every(formula.expression) if isinstance(it, Numeral)]
+    written = [it.value for it in every(formula.expression) if isinstance(it, Number)]
     for operand in operands(formula.expression):
         found = [*written, *values] if line is None else map(line.inverse, values)
         low, high = operand.run or (0, 0)

@@ -69,7 +69,7 @@ class _Node:
 
 
 @dataclass(frozen=True, slots=True)
-class Numeral(_Node):
+class Number(_Node):
     """A number, or the name of a value that stands for it."""
 
     value: int
@@ -184,7 +184,7 @@ class Not(_Node):
     __str__ = _Node.__str__
 
 
-Expression = Numeral | Operand | Minus | Arithmetic | Comparison | Membership | Junction | Not
+Expression = Number | Operand | Minus | Arithmetic | Comparison | Membership | Junction | Not
 
 
 def named(name: str) -> Operand:
@@ -268,7 +268,7 @@ def value_of(expression: Expression, look: Callable[[Operand], Any]) -> Any:
     NumPy's arrays of signed integers are numbers, too: then it is an array.
     """
     match expression:
-        case Numeral():
+        case Number():
             return expression.value
         case Operand():
             return expression.of(look(expression))
@@ -311,9 +311,9 @@ def folded(expression: Expression, known: Callable[[Operand], int | None]) -> Ex
     def change(item: Expression) -> Expression:
         if isinstance(item, Operand):
             value = known(item)
-            return item if value is None else Numeral(item.of(value))
-        if all(isinstance(inner, Numeral) for inner in inside(item)):
-            return Numeral(int(value_of(item, _nothing)))
+            return item if value is None else Number(item.of(value))
+        if all(isinstance(inner, Number) for inner in inside(item)):
+            return Number(int(value_of(item, _nothing)))
         return item
 
     return rebuilt(expression, change)
@@ -329,7 +329,7 @@ def _nothing(operand: Operand) -> int:
 def bounds_of(expression: Expression, of: Callable[[Operand], Interval]) -> Interval:
     """The bounds of the value, where those of each operand (the bits that count) are known."""
     match expression:
-        case Numeral():
+        case Number():
             return expression.value, expression.value
         case Operand():
             return of(expression)
@@ -418,7 +418,7 @@ def linear(expression: Expression) -> Linear | None:
 
 def _factors(expression: Expression) -> tuple[int, int] | None:
     match expression:
-        case Numeral():
+        case Number():
             return 0, expression.value
         case Operand(run=None):
             return 1, 0
@@ -458,7 +458,7 @@ class Printer:
         """The expression."""
         return self.inside(expression, Level.LOOSE)
 
-    def numeral(self, numeral: Numeral) -> str:
+    def numeral(self, numeral: Number) -> str:
         """A number."""
         return str(numeral.value)
 
@@ -499,14 +499,14 @@ class Printer:
                 return Level.NOT
             case Minus():
                 return Level.SIGN
-            case Numeral() if expression.value < 0:
+            case Number() if expression.value < 0:
                 return Level.SIGN
         return Level.ATOM
 
     def bare(self, expression: Expression) -> str:
         """The expression without brackets around it."""
         match expression:
-            case Numeral():
+            case Number():
                 return self.numeral(expression)
             case Operand():
                 return self.operand(expression)
@@ -535,7 +535,7 @@ class Printer:
 class _Named(Printer):
     """Prints with the names that people gave to values and bits."""
 
-    def numeral(self, numeral: Numeral) -> str:
+    def numeral(self, numeral: Number) -> str:
         return numeral.name or super().numeral(numeral)
 
     def operand(self, operand: Operand) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from protogen.copying import replace
-from protogen.model.expressions import Expression, Numeral, Operand, folded, names_in
+from protogen.model.expressions import Expression, Number, Operand, folded, names_in
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -113,7 +113,7 @@ class _Builder:
     def _formula(self, expression: Expression) -> int | Formula:
         """The formula of an expression, or the number that it always is."""
         found = folded(expression, self._known)
-        if isinstance(found, Numeral):
+        if isinstance(found, Number):
             return found.value
         numbers = {name: self._find(name) for name in sorted(names_in(found))}
         references = {name: it for name, it in numbers.items() if isinstance(it, Reference)}

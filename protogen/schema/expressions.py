@@ -19,7 +19,7 @@ from protogen.model.expressions import (
     Membership,
     Minus,
     Not,
-    Numeral,
+    Number,
     Operand,
 )
 
@@ -206,7 +206,7 @@ class _Parser:
             return self._single()
         at = self._take().at
         inner = self._nested(self._signed)
-        return Numeral(-inner.value, at=at) if isinstance(inner, Numeral) else Minus(inner, at=at)
+        return Number(-inner.value, at=at) if isinstance(inner, Number) else Minus(inner, at=at)
 
     def _single(self) -> Expression:
         if self._is("("):
@@ -219,9 +219,9 @@ class _Parser:
             raise self._unexpected()
         self._take()
         if token.kind == "number":
-            return Numeral(int(token.text, 16 if "x" in token.text else 10), at=token.at)
+            return Number(int(token.text, 16 if "x" in token.text else 10), at=token.at)
         if token.kind == "character":
-            return Numeral(self._code(token), name=token.text, at=token.at)
+            return Number(self._code(token), name=token.text, at=token.at)
         return Operand(tuple(token.text.split(".")), at=token.at)
 
     def _code(self, token: _Token) -> int:

@@ -98,7 +98,7 @@ def test_keys_are_completed(server: LspClient) -> None:
     ("key", "explanation"),
     [
         ("endpoints", "The named sides of the link."),
-        ("literal", "Fixed bytes that open, close or mark."),
+        ("literal", "Fixed bytes that open, close or mark;"),
         ("scale", "physical value = raw value x scale + offset; exact, such as 1/16."),
     ],
 )

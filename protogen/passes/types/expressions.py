@@ -17,7 +17,7 @@ from protogen.model.expressions import (
     Membership,
     Minus,
     Not,
-    Numeral,
+    Number,
     Operand,
     bounds_of,
     every,
@@ -234,7 +234,7 @@ class _Reader:
         left, right = self._number(item.left), self._number(item.right)
         if item.operator in ("//", "%"):
             right = folded(right, self._constant)
-            if not isinstance(right, Numeral) or right.value < 1:
+            if not isinstance(right, Number) or right.value < 1:
                 text = f"`{item.operator}` divides by a number above 0 that never changes"
                 raise _WrongError("PG204", item.at, len(item.operator), text)
         return replace(item, left=left, right=right)
@@ -247,13 +247,13 @@ class _Reader:
         names = self._names_beside(item.operand)
         values = tuple(folded(self._number(it, names), self._constant) for it in item.values)
         for value, written in zip(values, item.values, strict=True):
-            if not isinstance(value, Numeral):
+            if not isinstance(value, Number):
                 text = f"`{written.text}` is no number that never changes"
                 raise _WrongError("PG202", *_place(written), text, "compare them by `==`")
         named = tuple(
-            replace(value, name=written.name if isinstance(written, Numeral) else written.text)
+            replace(value, name=written.name if isinstance(written, Number) else written.text)
             for value, written in zip(values, item.values, strict=True)
-            if isinstance(value, Numeral)
+            if isinstance(value, Number)
         )
         return replace(item, operand=operand, values=named)
 
@@ -265,7 +265,7 @@ class _Reader:
             if first in self._scope:
                 text = f"`{first}` is a field, and a value of what it is compared with"
                 raise _WrongError("PG201", *_place(item), text, "write the number of the value")
-            return Numeral(names[first], name=first, at=item.at)
+            return Number(names[first], name=first, at=item.at)
         found = self._found(item, names)
         self._fields.setdefault(found.name, self._member(found))
         return found
@@ -361,8 +361,8 @@ def _value_names(field: Field, operand: Operand) -> dict[str, int]:
 
 def _place(item: Expression) -> tuple[int, int]:
     """Where the part of an expression begins in its text, and how wide it is there."""
-    firsts = [it for it in every(item) if isinstance(it, Operand | Numeral)]
+    firsts = [it for it in every(item) if isinstance(it, Operand | Number)]
     first = min(firsts, key=lambda it: it.at)
     start = min(first.at, item.at)
     width = len(first.label if isinstance(first, Operand) else first.text)
-    return (start, width) if isinstance(item, Operand | Numeral) else (start, 1)
+    return (start, width) if isinstance(item, Operand | Number) else (start, 1)

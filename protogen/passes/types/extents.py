@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from protogen.model.expressions import Numeral, named
+from protogen.model.expressions import Number, named
 from protogen.model.nesting import can_count
 from protogen.model.types import Counted, Extent, Field, Fill, Fixed, is_integer
 from protogen.passes.context import Context, Loc
@@ -41,13 +41,13 @@ def _worked_out(
 ) -> Extent:
     """The number of an expression, which is refused where it is out of bounds."""
     least, greatest = found.bounds
-    if isinstance(found.expression, Numeral):
+    if isinstance(found.expression, Number):
         least = greatest = found.expression.value
     if greatest < 0:
         text = f"`{found.expression.text}` is never more than {greatest}, and counts nothing"
         context.error("PG203", loc, text)
         return Fixed(count=0)
-    if isinstance(found.expression, Numeral):
+    if isinstance(found.expression, Number):
         return Fixed(count=greatest)
     if setting.room is not None and not found.is_ranged:
         greatest = min(greatest, setting.room // element)

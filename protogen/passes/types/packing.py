@@ -20,7 +20,8 @@ def check_packing(context: Context, name: str, item: Effective) -> bool:
     if syntax.packed is not None:
         _can_pack(context, name, item)
     if inside and not _is_packable(item):
-        text = f"`{name}` can't be packed: only integers can, and arrays of a fixed number of them"
+        what = "what is not always there" if item.syntax.when is not None else f"`{name}`"
+        text = f"{what} can't be packed: only integers can, and arrays of a fixed number of them"
         hint = "end the packed struct in front of it, and go on behind it"
         context.error_at_key("PG221", item.chain[0][1], text, hint)
         return False
@@ -48,7 +49,7 @@ def _can_pack(context: Context, name: str, item: Effective) -> None:
 def _is_packable(item: Effective) -> bool:
     """True if a field may lie in a packed struct; what its type is called is asked elsewhere."""
     syntax = item.syntax
-    if syntax.fields is not None or syntax.switch is not None:
+    if syntax.fields is not None or syntax.switch is not None or syntax.when is not None:
         return False
     is_counted = syntax.count is None or _is_fixed(item)
     return is_counted and syntax.type not in ("float32", "float64", "ascii", "bytes")

@@ -38,8 +38,8 @@ length part can state. Raise it to what the document says.
         """\
 The message can have a payload that makes a frame longer than `max_frame`, whatever its bytes are: a
 fixed size, a counting field with a `range`, a `max`. Or its constants are stuffed, and all of its
-frames are longer. Raise `max_frame`, or bound the message. (A message some of whose values are too
-long only because of how they are stuffed is fine: an encoder refuses those values.)
+frames are longer. Raise `max_frame`, or bound the message. A message some of whose values are too
+long only because of how they are stuffed is fine: an encoder refuses those values.
 """,
         with_keys("max_frame: 3"),
         with_keys("max_frame: 4"),

@@ -29,8 +29,9 @@ is packed already. Two neighbours that share bytes are a packed struct of two fi
         "Something that can't be packed",
         """\
 Only integers are packed (with names of values, flags, ranges and scales as elsewhere), and arrays
-of a fixed number of them. Where a run of bits ends has to be the same in every message, and floats,
-texts, structs and cases begin at a byte. End the packed struct in front of them.
+of a fixed number of them. Where a run of bits ends has to be the same in every message, so that
+`when` has no place in it, and floats, texts, structs and cases begin at a byte. End the packed
+struct in front of them.
 """,
         with_fields("""
             state: {packed: lsb_first, fields: {mode: uint4, angle: uint12, speed: float32}}

@@ -13,7 +13,7 @@ from protogen.model.expressions import (
     Level,
     Membership,
     Not,
-    Numeral,
+    Number,
     Operand,
     Printer,
     bounds_of,
@@ -67,7 +67,7 @@ class CPrinter(Printer):
         """What makes a field's number one of the common type."""
         return f"({integer_type(self.type)})"
 
-    def numeral(self, numeral: Numeral) -> str:
+    def numeral(self, numeral: Number) -> str:
         """A number of the common type."""
         return constant(numeral.value, self.type)
 
@@ -86,13 +86,13 @@ class CPrinter(Printer):
         least, greatest = bounds_of(arithmetic.left, self.bounds)
         if arithmetic.operator not in ("//", "%") or least >= 0:
             return super().arithmetic(arithmetic)
-        assert isinstance(arithmetic.right, Numeral)
+        assert isinstance(arithmetic.right, Number)
         if greatest >= 0:
             return self.floored(arithmetic.operator, arithmetic.left, arithmetic.right)
         number = self.inside(arithmetic.left, Level.SIGN)
         return f"({_below_zero(arithmetic.operator, number, self.numeral(arithmetic.right))})"
 
-    def floored(self, operator: ArithmeticOperator, left: Expression, right: Numeral) -> str:
+    def floored(self, operator: ArithmeticOperator, left: Expression, right: Number) -> str:
         """A quotient that is rounded down, or what remains of it, of what may be negative."""
         number, divisor = self.inside(left, Level.SIGN), self.numeral(right)
         return f"({floored(operator, number, divisor)})"

@@ -77,7 +77,8 @@ class Digits(msgspec.Struct, frozen=True):
     def raw(self, value: str) -> str:
         """The unsigned number whose digits are those of a value."""
         if not self.type.signed:
-            return value
+            is_wider = unsigned_type(self.type.bits) != self._held
+            return f"({self._held}){value}" if is_wider else value
         own = f"({unsigned_type(self.type.bits)}){value}"
         if is_whole(self.type):
             return own

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
-from protogen.model.expressions import ArithmeticOperator, Expression, Numeral, Operand
+from protogen.model.expressions import ArithmeticOperator, Expression, Number, Operand
 from protogen.model.names import free_name
 from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
@@ -92,7 +92,7 @@ class _Formula(FormulaPrinter):
         super().__init__(formula, whole)
         self._helpers = helpers
 
-    def floored(self, operator: ArithmeticOperator, left: Expression, right: Numeral) -> str:
+    def floored(self, operator: ArithmeticOperator, left: Expression, right: Number) -> str:
         """A call of the function that rounds down."""
         function = self._helpers.floored(operator, self.type)
         return f"{function}({self.text(left)}, {self.numeral(right)})"
