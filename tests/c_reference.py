@@ -100,14 +100,14 @@ class _Reader:
             case Switch():
                 return self._case(type_, scope)
 
-    def _packed(self, type_: Struct | Array, order: str, *, constant: bool) -> list[int] | None:
+    def _packed(self, type_: Struct | Array, order: str, *, constant: bool) -> Any:
         run = _Run(bits_of(self._take(type_.sizes.least), order), order)
         if isinstance(type_, Array):
             found = run.numbers(type_, constant=constant)
         else:
-            found = None
+            found = Scope()
             for field in type_.fields:
-                inner = run.value(field.type, constant=field.const is not None)
+                inner = found[field.name] = run.value(field.type, constant=field.const is not None)
                 if field.const is not None and not _is(inner, field.const):
                     raise Wrong("value")
         if any(run.bits):

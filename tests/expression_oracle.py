@@ -5,12 +5,15 @@ The text of an expression is Python but for runs of bits, `key[4..6]`.
 
 from __future__ import annotations
 
+import keyword
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 from protogen.model.expressions import Expression
 
+_OPERATORS = ("and", "or", "not", "in")
+_WORD = re.compile(r"[a-z_][a-z0-9_]*")
 _RUN = re.compile(r"(?P<name>[a-z][a-z0-9_.]*)\[(?P<low>\d+)\.\.(?P<high>\d+)\]")
 
 
@@ -19,8 +22,15 @@ def worked_out(expression: Expression, scope: Mapping[str, Any]) -> int:
     text = str(expression)
     if text in scope:
         return int(scope[text])
-    found = eval(_RUN.sub(_shifted, text), {"__builtins__": {}}, _Members(scope))
+    python = _WORD.sub(_unreserved, _RUN.sub(_shifted, text))
+    found = eval(python, {"__builtins__": {}}, _Members(scope))
     return int(bool(found) if expression.is_condition else found)
+
+
+def _unreserved(word: re.Match[str]) -> str:
+    """A field's name that is no word of Python: no field's name ends so."""
+    is_field = keyword.iskeyword(word[0]) and word[0] not in _OPERATORS
+    return f"{word[0]}_" if is_field else word[0]
 
 
 def _shifted(run: re.Match[str]) -> str:
@@ -35,7 +45,7 @@ class _Members(Mapping[str, Any]):
         self._values = values
 
     def __getitem__(self, name: str) -> Any:
-        value = self._values[name]
+        value = self._values[name.removesuffix("_")]
         return _Members(value) if isinstance(value, Mapping) else value
 
     def __getattr__(self, name: str) -> Any:

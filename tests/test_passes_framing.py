@@ -303,3 +303,14 @@ class TestRates:
         assert (
             framing_of(HEAD + "frame:\n" + LENGTH_AND_CRC + MESSAGE).messages[0].per_second is None
         )
+
+
+def test_an_endpoint_that_sends_nothing_needs_no_byte_order_of_its_own() -> None:
+    head = "protocol: p\nendpoints: {a: A, b: B}\nbyte_order: {a: little}\n"
+    stuffing = "transparency: {a: slip}\n"
+    frame = (
+        "frame:\n  id: {type: uint16, id: true}\n  payload: {}\n"
+        "  sum: {type: uint16, algorithm: fletcher-16, covers: id..payload}\n"
+        "  end: {literal: 0xC0}\n"
+    )
+    assert not codes_of(compile_text(head + stuffing + frame + "messages: {m: {id: 1, from: a}}\n"))

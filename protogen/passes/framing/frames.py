@@ -65,15 +65,16 @@ def resolve_frames(context: Context, draft: Draft) -> None:
         frame = _frame_of(context, sender)
         if frame is not None:
             draft.frames[sender] = frame
-    sent = [_places(context.frames[sender]) for sender in draft.senders if sender in context.frames]
+    sent = [context.frames[sender] for sender in draft.senders if sender in context.frames]
+    seen = {written.loc for written in sent} | {written.transparency_loc for written in sent}
     for written in context.frames.values():
-        if _places(written) not in sent:
+        if not _places(written) <= seen:
             FrameBuilder(context, written).frame()
 
 
-def _places(written: WrittenFrame) -> tuple[Loc, Loc]:
-    """The places where a frame and its transparency are written."""
-    return written.loc, written.transparency_loc
+def _places(written: WrittenFrame) -> set[Loc]:
+    """The places where a frame and its transparency, if it has one, are written."""
+    return {written.loc} | ({written.transparency_loc} if written.transparency else set())
 
 
 def _frame_of(context: Context, sender: str) -> Frame | None:

@@ -167,12 +167,13 @@ class Cases(Piece):
         self.flagbuildnone = all(case.flagbuildnone for case in self._cases.values())
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
-        return self._case(stream, context, path)._parsereport(stream, context, path)
+        return self.case(stream, context, path)._parsereport(stream, context, path)
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
-        return self._case(stream, context, path)._build(obj, stream, context, path)
+        return self.case(stream, context, path)._build(obj, stream, context, path)
 
-    def _case(self, stream: BinaryIO, context: Any, path: str) -> Any:
+    def case(self, stream: BinaryIO, context: Any, path: str) -> Any:
+        """The piece that the earlier fields choose. Raises PayloadError if there is none."""
         value = said(self._selector, context, path)
         case = self._cases.get(value, self._rest)
         if case is None:
@@ -206,7 +207,7 @@ class When(Around):
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
         is_there = bool(said(self._condition, context, path))
-        is_given = obj is not None or self.subcon.flagbuildnone
+        is_given = obj is not None or self._takes_none(stream, context, path)
         if is_there and is_given:
             return self.subcon._build(obj, stream, context, path)
         if is_there or obj is not None:
@@ -214,6 +215,13 @@ class When(Around):
             problem = f"{problem}, as {self._condition} {'holds' if is_there else 'does not hold'}"
             raise PayloadError("value", path, stream.tell(), problem)
         return None
+
+    def _takes_none(self, stream: BinaryIO, context: Any, path: str) -> bool:
+        """True if None is what is built, as of a constant, or of a case without bytes."""
+        piece: Any = self.subcon
+        if isinstance(piece, Cases):
+            piece = piece.case(stream, context, path)
+        return bool(piece.flagbuildnone)
 
     def _sizeof(self, context: Any, path: str) -> int:
         raise construct.SizeofError(f"the size depends on {self._condition}", path=path)

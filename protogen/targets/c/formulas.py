@@ -7,6 +7,7 @@ from collections.abc import Callable
 from protogen.model.expressions import (
     Arithmetic,
     ArithmeticOperator,
+    Comparison,
     Expression,
     Interval,
     Junction,
@@ -99,7 +100,7 @@ class CPrinter(Printer):
 
     def membership(self, membership: Membership) -> str:
         """One comparison for each value."""
-        number = self.inside(membership.operand, Level.SUM)
+        number = self.compared(membership.operand)
         return " || ".join(f"{number} == {self.text(value)}" for value in membership.values)
 
     def level(self, expression: Expression) -> Level:
@@ -120,7 +121,14 @@ class CPrinter(Printer):
     def truth(self, expression: Expression, *, holds: bool) -> str:
         """The condition that a number is not 0, or that it is."""
         word = "!=" if holds else "=="
-        return f"{self.inside(expression, Level.SUM)} {word} {constant(0, self.type)}"
+        return f"{self.compared(expression)} {word} {constant(0, self.type)}"
+
+    def compared(self, expression: Expression) -> str:
+        """A number beside a comparison; narrow ones that are put together are a signed `int`."""
+        is_narrow = not self.type.signed and self.type.bits < 32
+        if is_narrow and isinstance(expression, Arithmetic):
+            return f"({integer_type(self.type)})({self.text(expression)})"
+        return self.inside(expression, Level.SUM)
 
     def bare(self, expression: Expression) -> str:
         """The expression without brackets around it."""
@@ -132,6 +140,9 @@ class CPrinter(Printer):
                 return f"!{self.inside(expression.operand, Level.ATOM)}"
             case Not():
                 return self.truth(expression.operand, holds=False)
+            case Comparison():
+                left, right = self.compared(expression.left), self.compared(expression.right)
+                return f"{left} {expression.operator} {right}"
         return super().bare(expression)
 
     def _side(self, side: Expression, around: Junction) -> str:

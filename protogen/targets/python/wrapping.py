@@ -30,8 +30,19 @@ def wrapped(expression: str, column: int, indent: int, after: int = 1) -> str:
     if not items:
         return expression
     inner = indent + _INDENT
-    lines = [f"{' ' * inner}{wrapped(item, inner, inner)}," for item in items]
+    is_several = len(items) > 1 or expression[-2] == ","
+    comma = "," if is_several or _takes_a_comma(head) else ""
+    lines = [f"{' ' * inner}{wrapped(item, inner, inner)}{comma}" for item in items]
     return "\n".join([head, *lines, " " * indent + expression[-1]])
+
+
+def _takes_a_comma(head: str) -> bool:
+    """True if a comma behind the only item in the brackets that `head` opens changes nothing.
+
+    Behind an index, or what only stands in brackets, it makes a tuple.
+    """
+    is_behind_value = head[-2:-1].isalnum() or head[-2:-1] in ("_", *_CLOSING)
+    return is_behind_value == (head[-1] == "(")
 
 
 def _last_opening(expression: str) -> int | None:

@@ -242,7 +242,10 @@ class Walk:
 
     def differs(self, formula: Formula, value: int) -> str:
         """The condition that a number that earlier ones say is another one."""
-        return f"{self.number_of(formula)} != {constant(value, type_of(formula))}"
+        number = self.number_of(formula)
+        if formula.plain is None:
+            number = self.printer(formula).compared(formula.expression)
+        return f"{number} != {constant(value, type_of(formula))}"
 
     def referred(self, number: Reference) -> str:
         """The expression of an earlier number."""

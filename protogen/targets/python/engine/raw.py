@@ -16,7 +16,7 @@ class Raw:
     def raw_at(self, name: str) -> str:
         """The expression of a field, or of a member inside of one: `header.count`."""
         rest = ""
-        while name not in self.raw:
+        while "." in name and name not in self.raw:
             name, _, last = name.rpartition(".")
             rest = f".{attribute(last)}{rest}"
         return self.raw[name] + rest

@@ -170,8 +170,9 @@ class _Reader(Converter, Raw):
         variable = target if direct else self.lines.local()
         self._run.variables.append(variable)
         value = without_constant(step)
-        if is_field and isinstance(value, IntegerStep):
-            self.raw[step.name] = variable if is_native(value) else target
+        if is_field and isinstance(value, IntegerStep | RecordStep):
+            is_raw = isinstance(value, IntegerStep) and is_native(value)
+            self.raw[step.name] = variable if is_raw else target
         if not direct:
             self._run.after.append((target, variable, step))
 
