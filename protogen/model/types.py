@@ -398,8 +398,8 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     def integer(self) -> Integer | None:
         """The integer that the field holds, or of which it is an array."""
         type_ = self.type
-        while isinstance(type_, Array):
-            type_ = type_.element
+        if not isinstance(type_, Integer) and isinstance(type_, Array):
+            type_ = self.element
         return type_ if isinstance(type_, Integer) else None
 
     @property

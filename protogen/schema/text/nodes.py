@@ -111,13 +111,12 @@ def to_data(node: Node) -> Any:
         return {key.value: to_data(value) for key, value in node.items}
     if isinstance(node, SequenceNode):
         return [to_data(item) for item in node.items]
-    if isinstance(node.value, bool):
-        return node.value
-    if isinstance(node.value, int):
-        return SourceInt.of(node.value, node.text)
-    if isinstance(node.value, float):
-        return SourceFloat.of(node.value, node.text)
-    return node.value
+    value = node.value
+    if isinstance(value, str | bool):
+        return value
+    if isinstance(value, int):
+        return SourceInt.of(value, node.text)
+    return SourceFloat.of(value, node.text) if isinstance(value, float) else value
 
 
 def find(root: Node, loc: Loc, *, key: bool = False) -> Span:

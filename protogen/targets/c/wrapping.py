@@ -33,7 +33,8 @@ class _Break(msgspec.Struct, frozen=True):
 
 def wrapped(text: str) -> str:
     """The text with every line of code on at most so many columns, where that can be."""
-    return "\n".join(line if len(line) <= WIDTH else _broken(line) for line in text.split("\n"))
+    lines = text.split("\n")
+    return "\n".join([line if len(line) <= WIDTH else _broken(line) for line in lines])
 
 
 def _broken(line: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import compress
 
 import msgspec
 
@@ -20,8 +21,5 @@ class Table(msgspec.Struct, frozen=True):
 def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
     """Make a table, without the columns in which no row says anything."""
     made = [tuple(row) for row in rows]
-    used = [index for index in range(len(header)) if any(row[index] for row in made)]
-    return Table(
-        tuple(header[index] for index in used),
-        tuple(tuple(row[index] for index in used) for row in made),
-    )
+    used = [any(cells) for cells in zip(*made, strict=True)] or [False] * len(header)
+    return Table(tuple(compress(header, used)), tuple(tuple(compress(row, used)) for row in made))
