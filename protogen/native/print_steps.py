@@ -308,8 +308,8 @@ def without_comma() -> Step:
     return Step(["if (out[-1] == ' ') {", "    out -= 2;", "}"], 0)
 
 
-def enveloped(channel: int, body: Iterable[Step]) -> Step:
-    """Print a record of MCAP that holds a message of that channel."""
+def enveloped(channel: int, size: Place, body: Iterable[Step]) -> Step:
+    """Print a record of MCAP that holds a message of that channel, from a frame of such a size."""
     return Step(
         [
             f"NEED({_ENVELOPE});",
@@ -317,7 +317,7 @@ def enveloped(channel: int, body: Iterable[Step]) -> Step:
             "    uint8_t *const envelope = out;",
             f"    out += {_ENVELOPE};",
             *indented(block(body)),
-            f"    put_envelope(envelope, out, {channel}U, rows);",
+            f"    put_envelope(job, rows, envelope, out, {channel}U, {size.value});",
             "}",
         ]
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
 from importlib.resources import files
 from typing import Any
 
@@ -16,9 +17,9 @@ from protogen.native.print_steps import Steps, block, indented
 
 _ROOM = 1 << 19
 """Bytes of text that are printed at once: the processor's cache holds them."""
-_LEAST = 4
-"""Bytes that every row has at least."""
-_PARAMETERS = "const struct job *job, const struct rows *rows, uint8_t *out, const uint8_t *end"
+_LEAST = 32
+"""Bytes that every message of MCAP has at least."""
+_PARAMETERS = "struct job *job, const struct rows *rows, uint8_t *out, const uint8_t *end"
 
 
 class PrintedRows(msgspec.Struct):
@@ -36,8 +37,18 @@ class PrintedRows(msgspec.Struct):
     """Byte for each row: 1 if its time is known."""
     payloads: bytes = b""
     """Bytes that rows of unknown frames refer to."""
-    logged: Any = None
-    """Time of each row as a message of MCAP has it: `uint64`."""
+
+
+class Piece(msgspec.Struct, frozen=True):
+    """Rows that were printed together."""
+
+    text: bytes
+    present: Sequence[int]
+    """Tables of which some rows are among them."""
+    entries: Any
+    """Pairs of time and place in the text of each message of MCAP: `uint64`, shape (rows, 2)."""
+    tables: Any
+    """Table of each message of MCAP."""
 
 
 class _Job(ctypes.Structure):
@@ -46,8 +57,10 @@ class _Job(ctypes.Structure):
         ("base", ctypes.c_uint64),
         ("repr", ctypes.c_void_p),
         ("release", ctypes.c_void_p),
-        ("starts", ctypes.c_void_p),
-        ("started", ctypes.c_uint64),
+        ("room", ctypes.c_void_p),
+        ("entries", ctypes.c_void_p),
+        ("tables", ctypes.c_void_p),
+        ("entered", ctypes.c_uint64),
     )
 
 
@@ -61,24 +74,30 @@ class _Rows(ctypes.Structure):
         ("differs", ctypes.c_void_p),
         ("times", ctypes.c_void_p),
         ("timed", ctypes.c_void_p),
-        ("logged", ctypes.c_void_p),
         ("payloads", ctypes.c_void_p),
     )
 
 
-def build_printer(name: str, tables: Sequence[Steps], quoted: Iterable[int] = ()) -> Built:
+def build_printer(
+    name: str,
+    tables: Sequence[Steps],
+    quoted: Iterable[int] = (),
+    byte_time: Fraction = Fraction(0),
+) -> Built:
     """The library that prints rows of these tables; compiled unless it was before.
 
-    `quoted`: the ASCII characters for which a value of CSV needs quotes. Raises NativeError.
+    `quoted`: the ASCII characters for which a value of CSV needs quotes. `byte_time`: nanoseconds
+    that a byte takes on the line, for messages of MCAP. Raises NativeError.
     """
-    return compiled(name, _source(tables, quoted), ())
+    return compiled(name, _source(tables, quoted, byte_time), ())
 
 
-def _source(tables: Sequence[Steps], quoted: Iterable[int]) -> str:
+def _source(tables: Sequence[Steps], quoted: Iterable[int], byte_time: Fraction) -> str:
     helpers = files("protogen.native").joinpath("templates", "printer.c").read_text("utf-8")
     tests = " || ".join(f"character == {code}" for code in quoted)
     lines = [
         f"#define NEEDS_QUOTES(character) ({tests or 0})",
+        f"#define LINE_TIME(bytes) ({_line_time(byte_time)})",
         helpers,
         *(line for number, steps in enumerate(tables) for line in _function(number, steps)),
         "static uint8_t *put_row(" + _PARAMETERS + ") {",
@@ -88,6 +107,14 @@ def _source(tables: Sequence[Steps], quoted: Iterable[int]) -> str:
         lines += [f"    case {number}:", f"        return put_{number}(job, rows, out, end);"]
     lines += ["    default:", "        return NULL;", "    }", "}"]
     return "\n".join([*lines, ""])
+
+
+def _line_time(byte: Fraction) -> str:
+    """C of the nanoseconds that so many `bytes` take, rounded down."""
+    times, over = f"UINT64_C({byte.numerator})", f"UINT64_C({byte.denominator})"
+    if byte.numerator * byte.denominator >= 1 << 64:
+        return f"(uint64_t)((unsigned __int128)(bytes) * {times} / {over})"
+    return f"(bytes) / {over} * {times} + (bytes) % {over} * {times} / {over}"
 
 
 def _function(number: int, steps: Steps) -> Iterator[str]:
@@ -119,30 +146,33 @@ class Printer:
 
     def _make_room(self, size: int) -> None:
         self._room = numpy().empty(size, "u1")
-        self._starts = numpy().empty((size // _LEAST, 3), "u8")
+        self._entries = numpy().empty((size // _LEAST, 2), "u8")
+        self._tables = numpy().empty(size // _LEAST, "u4")
 
     def texts(self, tables: Sequence[PrintedRows], line: bytes, base: int = 0) -> Iterator[bytes]:
         """The rows of all tables by their offsets, in pieces of text.
 
         `line` has the bytes of the capture from offset `base` on.
         """
-        return (text for text, _ in self.pieces(tables, line, base))
+        return (piece.text for piece in self.pieces(tables, line, base))
 
-    def pieces(
-        self, tables: Sequence[PrintedRows], line: bytes, base: int = 0
-    ) -> Iterator[tuple[bytes, Any]]:
-        """The same, each with an array: of each row its logged time, its place there, its table."""
+    def pieces(self, tables: Sequence[PrintedRows], line: bytes, base: int = 0) -> Iterator[Piece]:
+        """The same, each with what an index of its messages has. Until the next one is taken."""
         whole = _bytes(line)
         job = _Job(whole.ctypes.data, base, self._repr, self._release)
         payloads = [_bytes(table.payloads) for table in tables]
         pairs = zip(tables, payloads, strict=True)
         lent = (_Rows * len(tables))(*(_lent(table, held) for table, held in pairs))
         while any(table.next < table.count for table in lent):
-            room, starts = self._room, self._starts
-            job.starts, job.started = starts.ctypes.data, 0
+            room, before = self._room, [table.next for table in lent]
+            job.entries, job.tables = self._entries.ctypes.data, self._tables.ctypes.data
+            job.entered = 0
             count = self._print(ctypes.byref(job), lent, len(lent), room.ctypes.data, len(room))
             if count:
-                yield room[:count].tobytes(), starts[: job.started]
+                each = zip(lent, before, strict=True)
+                present = [table.table for table, first in each if table.next > first]
+                entries, numbers = self._entries[: job.entered], self._tables[: job.entered]
+                yield Piece(room[:count].tobytes(), present, entries, numbers)
             else:  # Not even one row has room.
                 self._make_room(2 * len(room))
 
@@ -153,7 +183,7 @@ def _bytes(data: bytes) -> Any:
 
 def _lent(table: PrintedRows, payloads: Any) -> _Rows:
     rows = table.rows
-    beside = (table.differs, table.times, table.timed, table.logged, payloads)
+    beside = (table.differs, table.times, table.timed, payloads)
     places = (None if item is None else item.ctypes.data for item in beside)
     return _Rows(rows.ctypes.data, rows.strides[0], len(rows), 0, table.table, *places)
 

@@ -50,8 +50,11 @@ def message_steps(schema: CaptureSchema, shown: Tables) -> list[Steps]:
     """Steps for the rows of each message, then those of invalid bytes and unknown frames."""
     pairs = [(shown.messages[name], held) for name, held in schema.messages.items()]
     pairs += [(shown.invalid, schema.invalid), (shown.unknown, schema.unknown)]
-    channels = shown.channels
-    return [[enveloped(channels[table.name], _row(table, held))] for table, held in pairs]
+    return [[_message(shown.channels[table.name], table, held)] for table, held in pairs]
+
+
+def _message(channel: int, table: tables.Table, held: TableSchema) -> Step:
+    return enveloped(channel, places_of(held.columns)["size"], _row(table, held))
 
 
 def _row(table: tables.Table, held: TableSchema) -> Iterator[Step]:

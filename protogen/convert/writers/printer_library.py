@@ -26,5 +26,6 @@ def built_printer(
     if format is OutputFormat.CSV:
         return build_printer(name, cell_steps(schema, tables), quoted_characters())
     if format is OutputFormat.MCAP:
-        return build_printer(name, message_steps(schema, tables))
+        steps = message_steps(schema, tables)
+        return build_printer(name, steps, byte_time=tables.byte_time)
     return build_printer(name, line_steps(schema))

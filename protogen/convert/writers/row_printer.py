@@ -15,7 +15,7 @@ from protogen.convert.columns.tables import Table
 from protogen.convert.formats import OutputFormat
 from protogen.convert.writers.printer_library import built_printer
 from protogen.native.library import Library
-from protogen.native.printer import PrintedRows, Printer
+from protogen.native.printer import Piece, PrintedRows, Printer
 
 
 class RowPrinter:
@@ -46,33 +46,13 @@ class RowPrinter:
     def messages(self, batch: ColumnBatch) -> Iterator[Messages]:
         """The rows of all tables, in the order of the capture, as messages of MCAP."""
         each = [rows for _, rows in self._tables(batch)]
-        for rows in each:
-            rows.logged = self._log_times(rows)
-        for data, starts in self._printer.pieces(each, batch.data, batch.filled.offset):
-            times, numbers = starts[:, 0], starts[:, 2]
+        for piece in self._printer.pieces(each, batch.data, batch.filled.offset):
+            entries = piece.entries.astype("<u8", copy=False)
             places = {
-                self._channels[number]: starts[numbers == number, :2].astype("<u8").tobytes()
-                for number in np.unique(numbers).tolist()
+                self._channels[number]: _of(number, piece, entries) for number in piece.present
             }
-            yield Messages(data, places, int(times.min()), int(times.max()))
-
-    def _log_times(self, printed: PrintedRows) -> Array:
-        """When each row was logged: at its time or, without one, when the line had come so far."""
-        rows, byte = printed.rows, self.readings.tables.byte_time
-        ends = rows["offset"] + rows["size"]
-        found: Array
-        if byte.numerator * byte.denominator < 1 << 64:
-            whole, rest = np.divmod(ends, np.uint64(byte.denominator))
-            times, over = np.uint64(byte.numerator), np.uint64(byte.denominator)
-            found = whole * times + rest * times // over
-        else:
-            found = np.array([int(end * byte) for end in ends.tolist()], "u8")
-        if printed.times is None:
-            return found
-        # The log knows no time before 1970; `t_ns` says what a recording has.
-        given = np.maximum(printed.times, 0).astype("u8")
-        logged: Array = np.where(printed.timed.view("?"), given, found)
-        return logged
+            times = piece.entries[:, 0]
+            yield Messages(piece.text, places, int(times.min()), int(times.max()))
 
     def _texts(self, batch: ColumnBatch, each: list[PrintedRows]) -> Iterator[bytes]:
         return self._printer.texts(each, batch.data, batch.filled.offset)
@@ -105,6 +85,12 @@ class RowPrinter:
         return self._library.unknown_differ(
             filled.unknown, filled.payloads, batch.data, filled.offset
         )
+
+
+def _of(table: int, piece: Piece, entries: Array) -> bytes:
+    """The entries of an index for the rows of one table, as bytes."""
+    own: bytes = (entries if len(piece.present) == 1 else entries[piece.tables == table]).tobytes()
+    return own
 
 
 def _printed(

@@ -1,7 +1,8 @@
-/* What prints rows of tables as text. Made by protogen for its own use.
+/* What prints rows of tables, as text or as messages of MCAP. Made by protogen for its own use.
  *
- * Behind this follow functions that print the rows of one table each, and `put_row`, which calls them.
- * They return where the text ends, or NULL where there is no room for it.
+ * In front of this stand macros for what depends on the schema. Behind it follow functions that print
+ * the rows of one table each, and `put_row`, which calls them. They return where the text ends, or NULL
+ * where there is no room for it.
  */
 #include <float.h>
 #include <math.h>
@@ -19,11 +20,10 @@
 #error "doubles are computed with another precision"
 #endif
 
-/* A row that was printed. */
-struct start {
-    uint64_t time; /* That of its message of MCAP. */
+/* A message of MCAP as an index has it. */
+struct entry {
+    uint64_t time;
     uint64_t place;
-    uint64_t table;
 };
 
 /* What is printed at once. All members have eight bytes, or are pointers. */
@@ -32,8 +32,10 @@ struct job {
     uint64_t base;
     char *(*repr)(double value, char format, int precision, int flags, int *type);
     void (*release)(void *memory);
-    struct start *starts;
-    uint64_t started;
+    const uint8_t *room;   /* Where what is printed begins. */
+    struct entry *entries; /* Of the messages of MCAP, */
+    uint32_t *tables;      /* their tables, */
+    uint64_t entered;      /* and how many there are. */
 };
 
 /* The rows of a table. Every row begins with the offset of its event. */
@@ -46,7 +48,6 @@ struct rows {
     const uint8_t *differs; /* NULL: no row does. */
     const int64_t *times;   /* NULL: none is known. */
     const uint8_t *timed;
-    const uint64_t *logged; /* The times that messages of MCAP have. */
     const uint8_t *payloads;
 };
 
@@ -356,38 +357,74 @@ static uint8_t *put_quotes(uint8_t *mark, uint8_t *out, const uint8_t *end) {
     return out + more;
 }
 
+/* --- numbers in little-endian order -------------------------------------------------------------- */
+
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+#define COPY(to, from, size) memcpy(to, from, size)
+#else
+#define COPY(to, from, size) copy_reversed(to, from, size)
+
+static inline void copy_reversed(uint8_t *to, const void *from, size_t size) {
+    const uint8_t *const bytes = from;
+    size_t place;
+    for (place = 0; place < size; place++) {
+        to[place] = bytes[size - 1U - place];
+    }
+}
+#endif
+
+#define LITTLE(name, type)                                   \
+    static inline uint8_t *name(uint8_t *out, type value) { \
+        COPY(out, &value, sizeof value);                     \
+        return out + sizeof value;                           \
+    }
+
+LITTLE(put_le2, uint16_t)
+LITTLE(put_le4, uint32_t)
+LITTLE(put_le8, uint64_t)
+LITTLE(put_lef8, double)
+
 /* --- MCAP ---------------------------------------------------------------------------------------- */
 
-static uint8_t *put_bytes(uint8_t *out, uint64_t value, int count) {
-    for (; count > 0; count--, value >>= 8) {
-        *out++ = (uint8_t)value;
-    }
-    return out;
+static inline uint64_t offset_of(const struct rows *rows) {
+    return u8_at(rows->rows + (size_t)rows->next * rows->stride);
 }
 
-/* Put what stands in front of a message, which ends at `out`. */
-static inline void put_envelope(uint8_t *at, const uint8_t *out, uint64_t channel, const struct rows *rows) {
-    const uint64_t offset = u8_at(rows->rows + (size_t)rows->next * rows->stride);
+/* When the next row was logged: at its time or, without one, when the line had come to its `end`. The
+ * log knows no time before 1970. */
+static inline uint64_t log_time(const struct rows *rows, uint64_t end) {
+    if (rows->times != NULL && rows->timed[rows->next]) {
+        return rows->times[rows->next] < 0 ? 0U : (uint64_t)rows->times[rows->next];
+    }
+    return LINE_TIME(end);
+}
+
+/* Put what stands in front of the message of a frame of `size` bytes, which ends at `out`, and enter it
+ * into the index. */
+static inline void put_envelope(struct job *job, const struct rows *rows, uint8_t *at, const uint8_t *out,
+                                uint32_t channel, uint64_t size) {
+    const uint64_t offset = offset_of(rows), time = log_time(rows, offset + size);
+    struct entry *const entry = &job->entries[job->entered];
+    entry->time = time;
+    entry->place = (uint64_t)(at - job->room);
+    job->tables[job->entered++] = (uint32_t)rows->table;
     *at = 5;
-    at = put_bytes(at + 1, (uint64_t)(out - at) - 9U, 8);
-    at = put_bytes(put_bytes(at, channel, 2), offset, 4);
-    (void)put_bytes(put_bytes(at, rows->logged[rows->next], 8), rows->logged[rows->next], 8);
+    at = put_le8(at + 1, (uint64_t)(out - at) - 9U);
+    at = put_le4(put_le2(at, (uint16_t)channel), (uint32_t)offset);
+    (void)put_le8(put_le8(at, time), time);
 }
 
 /* --- rows ---------------------------------------------------------------------------------------- */
 
 /* Print the next row. */
-static uint8_t *put_row(const struct job *job, const struct rows *rows, uint8_t *out, const uint8_t *end);
-
-static uint64_t offset_of(const struct rows *rows) {
-    return u8_at(rows->rows + (size_t)rows->next * rows->stride);
-}
+static uint8_t *put_row(struct job *job, const struct rows *rows, uint8_t *out, const uint8_t *end);
 
 /* Print rows of all tables by their offsets, as many as there is room for. Returns the bytes. */
 PROTOGEN_EXPORT size_t protogen_print(struct job *job, struct rows *tables, size_t count, uint8_t *room,
                                       size_t size) {
     const uint8_t *const end = size < SLACK ? room : room + (size - SLACK);
     uint8_t *out = room;
+    job->room = room;
     for (;;) {
         struct rows *first = NULL;
         uint64_t least = UINT64_MAX, limit = UINT64_MAX;
@@ -413,9 +450,6 @@ PROTOGEN_EXPORT size_t protogen_print(struct job *job, struct rows *tables, size
             if (behind == NULL) {
                 return (size_t)(out - room);
             }
-            job->starts[job->started].time = first->logged == NULL ? 0U : first->logged[first->next];
-            job->starts[job->started].place = (uint64_t)(out - room);
-            job->starts[job->started++].table = first->table;
             out = behind;
             first->next++;
         } while (first->next < first->count && offset_of(first) < limit);
