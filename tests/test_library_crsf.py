@@ -1,0 +1,117 @@
+"""CRSF, beside elrs and rpycrsf."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from library_support import (
+    cases_of,
+    compare_frames,
+    compare_recovery,
+    encoded,
+    peer_module,
+)
+
+from protogen.copying import replace
+from protogen.fuzzing.samples import Values
+from protogen.fuzzing.trips import Case
+
+HEADER = 3
+"""Bytes in front of what a type holds."""
+
+
+class Radio:
+    """What elrs and rpycrsf know of CRSF."""
+
+    def __init__(self) -> None:
+        self._rc: Any = peer_module("elrs.rc")
+        self._telemetry: Any = peer_module("elrs.telemetry")
+        self._crc: Any = peer_module("elrs.crc")
+        self._protocol: Any = peer_module("rpycrsf.protocol")
+
+    def frame(self, case: Case) -> bytes:
+        """Only of channels it makes the whole frame, else what is around the content."""
+        if case.message == "rc_channels":
+            frame: bytes = self._rc.build_rc_frame(case.values["channels"])
+            assert frame == self._protocol.pack_rc_channels(case.values["channels"])
+            return bytes((case.parts["sync"], *frame[1:]))  # its own is the one of the serial line
+        ours = encoded("crsf", case)
+        return self._around(ours[0], ours[2:-1])
+
+    def _around(self, sync: int, content: bytes) -> bytes:
+        return bytes((sync, len(content) + 1, *content, self._crc.crc8(content)))
+
+    def known(self, case: Case) -> Case:
+        """The case with a sync that elrs knows: three of them."""
+        if case.parts["sync"] in self._telemetry.ADDRS_START:
+            return case
+        return replace(case, parts={**case.parts, "sync": 0xC8})
+
+    def values(self, case: Case, frame: bytes) -> Values:
+        ((sync, kind, content),) = self._telemetry.frames_from_bytes(deque(frame))
+        assert (sync, kind, content) == (frame[0], frame[2], frame[HEADER:-1])
+        match case.message:
+            case "rc_channels":
+                return {"channels": self._protocol.unpack_rc_channels(content)}
+            case "battery":
+                return battery(self._telemetry._DECODERS[kind](content))
+            case "link_statistics":
+                return link_statistics(self._telemetry._DECODERS[kind](content))
+        return case.values  # it knows no more of the others
+
+    def found(self, endpoint: str, data: bytes) -> Iterator[bytes]:
+        assert endpoint == "device"
+        for sync, kind, content in self._telemetry.frames_from_bytes(deque(data)):
+            yield self._around(sync, bytes((kind, *content)))
+
+
+def battery(read: dict[str, float]) -> Values:
+    """Raw values of what elrs reads: tenths it takes for hundredths, and a number turned around."""
+    used = round(read["capacity"] * 1000)
+    return {
+        "voltage": signed(round(read["voltage"] * 10), 16),
+        "current": signed(round(read["current"] * 100), 16),
+        "capacity_used": int.from_bytes(used.to_bytes(3, "little"), "big"),
+        "remaining": read["remain"],
+    }
+
+
+def link_statistics(read: dict[str, int]) -> Values:
+    """What elrs reads, with the signs that the document has."""
+    return {
+        "up_rssi_1": read["rssi1_inv"],
+        "up_rssi_2": read["rssi2_inv"],
+        "up_link_quality": read["lq_up"],
+        "up_snr": signed(read["snr_up"], 8),
+        "active_antenna": read["ant"],
+        "rf_profile": read["rf_mode"],
+        "up_power": read["txpwr"],
+        "down_rssi": read["rssi_d_inv"] % 256,
+        "down_link_quality": read["lq_dn"] % 256,
+        "down_snr": read["snr_dn"],
+    }
+
+
+def signed(number: int, bits: int) -> int:
+    return number - (number >> bits - 1 << bits)
+
+
+@pytest.fixture(scope="module")
+def radio() -> Radio:
+    return Radio()
+
+
+@pytest.mark.parametrize("messages", [["rc_channels"], ["battery", "link_statistics"]])
+def test_both_read_the_same_numbers(radio: Radio, messages: list[str]) -> None:
+    compare_frames("crsf", radio, map(radio.known, cases_of("crsf", messages)))
+
+
+def test_both_have_the_same_around_all_messages(radio: Radio) -> None:
+    compare_frames("crsf", radio, map(radio.known, cases_of("crsf")))
+
+
+def test_no_frame_is_lost_that_it_finds(radio: Radio) -> None:
+    compare_recovery("crsf", "device", radio, cases_of("crsf"))
