@@ -1,0 +1,150 @@
+"""RPLIDAR, beside pyrplidar."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from library_support import cases_of, compare_frames, compare_recovery, encoded, peer_module
+
+from protogen.fuzzing.samples import Values
+from protogen.fuzzing.trips import Case
+
+HEAD = 7
+"""Bytes of an answer in front of its data."""
+REQUESTS = [
+    "scan",
+    "force_scan",
+    "stop",
+    "reset",
+    "get_info",
+    "get_health",
+    "get_sample_rate",
+    "express_scan",
+    "high_quality_scan",
+    "get_setting",
+    "set_setting",
+    "confirm_baud",
+    "set_motor_speed",
+    "set_motor_pwm",
+    "get_board",
+]
+ANSWERS = ["info", "health", "sample_rate", "setting", "setting_changed", "board"]
+ANNOUNCEMENTS = [
+    "nodes_follow",
+    "capsules_follow",
+    "high_quality_follows",
+    "ultra_capsules_follow",
+    "dense_capsules_follow",
+    "ultra_dense_capsules_follow",
+]
+
+
+class Line:
+    """A serial line as pyrplidar has one, with what is there to read and what was written."""
+
+    def __init__(self, data: bytes = b"") -> None:
+        self.data = data
+        self.written = b""
+
+    def send_data(self, data: bytes) -> None:
+        self.written = data
+
+    def receive_data(self, size: int) -> bytes:
+        piece, self.data = self.data[:size], self.data[size:]
+        return piece
+
+    def set_dtr(self, value: bool) -> None:
+        pass
+
+    def close(self) -> None:
+        pass
+
+
+class Lidar:
+    """The driver, which sends requests and reads answers."""
+
+    def __init__(self) -> None:
+        self._protocol: Any = peer_module("pyrplidar_protocol")
+        self._driver: Any = peer_module("pyrplidar").PyRPlidar()
+
+    def frame(self, case: Case) -> bytes:
+        """Of an answer it is ours: it makes none."""
+        ours = encoded("rplidar", case)
+        if case.message not in REQUESTS:
+            return ours
+        if case.message == "set_motor_pwm":
+            line = self._driver.lidar_serial = Line()
+            self._driver.set_motor_pwm(case.values["pwm"])
+            self._driver.lidar_serial = None
+            return line.written
+        data = ours[3:-1] if len(ours) > 2 else None
+        request: bytes = self._protocol.PyRPlidarCommand(ours[1:2], data).raw_bytes
+        return request
+
+    def values(self, case: Case, frame: bytes) -> Values:
+        if case.message in REQUESTS:
+            return case.values  # it reads none
+        data = self._content(frame)
+        if case.message in ANNOUNCEMENTS:
+            assert data is None
+            return {}
+        assert data == frame[HEAD:]
+        match case.message:
+            case "info":
+                info = self._protocol.PyRPlidarDeviceInfo(data)
+                return {
+                    "model": info.model,
+                    "firmware_minor": info.firmware_minor,
+                    "firmware_major": info.firmware_major,
+                    "hardware": info.hardware,
+                    "serial_number": info.serialnumber.lower(),
+                }
+            case "health":
+                health = self._protocol.PyRPlidarHealth(data)
+                code = health.error_code  # read with its highest byte first
+                swapped = int.from_bytes(code.to_bytes(2, "big"), "little")
+                return {"status": health.status, "error_code": swapped}
+            case "sample_rate":
+                rate = self._protocol.PyRPlidarSamplerate(data)
+                return {"standard": rate.t_standard, "express": rate.t_express}
+        return case.values  # it reads no more of the others
+
+    def _content(self, data: bytes) -> bytes | None:
+        """Data of an answer, or None for what announces measurements. Raises what it raises."""
+        self._driver.lidar_serial = Line(data)
+        try:
+            head = self._driver.receive_discriptor()
+            content: bytes | None = self._driver.receive_data(head) if head.send_mode == 0 else None
+        finally:
+            self._driver.lidar_serial = None  # it says good-bye there
+        return content
+
+    def found(self, endpoint: str, data: bytes) -> Iterator[bytes]:
+        """It reads an answer where it waits for one. In a stream, it tries at each byte."""
+        assert endpoint == "lidar"
+        at = 0
+        while len(data) - at >= HEAD:
+            try:
+                content = self._content(data[at:])
+            except (self._protocol.PyRPlidarProtocolError, IndexError):
+                at += 1
+                continue
+            size = HEAD + len(content or b"")
+            yield data[at : at + size]
+            at += size
+
+
+@pytest.fixture(scope="module")
+def lidar() -> Lidar:
+    return Lidar()
+
+
+@pytest.mark.parametrize("messages", [REQUESTS, ANSWERS, ANNOUNCEMENTS])
+def test_both_make_and_read_the_same(lidar: Lidar, messages: list[str]) -> None:
+    compare_frames("rplidar", lidar, cases_of("rplidar", messages))
+
+
+def test_no_answer_is_lost_that_it_finds(lidar: Lidar) -> None:
+    compare_recovery("rplidar", "lidar", lidar, cases_of("rplidar"))
