@@ -18,6 +18,7 @@ from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case, cases
 from protogen.library import FOLDER
+from protogen.runtime.attributes import arguments
 
 FRAMES = 500
 """Frames that are compared each way, at least."""
@@ -51,7 +52,9 @@ def encoded(name: str, case: Case) -> bytes:
     codec = module_at(FOLDER / f"{name}.yaml").PROTOCOL
     spec = codec.sender(case.sender)
     kinds = {kind.NAME: kind for kind in (*spec.messages, *spec.encode_only)}
-    return codec.encode(kinds[case.message].from_dict(case.values), spec.name, **case.parts)
+    message = kinds[case.message].from_dict(case.values)
+    frame: bytes = codec.encode(message, spec.name, **arguments(case.parts))
+    return frame
 
 
 @cache
