@@ -7,7 +7,7 @@ structs.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import count
+from itertools import count, islice
 from random import Random
 from typing import Any
 
@@ -107,6 +107,28 @@ def samples(message: Message, frame: Frame, random: Random) -> Iterator[tuple[Va
     greatest, names, special values, single bits, empty and full arrays.
     """
     yield from _boundary_samples(message, frame)
+    yield from _random_samples(message, frame, random)
+
+
+def samples_at_least(
+    least: int, message: Message, frame: Frame, random: Random
+) -> Iterator[tuple[Values, Values]]:
+    """Yield so many `samples`, or as many as it takes until each boundary was there."""
+    yielded = 0
+    for sample in _boundary_samples(message, frame):
+        yielded += 1
+        yield sample
+    yield from islice(_random_samples(message, frame, random), max(0, least - yielded))
+
+
+def boundary_rounds(message: Message, frame: Frame) -> int:
+    """Number of samples that have each boundary once."""
+    return sum(1 for _ in _boundary_samples(message, frame))
+
+
+def _random_samples(
+    message: Message, frame: Frame, random: Random
+) -> Iterator[tuple[Values, Values]]:
     chance = Chance(random)
     while True:
         tries = (_sample(message, frame, chance) for _ in range(_TRIES))
@@ -114,11 +136,6 @@ def samples(message: Message, frame: Frame, random: Random) -> Iterator[tuple[Va
         if sample is None:
             return
         yield sample
-
-
-def boundary_rounds(message: Message, frame: Frame) -> int:
-    """Number of samples that have each boundary once."""
-    return sum(1 for _ in _boundary_samples(message, frame))
 
 
 def _boundary_samples(message: Message, frame: Frame) -> Iterator[tuple[Values, Values]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import islice
 from random import Random
 from typing import Any
 
@@ -12,7 +11,7 @@ import msgspec
 
 from protogen.copying import replace
 from protogen.fuzzing.engine import Engine, Refused, Seen
-from protogen.fuzzing.samples import Values, boundary_rounds, samples
+from protogen.fuzzing.samples import Values, boundary_rounds, samples, samples_at_least
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 
@@ -44,8 +43,7 @@ def cases(protocol: Protocol, count: int, seed: int, only: str | None = None) ->
     """
     for sender, message in _messages(protocol, only):
         random = Random(f"{seed} {sender.name} {message.name}")  # noqa: S311 - nothing secret
-        wanted = max(count, boundary_rounds(message, sender.frame))
-        for values, parts in islice(samples(message, sender.frame, random), wanted):
+        for values, parts in samples_at_least(count, message, sender.frame, random):
             yield Case(sender.name, message.name, values, parts)
 
 
