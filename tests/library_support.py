@@ -26,6 +26,10 @@ ERRORS = 0.01
 """Share of bytes that are damaged where recovery is compared."""
 
 
+_ENCODED: dict[int, tuple[Case, bytes]] = {}
+"""Frames that were made, by the identity of their case, which is kept for that."""
+
+
 class Peer(Protocol):
     """What an independent implementation does. Values are those of JSON lines."""
 
@@ -49,6 +53,13 @@ def peer_module(name: str) -> ModuleType:
 
 def encoded(name: str, case: Case) -> bytes:
     """The frame of a case, in the first form that it fits."""
+    known = _ENCODED.get(id(case))
+    if known is None:
+        known = _ENCODED[id(case)] = case, _encoded(name, case)
+    return known[1]
+
+
+def _encoded(name: str, case: Case) -> bytes:
     codec = module_at(FOLDER / f"{name}.yaml").PROTOCOL
     spec = codec.sender(case.sender)
     kinds = {kind.NAME: kind for kind in (*spec.messages, *spec.encode_only)}
