@@ -63,8 +63,8 @@ def _encoded(name: str, case: Case) -> bytes:
     codec = module_at(FOLDER / f"{name}.yaml").PROTOCOL
     spec = codec.sender(case.sender)
     kinds = {kind.NAME: kind for kind in (*spec.messages, *spec.encode_only)}
-    message = kinds[case.message].from_dict(case.values)
-    frame: bytes = codec.encode(message, spec.name, **arguments(case.parts))
+    record = kinds[case.message].from_dict(case.values)
+    frame: bytes = codec.encode(record, spec.name, **arguments(case.parts))
     return frame
 
 
