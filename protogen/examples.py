@@ -15,7 +15,7 @@ from typing import Any
 import msgspec
 
 from protogen.live.codec import module_of
-from protogen.model.frame import Frame, LiteralPart
+from protogen.model.frame import Frame, LiteralPart, NumberPart
 from protogen.model.messages import Example, Message, given_parts
 from protogen.model.protocol import Protocol
 from protogen.problems import Problems
@@ -46,7 +46,7 @@ class _Reading(msgspec.Struct, frozen=True):
     fails: str
     """The reason, `unknown`, or nothing where it is a message."""
     message: Any = None
-    parts: Mapping[str, int] = {}
+    parts: Mapping[str, int | str] = {}
 
 
 class _Verification:
@@ -93,7 +93,9 @@ class _Verification:
 
     def _made_hint(self) -> str | None:
         """The frame that the values make, to be copied; None where they make none."""
-        values, parts = self._example.values or {}, self._numbers()
+        values, numbers = self._example.values or {}, self._numbers()
+        given = given_parts(self._frame, self._message)
+        parts = {part.name: part.shown(numbers[part.name]) for part in given}
         if self._reading.message is not None and self._received_as == self._reading.message.NAME:
             values = {**self._reading.message.to_dict(), **values}
             parts |= {name: self._reading.parts[name] for name in self._chosen}
@@ -132,14 +134,16 @@ class _Verification:
 
     def _numbers(self) -> dict[str, int]:
         """Identity, counters and values of the parts that the example does not print."""
-        numbers = {
-            part.name: self._example.parts.get(part.name, value)
-            for part, value in zip(self._frame.identity, self._message.identity, strict=True)
-        }
+        parts: dict[NumberPart, int] = dict(
+            zip(self._frame.identity, self._message.identity, strict=True)
+        )
         for part in self._frame.caller_parts:
-            default = part.default if part.default is not None else part.least
-            numbers[part.name] = self._example.parts.get(part.name, default)
-        return numbers
+            parts[part] = part.default if part.default is not None else part.least
+        stated = self._example.parts
+        return {
+            part.name: part.raw(stated[part.name]) if part.name in stated else value
+            for part, value in parts.items()
+        }
 
     def _read(self, wire: bytes) -> _Reading:
         decoder = self._module.Decoder(sender=self._sender.name)
@@ -184,7 +188,7 @@ class _Verification:
         if made != wire:
             self._report("PG161", f"its values encode to {_hex(made)}, not to {_hex(wire)}")
 
-    def _encoded(self, message: Any, parts: dict[str, int], *, strict: bool) -> bytes:
+    def _encoded(self, message: Any, parts: dict[str, int | str], *, strict: bool) -> bytes:
         sender = self._sender
         form = sender.form or None
         made: bytes = self._module.PROTOCOL.encode(

@@ -138,16 +138,20 @@ def described(tables: Tables) -> list[tuple[Any, ...]]:
     """Every event, in order: offset, size, and what it is."""
     found: list[tuple[Any, ...]] = []
     for name, table in tables.messages.items():
-        parts = [c for c in tables.schema.messages[name].columns if c.role == "part"]
+        columns = tables.schema.messages[name].columns
         for row in table:
-            shown = {c.source: row[c.name].item() for c in parts}
+            shown = _parts(columns, row)
             found.append((*_place(row), name, shown, fields_of(tables, name, row)))
     found += [(*_place(row), "invalid", int(row["reason"])) for row in tables.invalid]
-    parts = [c for c in tables.schema.unknown.columns if c.role == "part"]
     for row in tables.unknown:
-        shown = {c.source: row[c.name].item() for c in parts}
+        shown = _parts(tables.schema.unknown.columns, row)
         found.append((*_place(row), "unknown", shown, tables.payload(row)))
     return sorted(found, key=lambda item: item[0])
+
+
+def _parts(columns: tuple[Column, ...], row: Any) -> dict[str, Any]:
+    parts = [column for column in columns if column.role == "part"]
+    return {part.source: _value(part, row[part.name], 0, Scope()) for part in parts}
 
 
 def _place(row: Any) -> tuple[int, int, int]:

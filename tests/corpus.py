@@ -237,10 +237,11 @@ def unknown_frames(path: Path, sender: Sender) -> Iterator[bytes]:
             continue  # The identity is known, or no frame has so many bytes.
 
 
-def _any_value(part: NumberPart, dice: Random) -> int:
+def _any_value(part: NumberPart, dice: Random) -> int | str:
     if isinstance(part, ChoicePart):
-        return dice.choice(part.values)
-    return dice.choice([part.least, part.greatest, dice.randint(part.least, part.greatest)])
+        return part.shown(dice.choice(part.values))
+    any_of_them = dice.randint(part.least, part.greatest)
+    return part.shown(dice.choice([part.least, part.greatest, any_of_them]))
 
 
 @cache

@@ -19,7 +19,8 @@ def telling_bytes(sender: Any) -> bytes:
         if isinstance(part, rt.LiteralPart):
             found |= set(part.value)
     for message in sender.messages:
-        found |= set(message.IDENTITY)
+        for part, value in zip(sender.layout.identity, message.IDENTITY, strict=True):
+            found |= set(part.number.encode(value))
     if isinstance(spec.start, rt.StartWords):
         found |= set(b"".join(spec.start.words))
     if spec.transparency is not None:

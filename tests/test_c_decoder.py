@@ -247,7 +247,10 @@ def parts_of(sender: Sender, message: Message, given: Any) -> dict[str, int]:
         if part in given_parts(sender.frame, message)
     }
     defaults |= {part.name: part.default for part in sender.frame.caller_parts}
-    return {name: given.get(name, default or 0) for name, default in defaults.items()}
+    known = {part.name: part for part in (*sender.frame.identity, *sender.frame.caller_parts)}
+    return {
+        name: given.get(name, known[name].shown(default or 0)) for name, default in defaults.items()
+    }
 
 
 @each("streams")

@@ -618,9 +618,14 @@ def decoded(path: Path, sender: str) -> list[Any]:
     return events
 
 
-def zip_values(spec: Any, numbers: tuple[int, ...], names: list[str]) -> list[tuple[str, int]]:
-    shown = zip(spec.layout.shown, numbers, strict=True)
-    return [(name, value) for name, value in shown if name in names]
+def zip_values(spec: Any, numbers: tuple[int, ...], names: list[str]) -> list[tuple[str, Any]]:
+    texts = dict(spec.layout.texts)
+    shown = enumerate(zip(spec.layout.shown, numbers, strict=True))
+    return [
+        (name, texts[index].text(value) if index in texts else value)
+        for index, (name, value) in shown
+        if name in names
+    ]
 
 
 # --- values that are not in order -----------------------------------------------------------------

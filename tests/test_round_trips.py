@@ -67,9 +67,9 @@ class Case:
         return self.message.name
 
     @property
-    def identity(self) -> dict[str, int]:
-        names = [part.name for part in self.sender.frame.identity]
-        return dict(zip(names, self.message.identity, strict=True))
+    def identity(self) -> dict[str, int | str]:
+        each = zip(self.sender.frame.identity, self.message.identity, strict=True)
+        return {part.name: part.shown(value) for part, value in each}
 
 
 CASES = [
@@ -209,10 +209,11 @@ def plain_payloads(case: Case) -> list[bytes]:
     return in_order[:: max(1, len(in_order) // 4)] + in_order[-1:]
 
 
-def check_payload(case: Case, payload: bytes, parts: Mapping[str, int] | None = None) -> None:
+def check_payload(case: Case, payload: bytes, parts: Mapping[str, int | str] | None = None) -> None:
     """Whatever the payload is, a frame that a decoder accepts is made of its values again."""
     if parts is None:
-        parts = {part.name: part.greatest for part in case.sender.frame.caller_parts}
+        greatest = ((part, part.greatest) for part in case.sender.frame.caller_parts)
+        parts = {part.name: part.shown(value) for part, value in greatest}
     try:
         frame = case.format.build({**case.identity, **parts, "payload": payload})
     except construct.ConstructError:

@@ -14,7 +14,9 @@ from passes_support import HEAD
 from passes_support import protocol_of as model_of
 
 from protogen.live.codec import module_of
+from protogen.model.frame import IdentityPart
 from protogen.model.identities import Identities
+from protogen.model.types import Integer
 from protogen.runtime.api import EncodeError
 
 SEVERAL = ROOT / "tests" / "framings" / "several_identities.yaml"
@@ -134,7 +136,10 @@ class TestIdentities:
         assert self.RUNS.first == (1, 0)
         assert (7, 1) in self.RUNS
         assert (4, 1) not in self.RUNS
-        assert str(self.RUNS) == "0x01..0x03, 0x07 0x00..0x01"
+        one, other = (
+            IdentityPart(name=name, type=Integer(bits=8), least=0, greatest=255) for name in "ab"
+        )
+        assert self.RUNS.shown([one, other]) == "0x01..0x03, 0x07 0x00..0x01"
 
     def test_one_that_two_have_in_common(self) -> None:
         assert self.RUNS.meet(Identities((((3, 9),), ((1, 5),)))) == (3, 1)

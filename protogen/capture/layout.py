@@ -76,8 +76,15 @@ def shown_parts(sender: Sender) -> tuple[NumberPart, ...]:
 
 def _parts(parts: Iterable[NumberPart], taken: Sequence[str]) -> Iterator[Column]:
     for part in parts:
-        name = _free(part.name, taken)
-        yield Column(name=name, role="part", source=part.name, shape=_number(part.type), part=part)
+        is_text = part.type.is_text
+        yield Column(
+            name=_free(part.name, taken),
+            role="part",
+            source=part.name,
+            shape=Text(part.type.size) if is_text else _number(part.type),
+            dimensions=(Dimension(part.type.size),) if is_text else (),
+            part=part,
+        )
 
 
 def _place(name: str, shape: Number, others: Iterable[Column]) -> Column:

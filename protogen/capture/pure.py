@@ -117,7 +117,8 @@ def _framed(table: TableSchema, numbered: Sequence[tuple[int, Any]]) -> Rows:
     for column in table.columns:
         if column.role == "part":
             name = attribute(column.source)
-            found[column.name] = [getattr(event.parts, name) for _, event in numbered]
+            values = [getattr(event.parts, name) for _, event in numbered]
+            found[column.name] = _array(column, column.dimensions, values, ChainMap())
     return found
 
 

@@ -218,6 +218,13 @@ class TableSchema(msgspec.Struct, frozen=True, kw_only=True):
         """In the order of the row."""
         return self.row.columns
 
+    def part(self, name: str) -> Column:
+        """The column of that part of the frame; raises KeyError."""
+        for column in self.columns:
+            if (column.role, column.source) == ("part", name):
+                return column
+        raise KeyError(name)
+
     @property
     def fields(self) -> tuple[Column, ...]:
         """The message's columns alone."""

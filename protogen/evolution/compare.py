@@ -75,12 +75,12 @@ def _messages(
     for message in old.messages:
         name = messages.get(message.name)
         if name is None:
-            yield _deleted(message, new, endpoints)
+            yield _deleted(message, old, new, endpoints)
             continue
         other = after[name]
         if name != message.name:
             yield _change("message-renamed", message, named(message.name, name))
-        yield from _senders(message, other, new, endpoints)
+        yield from _senders(message, other, old, new, endpoints)
         found = list(FieldComparison(message.name).compare(message.fields, other.fields))
         yield from found
         if message.sizes != other.sizes and not any(_is_wire(item) for item in found):
@@ -88,7 +88,7 @@ def _messages(
     known = set(messages.values())
     for message in new.messages:
         if message.name not in known:
-            text = f"{', '.join(message.senders)} sends it, {_identity(message)}"
+            text = f"{', '.join(message.senders)} sends it, {_identity(message, new)}"
             yield _change("message-added", message, text)
             yield from _unskippable(message, old, new, endpoints)
 
@@ -123,7 +123,7 @@ def _obstacle(message: Message, old: FramePlan, new: FramePlan) -> str:
 
 
 def _senders(
-    message: Message, other: Message, new: Protocol, endpoints: dict[str, str]
+    message: Message, other: Message, old: Protocol, new: Protocol, endpoints: dict[str, str]
 ) -> Iterator[Change]:
     names = {sender: endpoints.get(sender, sender) for sender in message.senders}
     if not set(other.senders) <= set(names.values()):
@@ -133,7 +133,8 @@ def _senders(
         if name in other.senders:
             continue
         if _is_reserved(new, name, message.told_by):
-            words = f"{sender} does not send it any more, {_identity(message)} is reserved"
+            identity = _identity(message, old)
+            words = f"{sender} does not send it any more, {identity} is reserved"
             yield _change("message-reserved", message, words)
         else:
             words = f"{sender} does not send it any more"
@@ -146,11 +147,12 @@ def _is_reserved(protocol: Protocol, sender: str, identities: Identities) -> boo
     return all(any(item.covers(run) for item in own) for run in identities.each_run())
 
 
-def _deleted(message: Message, new: Protocol, endpoints: dict[str, str]) -> Change:
+def _deleted(message: Message, old: Protocol, new: Protocol, endpoints: dict[str, str]) -> Change:
+    identity = _identity(message, old)
     senders = [endpoints.get(item, item) for item in message.senders]
     if all(_is_reserved(new, sender, message.told_by) for sender in senders):
-        return _change("message-reserved", message, f"{_identity(message)} is reserved")
-    return _change("message-deleted", message, f"{_identity(message)} is free for another meaning")
+        return _change("message-reserved", message, f"{identity} is reserved")
+    return _change("message-deleted", message, f"{identity} is free for another meaning")
 
 
 def _identities(
@@ -161,22 +163,22 @@ def _identities(
     for message in old.messages:
         name = messages.get(message.name)
         if name in after:
-            found = _other_identity(message, after[name], protocol, new.endpoint)
+            words = named(_shown(message, old), _shown(after[name], new))
+            found = _other_identity(message, after[name], words, protocol, new.endpoint)
             yield from (replace(item, sender=old.name) for item in found)
         mine = {messages.get(item) for item in before.of(message.told_by)} | {name}
         taken = [item for item in owners.of(message.told_by) if item not in mine]
         if taken:
-            words = f"{_shown(message)} was {message.name}, is {', '.join(taken)}"
+            words = f"{_shown(message, old)} was {message.name}, is {', '.join(taken)}"
             change = _change("identity-reused", message, words)
             yield replace(change, sender=old.name, taken_by=tuple(taken))
 
 
 def _other_identity(
-    old: Message, new: Message, protocol: Protocol, endpoint: str
+    old: Message, new: Message, words: str, protocol: Protocol, endpoint: str
 ) -> Iterator[Change]:
     """Changes of a message's identities: more are unknown to old receivers, fewer to new ones."""
     before, after = old.told_by, new.told_by
-    words = named(_shown(old), _shown(new))
     if not after.covers(before):
         gone = [run for run in before.each_run() if not after.covers(run)]
         kept = all(_is_reserved(protocol, endpoint, run) for run in gone)
@@ -220,7 +222,7 @@ def _overloads(old: Sender, new: Sender, messages: dict[str, str]) -> Iterator[C
             words = named(before[identity] or "told by size", after[identity] or "told by size")
             yield Change(
                 rule="message-overload",
-                place=f"{old.name} {Identities.only(identity)}",
+                place=f"{old.name} {Identities.only(identity).shown(old.frame.identity)}",
                 text=words,
                 sender=old.name,
             )
@@ -230,12 +232,14 @@ def _change(rule: str, message: Message, text: str) -> Change:
     return Change(rule=rule, place=message.name, text=text, message=message.name)
 
 
-def _identity(message: Message) -> str:
-    return f"identity {_shown(message)}" if message.identity else "without an identity"
+def _identity(message: Message, protocol: Protocol) -> str:
+    if not message.identity:
+        return "without an identity"
+    return f"identity {_shown(message, protocol.senders_of(message)[0])}"
 
 
-def _shown(message: Message) -> str:
-    return str(message.told_by) or "none"
+def _shown(message: Message, sender: Sender) -> str:
+    return message.told_by.shown(sender.frame.identity) or "none"
 
 
 # --- what belongs together ------------------------------------------------------------------------

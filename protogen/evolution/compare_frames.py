@@ -96,9 +96,12 @@ class _Frames:
     def _number(
         self, old: NumberPart, new: NumberPart, renamed: dict[str, str]
     ) -> Iterator[Change]:
-        if _layout(old.type) != _layout(new.type):
-            words = named(old.type.label, new.type.label)
-            yield self._change("frame-part-type", old.name, words)
+        labels = named(old.type.label, new.type.label)
+        is_alike = _layout(old.type) == _layout(new.type)
+        if is_alike and old.type.is_text != new.type.is_text:
+            yield self._change("frame-part-text", old.name, labels)
+        if not is_alike:
+            yield self._change("frame-part-type", old.name, labels)
         elif isinstance(old, ChoicePart) and isinstance(new, ChoicePart):
             if set(old.words) != set(new.words):
                 words = named(_alternatives(old), _alternatives(new))
@@ -184,8 +187,10 @@ def _is_alike(old: NumberPart, new: NumberPart) -> bool:
     return numbers[0] == numbers[1]
 
 
-def _default(part: Part) -> int | None:
-    return part.default if isinstance(part, CounterPart | ValuePart) else None
+def _default(part: Part) -> int | str | None:
+    if not isinstance(part, CounterPart | ValuePart) or part.default is None:
+        return None
+    return part.shown(part.default)
 
 
 def _layout(type: PartType) -> tuple[object, ...]:

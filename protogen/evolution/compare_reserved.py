@@ -71,7 +71,8 @@ def _entries(
     reserved = protocol.reserved
     for item in reserved.identities:
         place = endpoints.get(item.sender, item.sender)
-        yield _Entry(place, item.told_by, f"identity {item.told_by} of {item.sender}")
+        shown = item.told_by.shown(protocol.forms(item.sender)[0].frame.identity)
+        yield _Entry(place, item.told_by, f"identity {shown} of {item.sender}")
     for names in reserved.fields:
         place = messages.get(names.message, names.message)
         for name in names.names:

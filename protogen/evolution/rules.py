@@ -37,6 +37,7 @@ _W, _V, _S, _N = Category.WIRE, Category.VALUE, Category.SOURCE, Category.NONE
 _BOTH = "change both ends together, or give the new layout an identity of its own"
 _NEW_ID = "add a message with an identity of its own and reserve this one"
 _TOGETHER = "change both ends together"
+_USERS = "check the code that uses it"
 _RENAME = "keep the name, or change the code on both ends"
 
 RULES: tuple[Rule, ...] = (
@@ -48,6 +49,7 @@ RULES: tuple[Rule, ...] = (
     Rule("frame-part-kind", _W, "a part of the frame has another job", _TOGETHER),
     Rule("frame-part-role", _S, "senders choose a part's value another way", "check the senders"),
     Rule("frame-part-type", _W, "a number of the frame is encoded another way", _TOGETHER),
+    Rule("frame-part-text", _S, "a part of the frame is shown another way", _USERS),
     Rule("frame-part-renamed", _S, "a part of the frame has another name", _RENAME),
     Rule(
         "frame-part-range", _S, "senders may use other values of a part", "check what receivers do"
@@ -109,7 +111,7 @@ RULES: tuple[Rule, ...] = (
     Rule("field-sign", _W, "a number has a sign now, or none any more", _BOTH),
     Rule("field-byte-order", _W, "a number's bytes stand in another order", _BOTH),
     Rule("field-encoding", _W, "a field is encoded another way", _BOTH),
-    Rule("field-kind", _S, "the same bytes are shown another way", "check the code that uses it"),
+    Rule("field-kind", _S, "the same bytes are shown another way", _USERS),
     Rule("field-count", _W, "a field has another number of elements or bytes", _BOTH),
     Rule("field-cases", _W, "a switch has other cases", _BOTH),
     Rule("field-presence", _W, "a field is there in other payloads", _BOTH),
@@ -120,7 +122,7 @@ RULES: tuple[Rule, ...] = (
     Rule("field-scale", _V, "the same number means another quantity", _BOTH),
     Rule("field-offset", _V, "the same number means another quantity", _BOTH),
     Rule("field-unit", _V, "the same number has another unit", _BOTH),
-    Rule("field-rescaled", _S, "the same quantity has another unit", "check the code that uses it"),
+    Rule("field-rescaled", _S, "the same quantity has another unit", _USERS),
     Rule("field-special", _V, "a special value is new, gone or another", _BOTH),
     Rule("field-special-renamed", _S, "a special value has another name", _RENAME),
     # named values

@@ -116,7 +116,7 @@ class Calls:
         sender: str,
         message: str,
         values: Values,
-        parts: Mapping[str, int],
+        parts: Mapping[str, int | str],
         capacity: int | None = None,
     ) -> Call[Encoded]:
         """Make a frame; raises Unfit."""
@@ -130,7 +130,7 @@ class Calls:
         return bool(self._driver.frame(sender, message).send)
 
     def send(
-        self, sender: str, message: str, values: Values, parts: Mapping[str, int]
+        self, sender: str, message: str, values: Values, parts: Mapping[str, int | str]
     ) -> Call[Encoded]:
         """Send a frame byte by byte; raises Unfit."""
         frame = self._driver.frame(sender, message)
@@ -142,9 +142,9 @@ class Calls:
         taken: Iterable[DrivenPart],
         message: str,
         values: Values,
-        parts: Mapping[str, int],
+        parts: Mapping[str, int | str],
     ) -> bytes:
-        numbers = [number(parts[part.name], part.size) for part in taken]
+        numbers = [number(part.part.raw(parts[part.name]), part.size) for part in taken]
         model = self._driver.messages[self._driver.message(message)].model
         return b"".join(numbers) + pack(model.plan, values)
 
@@ -210,7 +210,7 @@ class Calls:
 
 
 def _parts(answers: Answers, decoder: DrivenDecoder) -> Values:
-    return {part.name: answers.number(part.size) for part in decoder.parts}
+    return {item.name: item.part.shown(answers.number(item.size)) for item in decoder.parts}
 
 
 def _read_encoded(answers: Answers) -> Encoded:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import msgspec
 
+from protogen.model.frame import NumberPart
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 
@@ -24,6 +25,7 @@ class DrivenPart(msgspec.Struct, frozen=True):
     name: str
     """In the schema."""
     type: str
+    part: NumberPart
     member: str = ""
     """The member of an event's parts."""
 

@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from protogen.model.expressions import Number, every, linear, operands
-from protogen.model.frame import ChoicePart, CounterPart, ValuePart
+from protogen.model.frame import ChoicePart, CounterPart, IdentityPart, ValuePart
 from protogen.model.identities import Runs
 from protogen.model.messages import Message
 from protogen.model.payload_plan import (
@@ -56,15 +56,23 @@ class Choices(msgspec.Struct, frozen=True):
 def part_choices(part: CounterPart | ValuePart) -> Choices:
     """Choices for a part of the frame that the caller gives."""
     if isinstance(part, ChoicePart):
-        return Choices(part.values, lambda random: random.choice(part.values))
+        values = tuple(map(part.shown, part.values))
+        return Choices(values, lambda random: random.choice(values))
+    if part.type.is_text:
+        return _text_part_choices(part.type.size)
     least, greatest = part.least, part.greatest
     return Choices((least, greatest), lambda random: random.randint(least, greatest))
 
 
-def run_choices(runs: Runs) -> Choices:
+def _text_part_choices(size: int) -> Choices:
+    texts = [character * size for character in ("A", "\n", chr(_LAST_OF_ASCII))]
+    return Choices(["", *texts], lambda random: _any_text(random, random.randint(0, size)))
+
+
+def run_choices(part: IdentityPart, runs: Runs) -> Choices:
     """Choices for an identity part of which a message has several values."""
-    ends = tuple(dict.fromkeys(end for run in runs for end in run))
-    return Choices(ends, lambda random: random.randint(*random.choice(runs)))
+    ends = tuple(dict.fromkeys(part.shown(end) for run in runs for end in run))
+    return Choices(ends, lambda random: part.shown(random.randint(*random.choice(runs))))
 
 
 def unspecified_choices(message: Message, sizes: SizeSet) -> Choices:

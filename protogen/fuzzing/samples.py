@@ -164,7 +164,7 @@ def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, V
     parts = {part.name: chooser.choose(part_choices(part)) for part in frame.caller_parts}
     for index, part in enumerate(frame.identity):
         if message.chooses(index):
-            parts[part.name] = chooser.choose(run_choices(message.told_by.runs[index]))
+            parts[part.name] = chooser.choose(run_choices(part, message.told_by.runs[index]))
     return fields, parts
 
 

@@ -8,7 +8,7 @@ import msgspec
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.origin import NOTHING, About
-from protogen.model.types import Integer, codec
+from protogen.model.types import Integer, characters, codec
 
 PartType = Integer
 """Type of a part that is a number: an integer of whole bytes, in wire order."""
@@ -57,6 +57,14 @@ class TypedPart(Part, frozen=True, kw_only=True):
     def encode(self, value: int) -> bytes:
         """Bytes of a value, before stuffing; raises ValueError if the part can't hold it."""
         return codec(self.type).encode(value)
+
+    def shown(self, value: int) -> int | str:
+        """A value as people see it: characters where the part is a text."""
+        return characters(self.type).text(value) if self.type.is_text else value
+
+    def raw(self, value: int | str) -> int:
+        """The number of a value as people see it; raises EncodeError if there is none."""
+        return characters(self.type).number(value) if self.type.is_text else int(value)
 
 
 class NumberPart(TypedPart, frozen=True, kw_only=True):

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import product
+from typing import TYPE_CHECKING
 
 import msgspec
+
+if TYPE_CHECKING:
+    from protogen.model.frame import IdentityPart
 
 Identity = tuple[int, ...]
 """Raw value of each identity part, in wire order."""
@@ -73,8 +77,10 @@ class Identities(msgspec.Struct, frozen=True):
         for runs in product(*self.runs):
             yield Identities(tuple((run,) for run in runs))
 
-    def __str__(self) -> str:
-        return " ".join(map(_shown, self.runs))
+    def shown(self, parts: Sequence[IdentityPart]) -> str:
+        """These identities of parts, in words: a text as such, numbers in hex."""
+        each = zip(parts, self.runs, strict=True)
+        return " ".join(", ".join(_run(part, *run) for run in runs) for part, runs in each)
 
     def __iter__(self) -> Iterator[Identity]:
         """All of them; there can be very many."""
@@ -96,12 +102,10 @@ def _are_within(runs: Runs, others: Runs) -> bool:
     return all(any(first <= run[0] and run[1] <= last for first, last in joined) for run in runs)
 
 
-def _shown(runs: Runs) -> str:
-    texts = (
-        f"0x{first:02X}" if first == last else f"0x{first:02X}..0x{last:02X}"
-        for first, last in runs
-    )
-    return ", ".join(texts)
+def _run(part: IdentityPart, first: int, last: int) -> str:
+    if part.type.is_text:
+        return f'"{part.shown(first)}"'  # Texts have no ranges.
+    return f"0x{first:02X}" if first == last else f"0x{first:02X}..0x{last:02X}"
 
 
 def _meet(one: tuple[int, int], other: tuple[int, int]) -> bool:

@@ -33,7 +33,8 @@ class Example(msgspec.Struct, frozen=True, kw_only=True):
     bytes: bytes
     covers: tuple[str, ...] | None
     values: dict[str, Any] | None
-    parts: dict[str, int]
+    parts: dict[str, int | str]
+    """Values of parts, as events show them."""
     contradicts: Contradiction | None = None
     about: About = NOTHING
     span: Span

@@ -13,11 +13,12 @@ import msgspec
 
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.sizes import SizeSet
-from protogen.runtime.payload.number import Number
+from protogen.runtime.payload.number import Characters, Number
 from protogen.runtime.payload.numerals import Numeral as WrittenNumeral
 
 ByteOrder = Literal["little", "big"]
-IntegerRole = Literal["number", "byte", "char", "bool"]
+IntegerRole = Literal["number", "byte", "char", "bool", "ascii"]
+"""Contents of an integer; `ascii`: characters of a part of the frame, the first one the highest."""
 MachineKind = Literal["bool", "int", "uint", "float"]
 """Kind of the machine number that holds a value."""
 
@@ -129,7 +130,13 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
         """The type in the words of the schema language, such as `uint16 big`."""
         if self.text is not None:
             return f"{self.name} as {self.text.size} digits {self.text.name}"
-        return self.name if self.size <= 1 else f"{self.name} {self.byte_order}"
+        plain = self.size <= 1 or self.is_text
+        return self.name if plain else f"{self.name} {self.byte_order}"
+
+    @property
+    def is_text(self) -> bool:
+        """True if people see it as characters."""
+        return self.role == "ascii"
 
     @property
     def kind(self) -> MachineKind:
@@ -228,6 +235,11 @@ ALPHABETS: Mapping[str, bytes] = {
 
 NumberType = Integer | Float
 """A type of numbers."""
+
+
+def characters(type_: Integer) -> Characters:
+    """Codec of an integer that people see as characters."""
+    return Characters(type_.size, seven_bit=type_.byte_bits == 7)
 
 
 def codec(type_: NumberType) -> Number | WrittenNumeral:

@@ -30,7 +30,7 @@ from protogen.runtime.identities import Identities
 from protogen.runtime.lazy import importer, lazily
 from protogen.runtime.payload.enums import Flags, OpenEnum
 from protogen.runtime.payload.message import Message, Record, Sizes
-from protogen.runtime.payload.number import Number
+from protogen.runtime.payload.number import Characters, Number
 from protogen.runtime.payload.numerals import Numeral
 from protogen.runtime.payload.physical import (
     BitRange,
@@ -51,6 +51,7 @@ __all__ = [
     "BitRange",
     "BoolRule",
     "BytesLike",
+    "Characters",
     "ChecksumPart",
     "CodecError",
     "CounterPart",

@@ -16,6 +16,7 @@ from protogen.runtime.framing.lines import split_parts
 from protogen.runtime.framing.reading import read_frame
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
 from protogen.runtime.payload.message import Message, build_payload
+from protogen.runtime.payload.number import GivenValue
 
 
 class Protocol(Generic[MessageT_co, PartsT_co]):
@@ -69,7 +70,7 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         strict: bool = True,
         engine: Engine = "construct",
         form: str | None = None,
-        **parts: int | None,
+        **parts: GivenValue,
     ) -> bytes:
         """The frame of a message, as the reference makes it.
 
@@ -83,7 +84,7 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         return _encode(self._senders_of(message, sender, form), message, _named(parts), strict)
 
     def encode_unknown(
-        self, sender: str, parts: Mapping[str, int], payload: bytes, form: str | None = None
+        self, sender: str, parts: Mapping[str, GivenValue], payload: bytes, form: str | None = None
     ) -> bytes:
         """The frame of an unknown message; `parts` gives its identity, counters and values.
 
@@ -169,7 +170,7 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         return chosen
 
 
-def _named(parts: Mapping[str, int | None]) -> dict[str, int | None]:
+def _named(parts: Mapping[str, GivenValue]) -> dict[str, GivenValue]:
     """Arguments by the schema's names of the parts."""
     return {schema_name(name): value for name, value in parts.items()}
 
@@ -181,7 +182,7 @@ def _sends(sender: SenderSpec[Any, Any], message: Message) -> bool:
 def _encode(
     senders: Sequence[SenderSpec[Any, Any]],
     message: Message,
-    parts: Mapping[str, int | None],
+    parts: Mapping[str, GivenValue],
     strict: bool,
 ) -> bytes:
     """The frame in the first form that fits."""
@@ -193,7 +194,7 @@ def _frame(
     sender: SenderSpec[Any, Any],
     message: Message,
     payload: bytes,
-    parts: Mapping[str, int | None],
+    parts: Mapping[str, GivenValue],
     strict: bool,
 ) -> bytes:
     identity, given = sender.choose_identity(type(message), parts)
@@ -221,7 +222,7 @@ class Encoder:
             for name, part in self._counters.items()
         }
 
-    def encode_next(self, message: Message, strict: bool = True, **parts: int | None) -> bytes:
+    def encode_next(self, message: Message, strict: bool = True, **parts: GivenValue) -> bytes:
         """The frame of a message, with the next value of each counter that `parts` does not give.
 
         Of several forms, it is of the first that fits. A given value is used once and does not
@@ -239,7 +240,7 @@ class Encoder:
         sender: SenderSpec[Any, Any],
         message: Message,
         strict: bool,
-        parts: Mapping[str, int | None],
+        parts: Mapping[str, GivenValue],
     ) -> bytes:
         counted = [part.name for part in _counters(sender) if parts.get(part.name) is None]
         given = arguments({**parts, **{name: self._next[name] for name in counted}})
@@ -259,7 +260,7 @@ class Encoder:
         sender: str,
         strict: bool,
         form: str = "",
-        **parts: int | None,
+        **parts: GivenValue,
     ) -> bytes:
         own = [item for item in self._senders if item.form == form]
         return _encode(own, message, _named(parts), strict)

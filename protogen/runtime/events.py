@@ -66,7 +66,7 @@ class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
         """The frame's identity, counters and values."""
         parts = self.kept_parts
         if parts is None:
-            parts = self.kept_parts = self.codec.parts(*self.numbers)
+            parts = self.kept_parts = self.codec.show(self.numbers)
         return parts
 
     @property
@@ -189,7 +189,7 @@ def frame_event(
     """The event of a complete frame; no message: its identity is unknown."""
     numbers = tuple(cut.numbers[name] for name in sender.layout.shown)
     if message is None:
-        parts = sender.parts(*numbers)
+        parts = sender.show(numbers)
         return UnknownEvent(offset, raw, sender.name, parts, cut.payload, sender)
     event: MessageEvent[MessageT_co, PartsT_co] = MessageEvent()
     event.offset, event.raw, event.numbers = offset, raw, numbers

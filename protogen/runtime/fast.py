@@ -16,10 +16,11 @@ from protogen.runtime.errors import ANYTHING, NeedsReference
 from protogen.runtime.events import UnknownEvent
 from protogen.runtime.formats import frame_formats
 from protogen.runtime.framing.extraction import payload_of
+from protogen.runtime.framing.frame import ValuePart
 from protogen.runtime.framing.sender import Cutter, SenderSpec
 from protogen.runtime.payload.enums import KEPT, Flags, OpenEnum
 from protogen.runtime.payload.message import Message
-from protogen.runtime.payload.number import BYTES, ByteOrder, Number
+from protogen.runtime.payload.number import BYTES, ByteOrder, Characters, GivenValue, Number
 from protogen.runtime.payload.pairs import (
     PairLists,
     Pairs,
@@ -54,8 +55,20 @@ __all__ = [
     "new",
     "octets",
     "seven_bit_float",
+    "text",
     "unknown",
 ]
+
+
+def text(characters: Characters) -> Callable[[Any], int]:
+    """Reader of the number of some characters, which raises where the reference has to decide."""
+
+    def number(value: Any) -> int:
+        if type(value) is not str or not value.isascii():
+            raise NeedsReference
+        return characters.number(value)
+
+    return number
 
 
 class _New(Protocol):
@@ -70,7 +83,7 @@ def unknown(
     sender: SenderSpec[Any, Any], offset: int, raw: bytes, numbers: tuple[int, ...], payload: bytes
 ) -> UnknownEvent[Any]:
     """The event of a valid frame whose identity belongs to no message."""
-    return UnknownEvent(offset, raw, sender.name, sender.parts(*numbers), payload, sender)
+    return UnknownEvent(offset, raw, sender.name, sender.show(numbers), payload, sender)
 
 
 def checked(wire: bytes, cut: Cutter) -> bytes:
@@ -161,6 +174,12 @@ def add_writers(
                 message.__write__ = _writer(sender, encoders, arguments, tables)
 
 
+def _least(part: ValuePart) -> int | str:
+    """The least value of a part, as callers give it."""
+    number = part.number
+    return number.text(part.least) if isinstance(number, Characters) else part.least
+
+
 def _writer(
     sender: SenderSpec[Any, Any],
     encoders: Mapping[type[Message], Callable[..., bytes]],
@@ -168,12 +187,12 @@ def _writer(
     tables: Tables | None,
 ) -> Callable[[Any], bytes]:
     """Function that gives the payloads of a sender's messages."""
-    parts: list[int | None] | None = None
+    parts: list[GivenValue] | None = None
 
     def write_payload(message: Message) -> bytes:
         nonlocal parts
         if parts is None:
-            least = {part.name: part.least for part in sender.layout.values}
+            least = {part.name: _least(part) for part in sender.layout.values}
             parts = [least.get(name) for name in arguments]
         if tables is not None and not tables.are_filled:
             tables.fill()

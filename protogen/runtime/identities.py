@@ -10,6 +10,9 @@ from protogen.runtime.values import Frozen
 Identity = tuple[int, ...]
 """The values of a frame's identity parts, in wire order."""
 
+Runs = tuple[tuple[int, int], ...]
+"""Runs of values, each from the first to the last."""
+
 
 class Identities(Frozen):
     """All that some values of each identity part make up together.
@@ -19,9 +22,9 @@ class Identities(Frozen):
 
     __slots__ = ("runs",)
 
-    runs: tuple[tuple[tuple[int, int], ...], ...]
+    runs: tuple[Runs, ...]
 
-    def __init__(self, runs: tuple[tuple[tuple[int, int], ...], ...]) -> None:
+    def __init__(self, runs: tuple[Runs, ...]) -> None:
         self._set(runs)
 
     def __contains__(self, identity: Identity) -> bool:
@@ -30,11 +33,6 @@ class Identities(Frozen):
     def holds(self, index: int, value: int) -> bool:
         """True if the part of this index can have the value."""
         return any(first <= value <= last for first, last in self.runs[index])
-
-    def shown(self, index: int) -> str:
-        """Values of the part of this index, in words."""
-        texts = (str(one) if one == other else f"{one}..{other}" for one, other in self.runs[index])
-        return " or ".join(texts)
 
     @property
     def count(self) -> int:

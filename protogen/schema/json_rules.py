@@ -147,8 +147,14 @@ _PART_RULES = (
     _where(
         _with("literal"),
         "A literal is all that its part is.",
-        {"propertyNames": {"enum": ["literal", "unprotected", "doc", "source"]}},
+        {"propertyNames": {"enum": ["literal", "unprotected", "type", "doc", "source"]}},
     ),
+    _where(
+        _with("literal", "type"),
+        "Only a choice of literals can be a text.",
+        {"properties": {"literal": {"type": "object"}, "type": {"const": "ascii"}}},
+    ),
+    _where(_with("size"), "Only a text has a size.", {"properties": {"type": {"const": "ascii"}}}),
     _where(_with("algorithm"), "A checksum says what it covers.", _with("covers")),
     _where(
         _with("algorithm"),

@@ -53,7 +53,7 @@ def check_format(format: Any, payload: bytes) -> None:
 
 
 def encode(
-    module: ModuleType, sender: Sender, message: Message, made: Any, parts: dict[str, int]
+    module: ModuleType, sender: Sender, message: Message, made: Any, parts: dict[str, int | str]
 ) -> bytes | None:
     """The frame, which is the reference's; None where the schema allows that there is none.
 
@@ -107,7 +107,7 @@ def check_decoded(
     message: Message,
     frame: bytes,
     made: Any,
-    shown: dict[str, int],
+    shown: dict[str, int | str],
 ) -> None:
     """frame -> message, as one event and by `decode`."""
     (event,) = events_of(module, sender, [frame])

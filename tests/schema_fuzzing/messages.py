@@ -14,7 +14,7 @@ from schema_fuzzing.fields import structs
 from schema_fuzzing.frames import FramePlan
 from schema_fuzzing.names import MESSAGES, fresh, several
 from schema_fuzzing.numbers import ORDERS
-from schema_fuzzing.parts import PartPlan
+from schema_fuzzing.parts import PartPlan, identity_values, is_text, text_of
 from schema_fuzzing.setting import Built, Declared, Setting, Size
 
 
@@ -83,7 +83,7 @@ def _identified(draw: st.DrawFn, plan: Plan, found: list[MessagePlan]) -> list[M
         groups.setdefault("" if plan.shared else message.senders[0], []).append(index)
     for members in groups.values():
         scheme = plan.identity[found[members[0]].senders[0]]
-        values = st.tuples(*(st.integers(*part.bounds) for part in scheme))
+        values = st.tuples(*map(identity_values, scheme))
         count = len(members) if scheme else 0
         drawn = draw(st.lists(values, min_size=count, max_size=count, unique=True))
         several = _Several(draw, scheme, drawn)
@@ -114,8 +114,9 @@ class _Several:
         own = tuple(runs)
         for index, part in enumerate(self._scheme):
             for _ in range(self._draw(st.sampled_from([0, 1, 1, 2]))):
-                first = self._draw(st.integers(*part.bounds))
-                most = min(part.bounds[1], first + self._draw(st.sampled_from([0, 0, 1, 5, 3000])))
+                first = self._draw(identity_values(part))
+                more = 0 if is_text(part) else self._draw(st.sampled_from([0, 0, 1, 5, 3000]))
+                most = min(part.bounds[1], first + more)
                 run = (first, most)
                 found = [*runs]
                 found[index] = (*runs[index], run)
@@ -148,6 +149,8 @@ def _written_identity(
         for first, last in runs[1:]:
             is_one = first == last and draw(st.booleans())
             found.append(first if is_one else {"range": [first, last]})
+        if is_text(part):
+            found = [text_of(first, part.type) for first, _ in runs]
         written[part.name] = found if len(found) > 1 or draw(forms.one_in(9)) else found[0]
     if len(written) == 1 and not draw(forms.one_in(4)):
         return next(iter(written.values()))

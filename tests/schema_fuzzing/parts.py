@@ -108,6 +108,8 @@ class Maker:
         if self._draw(st.booleans()):
             written["default"] = self._draw(forms.octets(self._draw(st.sampled_from(words))))
         keys = {"literal": written, **self._draw(forms.about())}
+        if all(map(bytes.isascii, words)) and self._draw(forms.one_in(3)):
+            keys["type"] = "ascii"
         values = tuple(map(frozenset, zip(*words, strict=True)))
         return PartPlan(self.name(), "choice", keys, values, words=tuple(words))
 
@@ -137,6 +139,8 @@ class Maker:
 
     def number(self, role: str, *, start: bool = False) -> PartPlan:
         """A counter or a value; `start`: one byte with a range, which marks the frame's start."""
+        if role == "value" and not start and self._draw(forms.one_in(5)):
+            return self._text_part(role)
         type_, keys = self.type(one_byte=start)
         least, greatest = 0, type_.greatest
         if start or self._draw(forms.one_in(3)):
@@ -162,8 +166,27 @@ class Maker:
         bounds = identity_bounds(keys, type_)
         return PartPlan(name, "id", keys, type_.bytes_between(*bounds), type=type_, bounds=bounds)
 
+    def text(self) -> tuple[PartType, dict[str, Any]]:
+        """The type of a text, and the keys that say so."""
+        size = self._draw(st.sampled_from([1, 2, 3, 3, 8]))
+        keys = {"type": "ascii", "size": size}
+        return PartType("ascii", self._byte_bits * size, self._byte_bits, "big"), keys
+
+    def _text_part(self, role: str, **more: Any) -> PartPlan:
+        type_, keys = self.text()
+        keys.update(more)
+        if role == "value" and self._draw(st.booleans()):
+            keys["default"] = self._draw(characters(type_.size))
+        keys.update(self._draw(forms.about()))
+        bounds = (0, type_.greatest)
+        return PartPlan(
+            self.name(), role, keys, type_.bytes_between(*bounds), type=type_, bounds=bounds
+        )
+
     def new_identity(self, *, start: bool = False) -> PartPlan:
         """An identity part; `start`: its range sets it apart from 7-bit bytes."""
+        if not start and self._draw(forms.one_in(6)):
+            return self._text_part("id", id=True)
         type_, keys = self.type(one_byte=start)
         keys["id"] = True
         if start and type_.bits == 8 and self._draw(st.booleans()):
@@ -220,6 +243,39 @@ class Maker:
             if self._draw(st.booleans()):
                 found[key] = self._draw(values)
         return found, width
+
+
+def characters(size: int) -> st.SearchStrategy[str]:
+    """Texts of exactly so many ASCII characters."""
+    return st.text(st.characters(max_codepoint=0x7F), min_size=size, max_size=size)
+
+
+def is_text(part: PartPlan) -> bool:
+    """True if the part is a text."""
+    return part.type is not None and part.type.type == "ascii"
+
+
+def text_of(value: int, type_: PartType) -> str:
+    """All characters of a number, NUL included."""
+    places = range(type_.size - 1, -1, -1)
+    return "".join(chr(value >> type_.byte_bits * place & 0x7F) for place in places)
+
+
+def number_of(text: str, type_: PartType) -> int:
+    """The number of all characters."""
+    value = 0
+    for character in text:
+        value = value << type_.byte_bits | ord(character)
+    return value
+
+
+def identity_values(part: PartPlan) -> st.SearchStrategy[int]:
+    """The values of an identity part that a schema can name."""
+    type_ = part.type
+    assert type_ is not None
+    if type_.type == "ascii":
+        return characters(type_.size).map(lambda text: number_of(text, type_))
+    return st.integers(*part.bounds)
 
 
 def identity_bounds(keys: dict[str, Any], type_: PartType) -> tuple[int, int]:

@@ -134,7 +134,9 @@ def _grouped(raw: int, size: int, bits: int, order: str) -> bytes:
 # --- frames -------------------------------------------------------------------------------------
 
 
-def frame_bytes(frame: Frame, message: Message, payload: bytes, given: Mapping[str, int]) -> bytes:
+def frame_bytes(
+    frame: Frame, message: Message, payload: bytes, given: Mapping[str, int | str]
+) -> bytes:
     """The frame of a payload; `given` holds all counters and values."""
     return _Assembly(frame, message, payload, given).wire()
 
@@ -143,7 +145,7 @@ class _Assembly:
     """One frame."""
 
     def __init__(
-        self, frame: Frame, message: Message, payload: bytes, given: Mapping[str, int]
+        self, frame: Frame, message: Message, payload: bytes, given: Mapping[str, int | str]
     ) -> None:
         self._frame = frame
         self._payload = payload
@@ -198,7 +200,10 @@ class _Assembly:
                 counted = [other for other in self._present() if other.name in part.counts]
                 return number_bytes(part.type, sum(self._size(other) for other in counted))
             case NumberPart():
-                return number_bytes(part.type, self._numbers[part.name])
+                value = self._numbers[part.name]
+                if isinstance(value, str):
+                    return value.encode("latin-1").ljust(part.type.size, b"\0")
+                return number_bytes(part.type, value)
         raise AssertionError(part)
 
     def _size(self, part: Part) -> int:

@@ -26,6 +26,7 @@ COMMON = (
     "size: by the end", "size: by the message", "size: length", "size: length with a range",
     "counter", "value", "choice", "start: choice", "checksum over wire", "checksum when payload",
     "algorithm: parameters",
+    "text as a part: id", "text as a part: literal", "text as a part: value",
     "several identities", "overload by size", "overload by undecidable", "unspecified payload",
     "empty message",
     "type: ascii", "type: bytes", "type: bool", "type: byte", "type: char", "type: float32",
@@ -129,6 +130,9 @@ def _part(data: dict[str, Any]) -> Iterator[str]:
             yield "checksum when payload"
     if "byte_order" in data:
         yield "byte order of a part"
+    if data.get("type") == "ascii":
+        role = next((key for key in ("id", "literal") if key in data), "value")
+        yield f"text as a part: {role}"
 
 
 def _message(data: dict[str, Any]) -> Iterator[str]:

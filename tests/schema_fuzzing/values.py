@@ -12,7 +12,7 @@ from expression_oracle import worked_out
 from hypothesis import strategies as st
 
 from protogen.model.expressions import plain_name
-from protogen.model.frame import ChoicePart, CounterPart, Frame, ValuePart
+from protogen.model.frame import ChoicePart, CounterPart, Frame, IdentityPart, ValuePart
 from protogen.model.messages import Message
 from protogen.model.types import (
     Array,
@@ -49,33 +49,37 @@ def values_of(draw: st.DrawFn, message: Message) -> dict[str, Any]:
 
 
 @st.composite
-def parts_of(draw: st.DrawFn, frame: Frame, message: Message) -> dict[str, int]:
+def parts_of(draw: st.DrawFn, frame: Frame, message: Message) -> dict[str, int | str]:
     """Values for counters, values and identities to choose; left out sometimes if they may be."""
     chosen = {
-        part.name: draw(_between(*draw(st.sampled_from(message.told_by.runs[index]))))
+        part.name: part.shown(draw(_between(*draw(st.sampled_from(message.told_by.runs[index])))))
         for index, part in enumerate(frame.identity)
         if message.chooses(index) and draw(st.booleans())
     }
     return chosen | {
-        part.name: draw(
-            st.sampled_from(part.values)
-            if isinstance(part, ChoicePart)
-            else _between(part.least, part.greatest)
-        )
+        part.name: draw(_part(part))
         for part in frame.caller_parts
         if part.default is None or draw(st.booleans())
     }
 
 
-def all_parts(frame: Frame, message: Message, given: dict[str, int]) -> dict[str, int]:
+def _part(part: ValuePart | CounterPart) -> st.SearchStrategy[int | str]:
+    if isinstance(part, ChoicePart):
+        return st.sampled_from(list(map(part.shown, part.values)))
+    if part.type.is_text:
+        return _text(0, part.type.size).map(lambda text: text.rstrip("\0"))
+    return _between(part.least, part.greatest)
+
+
+def all_parts(frame: Frame, message: Message, given: dict[str, int | str]) -> dict[str, int | str]:
     """Parts that an event shows: identity, counters and values."""
     identity = dict(zip((part.name for part in frame.identity), message.identity, strict=True))
-    shown: dict[str, int] = {}
+    shown: dict[str, int | str] = {}
     for part in frame.parts:
-        if part.name in identity:
-            shown[part.name] = given.get(part.name, identity[part.name])
+        if isinstance(part, IdentityPart):
+            shown[part.name] = given.get(part.name, part.shown(identity[part.name]))
         elif isinstance(part, CounterPart | ValuePart):
-            default = part.default if part.default is not None else -1
+            default = -1 if part.default is None else part.shown(part.default)
             shown[part.name] = given.get(part.name, default)
     return shown
 

@@ -14,7 +14,7 @@ from protogen.cli.options import SchemaFile
 
 if TYPE_CHECKING:
     from protogen.cli.wire.codec import Codec
-    from protogen.model.frame import Part
+    from protogen.model.frame import NumberPart
     from protogen.model.messages import Message
     from protogen.model.protocol import Sender
 
@@ -140,11 +140,13 @@ def _all_of(names: Iterable[str]) -> str:
     return " or ".join(names)
 
 
-def _parts(known: Iterable[Part], given: Iterable[tuple[str, str]]) -> dict[str, int]:
+def _parts(known: Iterable[NumberPart], given: Iterable[tuple[str, str]]) -> dict[str, int | str]:
+    from protogen.cli.wire.scalars import text_value
     from protogen.problems import hint_for
 
-    names = list(dict.fromkeys(part.name for part in known))
-    parts: dict[str, int] = {}
+    texts = {part.name: part.type.is_text for part in known}
+    names = list(texts)
+    parts: dict[str, int | str] = {}
     for written, text in given:
         name = written.removeprefix("@")
         if name == written:
@@ -152,7 +154,7 @@ def _parts(known: Iterable[Part], given: Iterable[tuple[str, str]]) -> dict[str,
         if name not in names:
             hint = hint_for(name, names) or f"there are {', '.join(names) or 'none'}"
             raise UsageError(f"there is no part `{name}` to give", hint)
-        parts[name] = _number(name, text)
+        parts[name] = text_value(text, written) if texts[name] else _number(name, text)
     return parts
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from protogen.model.messages import given_parts
-from protogen.model.reading.readings import readings
+from protogen.model.reading.readings import quoted, readings
 from protogen.runtime.attributes import attribute
 from protogen.runtime.values import as_dict
 
@@ -64,14 +64,14 @@ class EventLines:
         name = event.message.NAME
         yield self._name(name, "bold cyan")
         for part in self._given_parts[(event.sender, event.form), name]:
-            yield from _value(f"@{part}", str(getattr(event.parts, attribute(part))))
+            yield from _value(f"@{part}", _part(getattr(event.parts, attribute(part))))
         for field, text in readings(self._plans[name], event.message.to_dict()):
             yield from _value(field, text)
 
     def _unknown(self, event: Any) -> Iterator[Segment]:
         yield self._name("unknown", "bold yellow")
         for part, value in as_dict(event.parts).items():
-            yield from _value(f"@{part}", str(value))
+            yield from _value(f"@{part}", _part(value))
         yield from _value("payload", f"hex:{event.payload.hex().upper()}")
 
     def _invalid(self, event: Any) -> Iterator[Segment]:
@@ -84,6 +84,10 @@ class EventLines:
 def _key(sender: Sender) -> tuple[str, str]:
     """Return endpoint and form as events name them."""
     return sender.endpoint, "" if sender.is_only_form else sender.form
+
+
+def _part(value: int | str) -> str:
+    return quoted(value) if isinstance(value, str) else str(value)
 
 
 def _value(name: str, text: str) -> Iterator[Segment]:

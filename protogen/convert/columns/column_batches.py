@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 
 from protogen.capture.engines import Engine
-from protogen.capture.schema import CaptureSchema, InvalidReason, TableSchema
+from protogen.capture.schema import CaptureSchema, InvalidReason, TableSchema, Text
 from protogen.capture.tables import Tables as Filled
 from protogen.convert.columns.arrays import Array, Codes, Nothing, Numbers, Spans
 from protogen.convert.columns.batches import Messages, Tally
@@ -80,16 +80,20 @@ def _frame_readers(table: Table, held: TableSchema) -> Iterator[Reader]:
         if role == "t_ns":
             continue
         source = column.path[-1]
-        name = next(
-            item.name
-            for item in held.columns
-            if (item.role, item.source) == (("part", source) if role == "@" else (role, source))
-        )
-        yield partial(_number, name)
+        if role == "@":
+            part = held.part(source)
+            yield partial(_text if isinstance(part.shape, Text) else _number, part.name)
+        else:
+            own = next(it for it in held.columns if (it.role, it.source) == (role, source))
+            yield partial(_number, own.name)
 
 
 def _number(name: str, rows: Any) -> Numbers:
     return Numbers(np.ascontiguousarray(rows[name]))
+
+
+def _text(name: str, rows: Any) -> list[str]:
+    return [text.decode("latin-1") for text in rows[name].tolist()]
 
 
 # --- the columns of fields ------------------------------------------------------------------------

@@ -239,14 +239,15 @@ def _frame_columns(parts: Iterable[tuple[str, Integer]], taken: Iterable[str]) -
     facts = {"unit": "ns", "doc": "When the last byte came, since 1970-01-01 UTC."}
     yield Column(_free("t_ns", names), INT64, ("t_ns",), nullable=True, facts=facts)
     for name, type in parts:
-        yield Column(f"@{name}", _scalar(type), ("@", name), facts={"part": name})
+        shown = TEXT if type.is_text else _scalar(type)
+        yield Column(f"@{name}", shown, ("@", name), facts={"part": name})
 
 
 def _message_table(message: Message, sender: Sender, facts: Mapping[str, str]) -> Table:
     columns = tuple(_message_columns(message.fields))
     parts = [(part.name, part.type) for part in given_parts(sender.frame, message)]
     identity = {
-        part.name: value
+        part.name: part.shown(value)
         for part, value in zip(sender.frame.identity, message.identity, strict=True)
     }
     about = {

@@ -19,6 +19,7 @@ from protogen.convert.writers.value_steps import (
     chosen,
     count_of,
     if_there,
+    part_text,
     rest_digits,
     said,
     text_of,
@@ -57,7 +58,7 @@ def _row(table: tables.Table, held: TableSchema) -> Steps:
     places = places_of(held.columns)
     found: list[Step] = []
     for column in table.frame_columns:
-        found += [_frame_cell(column, places), literal(",")]
+        found += [_frame_cell(column, held, places), literal(",")]
     for column in table.columns:
         if table.message is None:
             found.append(event_cell(column, places))
@@ -69,10 +70,14 @@ def _row(table: tables.Table, held: TableSchema) -> Steps:
     return found
 
 
-def _frame_cell(column: tables.Column, places: Mapping[str, Place]) -> Step:
+def _frame_cell(column: tables.Column, held: TableSchema, places: Mapping[str, Place]) -> Step:
     match column.path:
         case ("@", name):
-            return number(places[f"@{name}"], IN_CELLS)
+            part = held.part(name)
+            text = part_text(part, Spelling.PLAIN)
+            if text is not None:
+                return quoted([text])
+            return number(Spot.row().moved(part).place(part), IN_CELLS)
         case ("t_ns",):
             return when(Condition.TIMED, [TIME])
         case _:

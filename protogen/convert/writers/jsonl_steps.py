@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from protogen.capture.schema import CaptureSchema, Column, InvalidReason, Number, TableSchema
-from protogen.convert.writers.value_steps import Spot, ValueSteps
+from protogen.convert.writers.value_steps import Spot, ValueSteps, part_value
 from protogen.model.types import Array, Octets, Type
 from protogen.native.print_steps import (
     IN_LINES,
@@ -41,7 +41,7 @@ def _message(name: str, table: TableSchema, sender: Mapping[str, str]) -> Iterat
     assert table.message is not None
     places = places_of(table.columns)
     yield from _start(places, {"event": "message", "message": name, **sender})
-    yield from _parts(places)
+    yield from _parts(table.columns)
     yield literal(', "fields": ')
     yield from _LineValues().members(table.message.fields, table.columns, Spot.row())
     yield when(Condition.DIFFERS, list(_raw(places)))
@@ -61,7 +61,7 @@ def _invalid(table: TableSchema, sender: str) -> Iterator[Step]:
 def _unknown(table: TableSchema, sender: Mapping[str, str]) -> Iterator[Step]:
     places = places_of(table.columns)
     yield from _start(places, {"event": "unknown", **sender})
-    yield from _parts(places)
+    yield from _parts(table.columns)
     yield literal(', "payload": "')
     yield hex_of(Source.PAYLOADS, places["payload_offset"], places["payload_size"])
     yield literal('"')
@@ -70,13 +70,11 @@ def _unknown(table: TableSchema, sender: Mapping[str, str]) -> Iterator[Step]:
 
 
 def places_of(columns: Sequence[Column]) -> dict[str, Place]:
-    """The numbers of an event: by what they are, parts of the frame with `@` in front."""
+    """The numbers of an event, without the parts of the frame: by what they are."""
     return {
-        f"@{item.source}" if item.role == "part" else item.source: Place(
-            0, item.shape.code, item.position
-        )
+        item.source: Spot.row().moved(item).place(item)
         for item in columns
-        if isinstance(item.shape, Number) and item.role not in ("field", "count")
+        if isinstance(item.shape, Number) and item.role not in ("field", "count", "part")
     }
 
 
@@ -89,12 +87,12 @@ def _start(places: Mapping[str, Place], words: Mapping[str, str]) -> Iterator[St
         yield literal(f', "{name}": {json.dumps(value, ensure_ascii=False)}')
 
 
-def _parts(places: Mapping[str, Place]) -> Iterator[Step]:
+def _parts(columns: Sequence[Column]) -> Iterator[Step]:
     yield literal(', "parts": {')
-    parts = [(name, place) for name, place in places.items() if name.startswith("@")]
-    for order, (name, place) in enumerate(parts):
-        yield literal(f"{', ' if order else ''}{json.dumps(name[1:])}: ")
-        yield number(place, IN_LINES)
+    parts = [item for item in columns if item.role == "part"]
+    for order, item in enumerate(parts):
+        yield literal(f"{', ' if order else ''}{json.dumps(item.source)}: ")
+        yield from part_value(item, IN_LINES, Spelling.JSON)
     yield literal("}")
 
 

@@ -18,6 +18,8 @@ from protogen.convert.writers.value_steps import (
     Spot,
     count_of,
     if_there,
+    in_quotes,
+    part_value,
     rest_digits,
     text_of,
 )
@@ -62,10 +64,10 @@ def _row(table: tables.Table, held: TableSchema) -> Iterator[Step]:
     places = places_of(held.columns)
     yield literal("{")
     for column in table.frame_columns:
-        yield from _frame_member(column, places)
+        yield from _frame_member(column, held, places)
     for column in table.columns:
         if table.message is None:
-            yield from _member(column.name, _in_quotes(event_cell(column, places)))
+            yield from _member(column.name, in_quotes(event_cell(column, places)))
         else:
             fields = table.message.fields
             yield from _Member(column).reached(column.path, fields, held.columns, Spot.row())
@@ -79,20 +81,17 @@ def _member(name: str, body: Iterator[Step]) -> Iterator[Step]:
     yield literal(", ")
 
 
-def _frame_member(column: tables.Column, places: Mapping[str, Place]) -> Iterator[Step]:
+def _frame_member(
+    column: tables.Column, held: TableSchema, places: Mapping[str, Place]
+) -> Iterator[Step]:
     match column.path:
         case ("@", name):
-            yield from _member(column.name, iter([number(places[f"@{name}"], IN_JSON)]))
+            value = part_value(held.part(name), IN_JSON, Spelling.JSON_ASCII)
+            yield from _member(column.name, value)
         case ("t_ns",):
             yield when(Condition.TIMED, _member(column.name, iter([TIME])))
         case _:
             yield from _member(column.name, iter([number(places[column.path[0]], IN_JSON)]))
-
-
-def _in_quotes(step: Step) -> Iterator[Step]:
-    yield literal('"')
-    yield step
-    yield literal('"')
 
 
 class _InsideValues(CellValues):
@@ -131,7 +130,7 @@ class _Member(Cell):
 
     def rest(self, rest: Column, at: Spot) -> Iterator[Step]:
         """The bytes of a value that no case stands for."""
-        return _member(self.column.name, _in_quotes(rest_digits(rest, at)))
+        return _member(self.column.name, in_quotes(rest_digits(rest, at)))
 
     def value(self, item: Field, type: Type, column: Column | None, at: Spot) -> Iterator[Step]:
         """The member of a value that was reached."""
@@ -144,10 +143,10 @@ class _Member(Cell):
             yield from _member(name, self.list_of(item, type, column, at))
         elif isinstance(type, Text):
             dimension, spelling = column.dimensions[0], Spelling.JSON_ASCII
-            yield from _member(name, _in_quotes(text_of(type, column, dimension, at, spelling)))
+            yield from _member(name, in_quotes(text_of(type, column, dimension, at, spelling)))
         elif isinstance(type, Octets):
             count = count_of(type.extent, column.dimensions, at)
-            yield from _member(name, _in_quotes(hex_digits(at.place(), count)))
+            yield from _member(name, in_quotes(hex_digits(at.place(), count)))
         elif isinstance(derived, tables.Naming):
             texts = {
                 it: f"{json.dumps(name)}: {json.dumps(to)}, " for it, to in derived.names.items()

@@ -167,9 +167,9 @@ class ValueSteps(ABC):
             case _ if column is None:
                 yield literal("[]")  # Nothing else holds nothing.
             case Text():
-                yield from _in_quotes(text_of(type, column, left[0], at, self.spelling))
+                yield from in_quotes(text_of(type, column, left[0], at, self.spelling))
             case Octets(extent=extent):
-                yield from _in_quotes(hex_digits(at.place(), count_of(extent, left, at)))
+                yield from in_quotes(hex_digits(at.place(), count_of(extent, left, at)))
             case _:
                 yield number(at.place(column), self.others)
 
@@ -206,7 +206,7 @@ class ValueSteps(ABC):
     def _choice(self, item: Field, type: Switch, column: Column | None, at: Spot) -> Iterator[Step]:
         known, rest = cases_of(column), rest_of(column)
         bodies = {it.value: self._case(item, it, known.get(it.value), at) for it in type.cases}
-        other = () if rest is None else self.case("", _in_quotes(rest_digits(rest, at)))
+        other = () if rest is None else self.case("", in_quotes(rest_digits(rest, at)))
         yield from chosen(said(type.selector, at), bodies, other)
 
     def _case(self, item: Field, case: Case, column: Column | None, at: Spot) -> Iterator[Step]:
@@ -215,7 +215,8 @@ class ValueSteps(ABC):
         return self.case(case.name, self.value(item, case.type, column, dimensions_of(column), at))
 
 
-def _in_quotes(step: Step) -> Iterator[Step]:
+def in_quotes(step: Step) -> Iterator[Step]:
+    """A step in double quotes."""
     yield literal('"')
     yield step
     yield literal('"')
@@ -285,6 +286,22 @@ def text_of(type: Text, column: Column, dimension: Dimension, at: Spot, spelling
     is_padded = isinstance(type.extent, Fixed)
     count = None if is_padded else count_of(type.extent, [dimension], at)
     return characters(at.place(), column.shape.size, count, spelling)
+
+
+def part_text(column: Column, spelling: Spelling) -> Step | None:
+    """The characters of a part of the frame; None where it is a number."""
+    if not isinstance(column.shape, TextShape):
+        return None
+    return characters(Spot.row().moved(column).place(), column.shape.size, None, spelling)
+
+
+def part_value(column: Column, others: Others, spelling: Spelling) -> Iterator[Step]:
+    """A part of the frame as JSON."""
+    text = part_text(column, spelling)
+    if text is None:
+        yield number(Spot.row().moved(column).place(column), others)
+    else:
+        yield from in_quotes(text)
 
 
 def rest_digits(rest: Column, at: Spot) -> Step:

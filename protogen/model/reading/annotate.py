@@ -27,7 +27,7 @@ from protogen.model.frame import (
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.reading.dissect import Cursor, Row, dissect
-from protogen.model.reading.readings import character
+from protogen.model.reading.readings import character, quoted
 from protogen.model.reading.wire import Wire, plain, unstuff
 from protogen.model.types import codec
 from protogen.runtime.errors import ByteError
@@ -157,6 +157,8 @@ class _Frame:
             words = " or ".join(word.hex(" ").upper() for word in part.words)
             fault = "" if value in part.values else f"must be {words}"
         meaning = character(value) if part.type.role == "char" else ""
+        if part.type.is_text:
+            meaning = quoted(str(part.shown(value)))
         if isinstance(part, LengthPart):
             meaning = f"bytes of {', '.join(part.counts)}"
         elif isinstance(part, IdentityPart):

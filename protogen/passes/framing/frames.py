@@ -38,6 +38,7 @@ from protogen.passes.framing.capacity import (
 )
 from protogen.passes.framing.literals import literal_of
 from protogen.passes.framing.part_runs import written_out
+from protogen.passes.framing.part_values import number_of, text_type
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width, type_hint
@@ -48,12 +49,12 @@ from protogen.schema.syntax.parts import Part as PartSyntax
 PAYLOAD = "payload"
 
 _ROLES: dict[str, frozenset[str]] = {
-    "literal": frozenset({"literal", "unprotected"}),
-    "id": frozenset({"id", "type", "range", "byte_order"}),
+    "literal": frozenset({"literal", "unprotected", "type"}),
+    "id": frozenset({"id", "type", "size", "range", "byte_order"}),
     "counts": frozenset({"counts", "type", "range", "byte_order"}),
     "counter": frozenset({"counter", "type", "range", "default", "byte_order"}),
     "algorithm": frozenset({"algorithm", "type", "covers", "over", "when", "byte_order"}),
-    "type": frozenset({"type", "range", "default", "byte_order"}),
+    "type": frozenset({"type", "size", "range", "default", "byte_order"}),
     PAYLOAD: frozenset(),
 }
 _COMMON_KEYS = frozenset({"doc", "source"})
@@ -169,11 +170,18 @@ class FrameBuilder:
             return IdentityPart(**given)
         if role == "counts":
             return LengthPart(**given, counts=self._counted(part.name, item))
-        if item.default is not None and not part.least <= item.default <= part.greatest:
-            text = f"{item.default} is out of {part.least} to {part.greatest}"
-            self._context.error("PG114", (*self._loc, part.name, "default"), text)
         kind = CounterPart if role == "counter" else ValuePart
-        return kind(**given, default=item.default)
+        return kind(**given, default=self._default(item, part))
+
+    def _default(self, item: PartSyntax, part: NumberPart) -> int | None:
+        loc = (*self._loc, part.name, "default")
+        if item.default is None:
+            return None
+        default = number_of(self._context, loc, part, item.default)
+        if default is not None and not part.least <= default <= part.greatest:
+            text = f"{default} is out of {part.least} to {part.greatest}"
+            self._context.error("PG114", loc, text)
+        return default
 
     def _role(self, name: str, item: PartSyntax) -> str | None:
         written = {key for key in item.model_fields_set if getattr(item, key) is not None}
@@ -203,6 +211,8 @@ class FrameBuilder:
             self._context.error_at_key("PG131", (*self._loc, name), text)
             return None
         loc = (*self._loc, name, "type")
+        if item.type == "ascii" or item.size is not None:
+            return text_type(self._context, (*self._loc, name), item, self._layout.byte_bits)
         order = item.byte_order or self._layout.byte_order
         found = integer(item.type, Layout(byte_bits=self._layout.byte_bits, byte_order=order))
         if not has_width(item.type):

@@ -15,20 +15,23 @@ _GREATEST = 254
 
 
 def literal_of(
-    context: Context, loc: Loc, name: str, item: Part, text: About
+    context: Context, loc: Loc, name: str, item: Part, about: About
 ) -> LiteralPart | ChoicePart | None:
     """The literal of a part, or None where it is not clear which literals there are."""
     if isinstance(item.literal, LiteralChoice):
-        return _choice(context, (*loc, "literal"), name, item, item.literal, text)
+        return _choice(context, (*loc, "literal"), name, item, item.literal, about)
     if not item.literal:
         context.error("PG147", (*loc, "literal"), "the literal has no bytes")
+    if item.type is not None:
+        text = "a literal is fixed bytes, which have no type"
+        context.error("PG131", (*loc, "type"), text, "leave out `type`")
     return LiteralPart(
-        name=name, bytes=item.literal or b"\0", unprotected=item.unprotected, about=text
+        name=name, bytes=item.literal or b"\0", unprotected=item.unprotected, about=about
     )
 
 
 def _choice(
-    context: Context, loc: Loc, name: str, item: Part, written: LiteralChoice, text: About
+    context: Context, loc: Loc, name: str, item: Part, written: LiteralChoice, about: About
 ) -> ChoicePart | None:
     words, default = written.any_of, written.default
     wrong = _wrong(words)
@@ -39,7 +42,18 @@ def _choice(
         hint = f"add it to `any_of`, or choose one of {', '.join(map(_hex, words))}"
         context.error("PG190", (*loc, "default"), f"{_hex(default)} is none of the literals", hint)
         return None
-    type_ = Integer(bits=8 * len(words[0]), byte_order="big" if len(words[0]) > 1 else "little")
+    foreign = [word for word in words if not word.isascii()]
+    if item.type == "ascii" and foreign:
+        text = f"{_hex(foreign[0])} is no ASCII, and the part is a text"
+        context.error("PG190", (*loc, "any_of"), text, "leave out `type: ascii`")
+    if item.type not in (None, "ascii"):
+        text = f"literals are no `{item.type}`"
+        context.error("PG190", (*loc[:-1], "type"), text, "write `type: ascii`, or leave it out")
+    type_ = Integer(
+        bits=8 * len(words[0]),
+        byte_order="big" if len(words[0]) > 1 else "little",
+        role="number" if item.type is None else "ascii",
+    )
     values = list(map(codec(type_).decode, words))
     return ChoicePart(
         name=name,
@@ -49,7 +63,7 @@ def _choice(
         default=None if default is None else codec(type_).decode(default),
         words=words,
         unprotected=item.unprotected,
-        about=text,
+        about=about,
     )
 
 

@@ -20,6 +20,7 @@ from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.capacity import head_literals, joined_words
 from protogen.passes.framing.part_runs import written_out
+from protogen.passes.framing.part_values import number_of
 from protogen.passes.types.constants import named_raw_value
 from protogen.problems import hint_for
 from protogen.schema.syntax.messages import Example as ExampleSyntax
@@ -89,7 +90,7 @@ def _example(
         bytes=item.frame if item.frame is not None else item.content or b"",
         covers=covers,
         values=None if item.values is None else with_byte_strings(message.fields, item.values),
-        parts=dict(item.parts or {}),
+        parts=_parts(context, draft.frames[sender], item, loc),
         contradicts=_contradiction(message, item),
         about=about(item.doc, item.source),
         span=context.find_key(loc),
@@ -155,6 +156,17 @@ def _parts_known(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) 
         text = f"`{name}` is no part whose value a sender chooses"
         context.error_at_key("PG162", (*loc, "parts", name), text, hint_for(name, known))
     return not unknown
+
+
+def _parts(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) -> dict[str, int | str]:
+    """The values of parts, as events show them."""
+    known = {part.name: part for part in (*frame.identity, *frame.caller_parts)}
+    found: dict[str, int | str] = {}
+    for name, value in (item.parts or {}).items():
+        if name in known:
+            number = number_of(context, (*loc, "parts", name), known[name], value)
+            found[name] = known[name].shown(number or 0)
+    return found
 
 
 def _contradiction(message: Message, item: ExampleSyntax) -> Contradiction | None:

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from itertools import combinations
 
+from protogen.model.frame import IdentityPart
 from protogen.model.identities import Identities
 from protogen.model.messages import Message
 from protogen.model.messages import Overload as OverloadModel
@@ -21,14 +22,18 @@ def check_identities(context: Context, draft: Draft) -> None:
         groups: dict[Identities, list[Message]] = defaultdict(list)
         for message in draft.sent_by(sender):
             groups[message.told_by].append(message)
-        _check_overlaps(context, sender, [group[0] for group in groups.values()])
+        if sender in draft.frames:
+            parts = draft.frames[sender].identity
+            _check_overlaps(context, sender, parts, [group[0] for group in groups.values()])
         shared = (group for group in groups.values() if len(group) > 1)
         found = [overloads.resolve(sender, group) for group in shared]
         draft.overloads[sender] = [overload for overload in found if overload is not None]
     overloads.check_asked(draft)
 
 
-def _check_overlaps(context: Context, sender: str, messages: Sequence[Message]) -> None:
+def _check_overlaps(
+    context: Context, sender: str, parts: Sequence[IdentityPart], messages: Sequence[Message]
+) -> None:
     """No message with several identities has one of another's."""
     if all(message.identities is None for message in messages):
         return
@@ -37,7 +42,7 @@ def _check_overlaps(context: Context, sender: str, messages: Sequence[Message]) 
             continue
         both = one.told_by.meet(other.told_by)
         if both is not None:
-            shown = " ".join(f"0x{value:02X}" for value in both)
+            shown = Identities.only(both).shown(parts)
             context.error_at_key(
                 "PG191",
                 ("messages", other.name),

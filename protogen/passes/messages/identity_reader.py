@@ -8,6 +8,7 @@ from itertools import combinations
 from protogen.model.frame import Frame, IdentityPart
 from protogen.model.identities import Identities, Runs
 from protogen.passes.context import Context, Loc
+from protogen.passes.framing.part_values import number_of
 from protogen.problems import hint_for
 from protogen.schema.syntax.messages import IdentityRange, IdentityValues
 
@@ -67,14 +68,24 @@ class IdentityReader:
         places = [(*loc, index) for index in range(len(values))] if len(values) > 1 else [loc]
         found = [self._run(part, value, place) for value, place in zip(values, places, strict=True)]
         runs = tuple(run for run in found if run is not None)
-        if len(runs) < len(found) or not self._differ(runs, places):
+        if len(runs) < len(found) or not self._differ(part, runs, places):
             return ()
         return runs
 
     def _run(
-        self, part: IdentityPart, value: int | IdentityRange, place: Loc
+        self, part: IdentityPart, value: int | str | IdentityRange, place: Loc
     ) -> tuple[int, int] | None:
-        first, last = value.range if isinstance(value, IdentityRange) else (value, value)
+        if isinstance(value, IdentityRange):
+            if part.type.is_text:
+                text = f"`{part.name}` is a text, and texts have no range"
+                self._context.error("PG192", place, text, "list those that are meant")
+                return None
+            first, last = value.range
+        else:
+            number = number_of(self._context, place, part, value)
+            if number is None:
+                return None
+            first = last = number
         if first > last:
             text = f"the range is empty: {first} is greater than {last}"
             self._context.error("PG115", place, text)
@@ -86,11 +97,11 @@ class IdentityReader:
             return None
         return first, last
 
-    def _differ(self, runs: Runs, places: Sequence[Loc]) -> bool:
+    def _differ(self, part: IdentityPart, runs: Runs, places: Sequence[Loc]) -> bool:
         for (one, _), (other, place) in combinations(zip(runs, places, strict=True), 2):
             both = max(one[0], other[0])
             if both <= min(one[1], other[1]):
-                text = f"{both} stands among these values twice"
+                text = f"{part.shown(both)} stands among these values twice"
                 self._context.error("PG191", place, text, "write it once")
                 return False
         return True

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
-from protogen.problems.catalogue.sketch import with_frame, with_messages
+from protogen.problems.catalogue.sketch import with_frame, with_framed, with_messages
 
 PART_CODES: tuple[Code, ...] = (
     Code(
@@ -51,5 +51,34 @@ written as two. Messages that share all of their identities may be told apart by
             answer: {id: [{range: [0, 0x0F]}, {range: [0x11, 0x7F]}], from: robot}
             alarm: {id: 0x10, from: robot}
         """),
+    ),
+    Code(
+        "PG192",
+        "text-part",
+        "A text in the frame that has no such characters",
+        """\
+`type: ascii` makes a part of the frame a text of `size` characters, 1 to 8, such as a talker and a
+sentence. Each is one byte, in the order in which they are written. A value of such a part, as `id`
+and `default` give it, has exactly that many characters: blanks and other fillers are part of it.
+People see it as text; a text has no `range` and no `byte_order`, and does not count.
+""",
+        with_framed(
+            """
+                name: {type: ascii, size: 3, id: true}
+                payload: {}
+                end: {literal: 0xC0}
+            """,
+            "status: {id: ST, from: robot}",
+            more="transparency: slip",
+        ),
+        with_framed(
+            """
+                name: {type: ascii, size: 3, id: true}
+                payload: {}
+                end: {literal: 0xC0}
+            """,
+            'status: {id: "ST ", from: robot}',
+            more="transparency: slip",
+        ),
     ),
 )

@@ -23,14 +23,14 @@ from protogen.runtime.framing.layout import Layout, is_optional
 from protogen.runtime.framing.machine import Cut, verdict_on
 from protogen.runtime.framing.sender import SenderSpec
 from protogen.runtime.identities import Identity
-from protogen.runtime.payload.number import as_integer
+from protogen.runtime.payload.number import Characters, GivenValue, given_number
 
 
 def encode_frame(
     sender: SenderSpec[Any, Any],
     identity: Identity,
     payload: bytes,
-    given: Mapping[str, int | None],
+    given: Mapping[str, GivenValue],
     strict: bool = True,
 ) -> bytes:
     """The frame that carries `payload`.
@@ -85,7 +85,7 @@ def check_cut(sender: SenderSpec[Any, Any], wire: bytes, payload: bytes) -> None
         raise EncodeError("payload", "a decoder would not find it in the frame")
 
 
-def _value_parts(layout: Layout, given: Mapping[str, int | None], strict: bool) -> dict[str, int]:
+def _value_parts(layout: Layout, given: Mapping[str, GivenValue], strict: bool) -> dict[str, int]:
     known = {part.name: part for part in layout.values}
     for name, value in given.items():
         if name not in known and value is not None:
@@ -100,21 +100,24 @@ def _names(names: Iterable[str]) -> str:
     return ", ".join(names) or "none"
 
 
-def _part_value(part: ValuePart, given: int | None, strict: bool) -> int:
-    value = part.default if given is None else given
+def _part_value(part: ValuePart, given: GivenValue, strict: bool) -> int:
+    value: Any = part.default if given is None else given
     if value is None:
         raise EncodeError(part.name, _how_to_give(part))
     try:
-        number = as_integer(value)
+        number = value if given is None else given_number(part.number, value)
     except EncodeError as error:
         raise error.inside(part.name) from None
+    if strict and isinstance(given, str) and not given.isascii():
+        raise EncodeError(part.name, f"{given!r} has a character that is not ASCII")
     if strict and not part.holds(number):
         raise EncodeError(part.name, f"{number} is not {part.allowed}")
     return number
 
 
 def _how_to_give(part: ValuePart) -> str:
-    example = f"encode(..., {argument(part.name)}={part.least})"
+    value = "TEXT" if isinstance(part.number, Characters) else part.least
+    example = f"encode(..., {argument(part.name)}={value})"
     if isinstance(part, CounterPart):
         return f"the value is missing; give it as in {example}, or use an Encoder, which counts"
     return f"the value is missing; give it as in {example}"

@@ -36,7 +36,11 @@ class FrameFormat(Piece):
         if isinstance(verdict, Failure):
             raise PayloadError(verdict.reason, path, stream.tell(), verdict.problem)
         stream.seek(start + verdict.size)
-        shown = {name: verdict.numbers[name] for name in self._sender.layout.shown}
+        layout = self._sender.layout
+        shown: dict[str, Any] = {name: verdict.numbers[name] for name in layout.shown}
+        for index, characters in layout.texts:
+            name = layout.shown[index]
+            shown[name] = characters.text(shown[name])
         return Container({**shown, "payload": verdict.payload})
 
     def _verdict(self, stream: BinaryIO) -> Cut | Failure:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
 from typing import NamedTuple
 
 from protogen.runtime.framing.frame import (
@@ -18,6 +19,7 @@ from protogen.runtime.framing.frame import (
     StartMark,
     ValuePart,
 )
+from protogen.runtime.payload.number import Characters
 
 
 def is_optional(part: Part) -> bool:
@@ -94,6 +96,16 @@ class Layout:
         self.empty_size = len(self.empty_frame)
         self.stuffed = tuple(
             index for index, part in enumerate(self.parts) if part.name in spec.stuffed
+        )
+
+    @cached_property
+    def texts(self) -> tuple[tuple[int, Characters], ...]:
+        """The parts that events show as texts, by their places among all that they show."""
+        shown = (part for part in self.parts if isinstance(part, IdentityPart | ValuePart))
+        return tuple(
+            (index, part.number)
+            for index, part in enumerate(shown)
+            if isinstance(part.number, Characters)
         )
 
     def _empty_frame(self) -> bytes:

@@ -7,9 +7,10 @@ from typing import Any
 
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.assembly import encode_frame
+from protogen.runtime.framing.frame import IdentityPart
 from protogen.runtime.framing.sender import SenderSpec
 from protogen.runtime.identities import Identity
-from protogen.runtime.payload.number import as_integer
+from protogen.runtime.payload.number import Characters, given_number
 
 _EVENTS = ("message", "unknown", "invalid")
 
@@ -53,17 +54,20 @@ def split_parts(
     sender: SenderSpec[Any, Any], parts: Mapping[str, Any]
 ) -> tuple[Identity, dict[str, Any]]:
     """The identity among the parts of an unknown frame, and the other parts."""
-    names = [part.name for part in sender.layout.identity]
+    identity = sender.layout.identity
+    names = [part.name for part in identity]
     others = {name: value for name, value in parts.items() if name not in names}
-    return tuple(_identifying(name, parts.get(name)) for name in names), others
+    return tuple(_identifying(part, parts.get(part.name)) for part in identity), others
 
 
-def _identifying(name: str, value: Any) -> int:
+def _identifying(part: IdentityPart, value: Any) -> int:
     try:
-        return as_integer(value)
-    except EncodeError:
+        return given_number(part.number, value)
+    except EncodeError as error:
+        if isinstance(part.number, Characters) and value is not None:
+            raise error.inside(part.name) from None
         problem = "an unknown frame needs the number of each identity part"
-        raise EncodeError(name, problem) from None
+        raise EncodeError(part.name, problem) from None
 
 
 def _parts(line: Mapping[str, Any]) -> Mapping[str, Any]:

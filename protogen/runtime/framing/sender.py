@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any, Generic, TypeVar
 
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.framing.frame import FrameSpec
+from protogen.runtime.framing.frame import FrameSpec, IdentityPart
 from protogen.runtime.framing.layout import Layout
-from protogen.runtime.identities import Identities, Identity
+from protogen.runtime.identities import Identities, Identity, Runs
 from protogen.runtime.payload.message import Message
-from protogen.runtime.payload.number import as_integer
+from protogen.runtime.payload.number import Characters, given_number
 
 MessageT_co = TypeVar("MessageT_co", bound=Message, covariant=True)
 PartsT_co = TypeVar("PartsT_co", covariant=True)
@@ -154,6 +154,16 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         group = self.group(self.identity(numbers))
         return None if group is None else group.read(payload)
 
+    def show(self, numbers: Sequence[int]) -> PartsT_co:
+        """The parts that an event shows, of their numbers."""
+        texts = self.layout.texts
+        if not texts:
+            return self.parts(*numbers)
+        values: list[int | str] = [*numbers]
+        for index, characters in texts:
+            values[index] = characters.text(numbers[index])
+        return self.parts(*values)
+
     def choose_identity(
         self, message: type[Message], parts: Mapping[str, Any]
     ) -> tuple[Identity, dict[str, Any]]:
@@ -165,9 +175,7 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         for index, part in enumerate(self.layout.identity):
             default = message.IDENTITY[index]
             value = others.pop(part.name, None)
-            chosen.append(default if value is None else value)
-            if value not in (None, default):
-                chosen[index] = _one_of(message, index, part.name, value)
+            chosen.append(default if value is None else _one_of(message, index, part, value))
         return tuple(chosen), others
 
     def named(self, name: str) -> type[MessageT_co] | None:
@@ -176,15 +184,26 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         return next((message for message in every if name == message.NAME), None)
 
 
-def _one_of(message: type[Message], index: int, name: str, value: Any) -> int:
-    """A value of an identity part that a message has besides its first."""
-    shown: object = message.IDENTITY[index]
-    if message.IDENTITIES is not None:
-        shown = message.IDENTITIES.shown(index)
-        try:
-            number = as_integer(value)
-        except EncodeError as error:
-            raise error.inside(name) from None
-        if message.IDENTITIES.holds(index, number):
-            return number
-    raise EncodeError(name, f"{value!r} is not {message.NAME}, whose {name} is {shown}")
+def _one_of(message: type[Message], index: int, part: IdentityPart, value: Any) -> int:
+    """A value of an identity part that the message can have. Raises EncodeError."""
+    try:
+        number = given_number(part.number, value)
+    except EncodeError as error:
+        raise error.inside(part.name) from None
+    default = message.IDENTITY[index]
+    runs = message.IDENTITIES.runs[index] if message.IDENTITIES else ((default, default),)
+    if any(first <= number <= last for first, last in runs):
+        return number
+    shown = _shown(part, runs)
+    raise EncodeError(part.name, f"{value!r} is not {message.NAME}, whose {part.name} is {shown}")
+
+
+def _shown(part: IdentityPart, runs: Runs) -> str:
+    """Values of an identity part, in words."""
+
+    def word(value: int) -> str:
+        number = part.number
+        return repr(number.text(value)) if isinstance(number, Characters) else str(value)
+
+    texts = (word(one) if one == other else f"{word(one)}..{word(other)}" for one, other in runs)
+    return " or ".join(texts)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from protogen.runtime.errors import DecodeError, EncodeError, NeedsReference, PayloadFault
 from protogen.runtime.identities import Identities
+from protogen.runtime.payload.number import GivenValue
 from protogen.runtime.values import Frozen, Value
 
 if TYPE_CHECKING:
@@ -129,7 +130,7 @@ class Message(Record):
         cls.__encode__ = Message.__encode__  # type: ignore[method-assign]
         cls.__read__ = cls.__write__ = None
 
-    def __encode__(self, module: object, sender: str | None, *parts: int | None) -> bytes:
+    def __encode__(self, module: object, sender: str | None, *parts: GivenValue) -> bytes:
         """The frame, as the fast engine of this module makes it. Raises where it can't.
 
         A module gives each of its messages its own. Mocks, which have whatever they are asked for,

@@ -11,6 +11,9 @@ from protogen.runtime.values import Frozen
 
 ByteOrder = Literal["little", "big"]
 
+GivenValue = int | str | None
+"""Value of a part as callers give it. None: they give none."""
+
 BYTES = tuple(bytes((byte,)) for byte in range(256))
 """Each byte by its value."""
 
@@ -75,6 +78,41 @@ class Number(Frozen):
     def value_of(self, raw: int) -> int:
         """The value that has these bits."""
         return raw - (1 << self.bits) if self.signed and raw >> (self.bits - 1) else raw
+
+
+class Characters(Number):
+    """An integer of which each byte is a character, the first one the highest.
+
+    To people it is a text of up to `size` characters, which zeros fill up.
+    """
+
+    __slots__ = ()
+
+    def __init__(self, size: int, seven_bit: bool = False) -> None:
+        bits = size * (7 if seven_bit else 8)
+        fields = {"bits": bits, "signed": False, "order": "big", "seven_bit": seven_bit}
+        for name, value in {**fields, "size": size}.items():
+            object.__setattr__(self, name, value)
+
+    def text(self, number: int) -> str:
+        """The characters of a number."""
+        return self.encode(number).decode("latin-1").rstrip("\0")
+
+    def number(self, text: object) -> int:
+        """The number of some characters. Raises EncodeError where there are too many."""
+        if not isinstance(text, str):
+            raise EncodeError("", f"must be a text of {self.size} characters, not {text!r}")
+        greatest = "\x7f" if self.seven_bit else "\xff"
+        if any(character > greatest for character in text):
+            raise EncodeError("", f"{text!r} has a character that is not one byte")
+        if len(text) > self.size:
+            raise EncodeError("", f"{text!r} has {len(text)} characters, and {self.size} fit")
+        return self.decode(text.encode("latin-1").ljust(self.size, b"\0"))
+
+
+def given_number(number: Number, value: object) -> int:
+    """The number that a caller gives, which may be a text. Raises EncodeError."""
+    return number.number(value) if isinstance(number, Characters) else as_integer(value)
 
 
 def as_integer(value: object) -> int:

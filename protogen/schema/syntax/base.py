@@ -19,6 +19,9 @@ from protogen.schema.text.scalars import exact_number
 NAME_PATTERN = r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$"
 """Names are lower snake case: each target derives its own spelling from that."""
 
+GREATEST_TEXT = 8
+"""Characters of a part of the frame, at most."""
+
 INTEGER_PATTERN = r"[us]int([1-9]|[1-5][0-9]|6[0-4])"
 """Integers have 1 to 64 bits."""
 
@@ -92,6 +95,17 @@ def _to_number(value: object) -> object:
     raise ValueError("expected an integer or one character")
 
 
+def _to_part_value(value: object) -> object:
+    """An integer, or characters, of which one can stand for its code."""
+    if not isinstance(value, str):
+        return _to_number(value)
+    if not value or len(value) > GREATEST_TEXT:
+        raise ValueError(f"expected an integer, or one to {GREATEST_TEXT} characters")
+    if len(value) == 1:
+        _to_number(value)
+    return value
+
+
 def _to_byte(value: object) -> object:
     """One byte: a number or a character."""
     number = _to_number(value)
@@ -156,6 +170,14 @@ Duration = Annotated[
 
 RawNumber = Annotated[int, BeforeValidator(_to_number, json_schema_input_type=int | Character)]
 """A raw value: an integer, or one character that stands for its code."""
+
+PartValueForm = int | Annotated[str, Field(min_length=1, max_length=GREATEST_TEXT)]
+"""The written form of a part's value."""
+
+PartValue = Annotated[
+    int | str, BeforeValidator(_to_part_value, json_schema_input_type=PartValueForm)
+]
+"""Value of a part: an integer, or characters, of which one can stand for its code."""
 
 ByteForm = Annotated[int, Field(ge=0, le=255)]
 """The number of one byte."""

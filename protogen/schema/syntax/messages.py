@@ -7,10 +7,10 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from protogen.schema.syntax.base import (
-    Character,
     Count,
     Name,
-    RawNumber,
+    PartValue,
+    PartValueForm,
     ShortForm,
     SourceRef,
     Syntax,
@@ -68,7 +68,7 @@ class Example(Syntax):
         None,
         description="Field values: raw numbers, enum names, lists, mappings for structs.",
     )
-    parts: dict[Annotated[Name, Ref(Kind.PART)], RawNumber] | None = Field(
+    parts: dict[Annotated[Name, Ref(Kind.PART)], PartValue] | None = Field(
         None,
         description="Values of frame parts that matter, such as a number or a counter.",
     )
@@ -124,10 +124,10 @@ def _value_or_range(value: Any) -> str:
 
 
 _IdentityValue = Annotated[
-    Annotated[RawNumber, Tag("value")] | Annotated[IdentityRange, Tag("range")],
+    Annotated[PartValue, Tag("value")] | Annotated[IdentityRange, Tag("range")],
     Discriminator(_value_or_range),
 ]
-_IdentityForm = int | Character | IdentityRange
+_IdentityForm = PartValueForm | IdentityRange
 
 IdentityValues = Annotated[
     tuple[_IdentityValue, ...],
@@ -165,8 +165,8 @@ class MessageSyntax(Syntax):
 
     id: Identity | None = Field(
         None,
-        description="Identity: a number or character, or one for each identity part; a list or a "
-        "range where there are several.",
+        description="Identity: a number or characters, or one for each identity part; a list or "
+        "a range where there are several.",
     )
     from_: Senders = Field(alias="from", description="The endpoint that sends it, or a list.")
     forms: Forms | None = Field(

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from protogen.schema.syntax.base import (
+    GREATEST_TEXT,
     ByteForm,
     ByteNumber,
     Character,
@@ -15,6 +16,7 @@ from protogen.schema.syntax.base import (
     Int,
     Name,
     OnlyTrue,
+    PartValue,
     RawNumber,
     ShortForm,
     SourceRef,
@@ -30,7 +32,7 @@ ByteOrder = Literal["little", "big"]
 
 _RUN = re.compile(r"[a-z0-9_]+(\.\.[a-z0-9_]+)?")
 _RunForm = Annotated[str, Field(pattern=f"^{_RUN.pattern}$")]
-_PartType = Annotated[str, Field(pattern=r"^(uint([1-9]|[1-5][0-9]|6[0-4])|byte|char)$")]
+_PartType = Annotated[str, Field(pattern=r"^(uint([1-9]|[1-5][0-9]|6[0-4])|byte|char|ascii)$")]
 """The written form of a part's type: unsigned, as no bits of a frame are a sign."""
 
 
@@ -162,7 +164,10 @@ class Part(Syntax):
         description="The decision that accepts that this literal can also occur inside a frame.",
     )
     type: Annotated[Text, written_as(_PartType), Ref(Kind.TYPE)] | None = Field(
-        None, description="Type of the part: uint8, uint16, char, byte ..."
+        None, description="Type of the part: uint8, uint16, char, byte, ascii ..."
+    )
+    size: Annotated[Int, Field(ge=1, le=GREATEST_TEXT)] | None = Field(
+        None, description="Characters of a part of the type ascii, 1 to 8."
     )
     id: OnlyTrue | None = Field(None, description="The part tells which message this is.")
     counts: PartRun | None = Field(
@@ -187,7 +192,7 @@ class Part(Syntax):
         description="The part is present only in frames whose payload is not empty.",
     )
     range: RawRange | None = Field(None, description="Least and greatest value of the part.")
-    default: RawNumber | None = Field(
+    default: PartValue | None = Field(
         None, description="What an encoder writes where the caller gives no value."
     )
     byte_order: ByteOrder | None = Field(None, description="Byte order of this part.")

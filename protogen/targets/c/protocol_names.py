@@ -11,6 +11,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import Struct, Switch
 from protogen.targets.c.frame.checksums import checksum_name
+from protogen.targets.c.frame.texts import claim_texts
 from protogen.targets.c.named import claim_fields, enum_view, flags_view
 from protogen.targets.c.payload.message_names import claim_all
 from protogen.targets.c.spelling import Names
@@ -49,6 +50,7 @@ def _all_names(protocol: Protocol) -> Names:
     names.claim_file(protocol.name)
     _claim_own(names)
     _claim_checksums(names, protocol.senders)
+    claim_texts(names, protocol)
     for sender in protocol.senders:
         _claim_sender(names, sender)
     for enum in protocol.enums:

@@ -61,7 +61,7 @@ def source(protocol: Protocol, runtime: str = RUNTIME, *, is_package: bool = Fal
     module = view(protocol)
     given = {
         "module": module,
-        "fast": engine_view(protocol, tuple(module.arguments)),
+        "fast": engine_view(protocol, module.kinds),
         "runtime": runtime,
         "codec": codec_name(protocol),
         "is_package": is_package,

@@ -34,16 +34,16 @@ def part(item: Part) -> str:
         case LiteralPart():
             return call("_rt.LiteralPart", name, octets(item.bytes))
         case IdentityPart():
-            return call("_rt.IdentityPart", name, _number(item.type))
+            return call("_rt.IdentityPart", name, number(item.type))
         case LengthPart():
             counts = f"counts={tuple_of(map(text, item.counts))}"
-            return call("_rt.LengthPart", name, _number(item.type), counts, **_bounds(item))
+            return call("_rt.LengthPart", name, number(item.type), counts, **_bounds(item))
         case CounterPart() | ValuePart():
             kind = "_rt.CounterPart" if isinstance(item, CounterPart) else "_rt.ValuePart"
             default = None if item.default is None else str(item.default)
             values = tuple_of(map(str, item.values)) if isinstance(item, ChoicePart) else None
             given = {**_bounds(item), "default": default, "values": values}
-            return call(kind, name, _number(item.type), **given)
+            return call(kind, name, number(item.type), **given)
         case ChecksumPart():
             return _checksum_part(item)
         case PayloadPart():
@@ -51,7 +51,11 @@ def part(item: Part) -> str:
     raise TypeError(f"{type(item).__name__} is no part that a frame has")
 
 
-def _number(type_: Integer) -> str:
+def number(type_: Integer) -> str:
+    """The codec of a part's number."""
+    if type_.is_text:
+        seven_bits = "True" if type_.byte_bits == 7 else None
+        return call("_rt.Characters", str(type_.size), seven_bit=seven_bits)
     order = text(type_.byte_order) if type_.size > 1 else None
     seven = "True" if type_.byte_bits == 7 else None
     return call("_rt.Number", str(type_.bits), order=order, seven_bit=seven)
@@ -65,7 +69,7 @@ def _checksum_part(item: ChecksumPart) -> str:
     return call(
         "_rt.ChecksumPart",
         text(item.name),
-        _number(item.type),
+        number(item.type),
         f"algorithm={algorithm(item.algorithm)}",
         f"covers={tuple_of(map(text, item.covers))}",
         over_wire="True" if item.over_wire else None,

@@ -82,6 +82,8 @@ class Module(msgspec.Struct, frozen=True):
     protocol_text: str
     arguments: dict[str, str]
     """Counters and values that `encode` takes: names of the parts, and of its arguments."""
+    kinds: dict[str, str]
+    """Types of these, by the names of the parts."""
     arguments_doc: str
     counts: bool
     formats: str
@@ -123,6 +125,7 @@ def view(protocol: Protocol) -> Module:
         literal=f"_typing.Literal[{', '.join(text(item.name) for item in endpoints)}]",
         protocol_text=_protocol_text(protocol, senders, any_message, any_parts),
         arguments=arguments,
+        kinds={name: _kind(protocol, name) for name in arguments},
         arguments_doc=_arguments_doc(protocol),
         counts=any(_counters(sender) for sender in protocol.senders),
         formats=_formats(senders),
@@ -169,7 +172,8 @@ def _part_attributes(sender: Sender) -> tuple[Attribute, ...]:
     for part in sender.frame.shown_parts:
         first = next(iter(paragraphs(part.about.doc)), _role(part))
         texts = describing.escaped([descriptions.sentence(first)])
-        attributes.append(Attribute(f"{attribute(part.name)}: int", remark(texts, _INDENT)))
+        kind = "str" if part.type.is_text else "int"
+        attributes.append(Attribute(f"{attribute(part.name)}: {kind}", remark(texts, _INDENT)))
     return tuple(attributes)
 
 
@@ -194,6 +198,12 @@ def _arguments(protocol: Protocol) -> dict[str, str]:
     return {name: argument(name) for name in parts}
 
 
+def _kind(protocol: Protocol, name: str) -> str:
+    """Type of a part that callers give: parts of several senders may be called alike."""
+    own = [part for sender in protocol.senders for part in sender.given_parts if part.name == name]
+    return " | ".join(sorted({"str" if part.type.is_text else "int" for part in own}))
+
+
 def _arguments_doc(protocol: Protocol) -> str:
     sentences: dict[str, str] = {}
     for sender in protocol.senders:
@@ -210,12 +220,17 @@ def _arguments_doc(protocol: Protocol) -> str:
 
 
 def _default(part: CounterPart | ValuePart) -> str:
+    if part.default is not None and part.type.is_text:
+        return f"`{part.shown(part.default)}`"
     return f"0x{part.default:02X}" if isinstance(part, ChoicePart) else str(part.default)
 
 
 def _allowed(part: CounterPart | ValuePart) -> str:
     if isinstance(part, ChoicePart):
-        return ", ".join(f"0x{value:02X}" for value in part.values)
+        shown = map(part.shown, part.values)
+        return ", ".join(f"`{it}`" if isinstance(it, str) else f"0x{it:02X}" for it in shown)
+    if part.type.is_text:
+        return f"up to {part.type.size} characters"
     return f"{part.least}..{part.greatest}"
 
 
@@ -307,11 +322,18 @@ def _decoder_head(messages: str, parts: str, name: str, end: str) -> str:
 def _identity_words(sender: Sender, message: Message) -> str:
     """The identity as characters, where it is made of such."""
     words = [
-        f"{part.name} {text(chr(value))}"
+        f"{part.name} {text(shown)}"
         for part, value in zip(sender.frame.identity, message.identity, strict=True)
-        if part.type.role == "char" and chr(value).isprintable()
+        if (shown := _characters(part, value)).isprintable() and shown
     ]
     return ", ".join(words)
+
+
+def _characters(part: IdentityPart, value: int) -> str:
+    """The characters of an identity; none where it is no text."""
+    if part.type.role == "char":
+        return chr(value)
+    return str(part.shown(value)) if part.type.is_text else ""
 
 
 def _frame(sender: Sender) -> str:

@@ -12,6 +12,7 @@ from protogen.targets.c.frame.algorithms import Algorithm
 from protogen.targets.c.frame.frames import FrameView
 from protogen.targets.c.frame.handlers import Dispatch, dispatches
 from protogen.targets.c.frame.message_frames import MessageFrame, SenderFrames
+from protogen.targets.c.frame.texts import TextView, texts_of
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.message_names import claim_frame
 from protogen.targets.c.payload.messages import MessageView
@@ -46,6 +47,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """The frames, by their sender, some of which a decoder might end too early."""
     idle_checks: frozenset[str]
     """Those some of which a decoder might take for an idle line."""
+    texts: tuple[TextView, ...]
+    """Sizes of the parts that are texts."""
 
     @property
     def sends(self) -> bool:
@@ -115,6 +118,7 @@ def framing_view(
         ),
         dispatches=dispatches(decoders, messages, names),
         sinks=used,
+        texts=texts_of(protocol),
     )
 
 

@@ -10,6 +10,7 @@ from protogen.model.frame import ChoicePart, IdentityPart, LengthPart, LiteralPa
 from protogen.model.frame_plan import FramePlan, PlacedPart
 from protogen.model.types import storage_bits
 from protogen.targets.c.frame.expressions import byte, less_absent, number_of
+from protogen.targets.c.frame.texts import comment_of
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
@@ -59,18 +60,24 @@ class PartView(msgspec.Struct, frozen=True):
     """The member for it."""
 
     @property
-    def _part(self) -> NumberPart:
+    def part(self) -> NumberPart:
+        """The part itself."""
         assert isinstance(self.placed.part, NumberPart)
         return self.placed.part
 
     @property
     def type(self) -> str:
         """Type of its value."""
-        return unsigned_type(self._part.type.bits)
+        return unsigned_type(self.part.type.bits)
+
+    @property
+    def comment(self) -> str:
+        """What is said of it."""
+        return comment_of(self.part.type)
 
     def value(self, payload: str) -> str:
         """Its value, read from `content` or `tail`; `payload` is the C of the payload's size."""
-        type_ = self._part.type
+        type_ = self.part.type
         at = "content" if self.placed.in_head else "tail"
         less = less_absent(self.placed.place, payload)
         value = number_of(type_, at, self.placed.offset, less)

@@ -102,7 +102,7 @@ def _frames(unit: Unit, indices: Mapping[str, int]) -> tuple[DrivenFrame, ...]:
             item.called.send if item.sends else "",
             # By their names in the schema; those of arguments may differ.
             tuple(
-                DrivenPart(part.name, argument.type)
+                DrivenPart(part.name, argument.type, part)
                 for part, argument in zip(
                     given_parts(item.frame.plan.frame, item.message), item.arguments, strict=True
                 )
@@ -131,7 +131,10 @@ def _decoder(
         decoder.prefix,
         decoder.all_events,
         decoder.flat is not None,
-        tuple(DrivenPart(part.placed.name, part.type, part.member) for part in decoder.parts),
+        tuple(
+            DrivenPart(part.placed.name, part.type, part.part, part.member)
+            for part in decoder.parts
+        ),
         tuple(
             DrivenHandler(item.function, item.message.struct, indices[item.message.name])
             for item in dispatch.handlers

@@ -89,5 +89,15 @@ def constants_of(item: Message, sender: Sender, names: Names) -> tuple[Macro, ..
 
 def _identity_value(part: IdentityPart, value: int) -> str:
     """The number, or the character that it is."""
-    is_text = part.type.role == "char" and 0x20 < value < 0x7F and chr(value) not in "'\\?"
+    if part.type.is_text and part.type.size > 1:
+        return f"{hexadecimal(value)}{_comment(str(part.shown(value)))}"
+    is_text = (
+        part.type.role in ("char", "ascii") and 0x20 < value < 0x7F and chr(value) not in "'\\?"
+    )
     return f"'{chr(value)}'" if is_text else hexadecimal(value)
+
+
+def _comment(text: str) -> str:
+    """The characters of an identity, where they can stand in a comment."""
+    plain = all(character.isalnum() or character in " -_." for character in text)
+    return f" /**< `{text}` */" if plain and text.isascii() else ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import msgspec
 
@@ -11,6 +11,7 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.emit import Unit, c_environment, texts, unit_of
 from protogen.targets.c.frame.fill import Fill
+from protogen.targets.c.frame.numbers import PartView
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.messages import MessageView
 
@@ -40,12 +41,72 @@ class _Spelling(msgspec.Struct, frozen=True):
     """Of its table."""
     function: str
     room: str
-    parts: tuple[str, ...]
+    parts: str
 
     @property
     def call(self) -> str:
         """The call that makes the frame of a row."""
-        return f"{self.function}(&row->message{_of_row(self.parts)}, frame, {self.room}, &size)"
+        return f"{self.function}(&row->message{self.parts}, frame, {self.room}, &size)"
+
+
+class _Part(msgspec.Struct, frozen=True):
+    """A part of the frame as a row has it: a text as characters, not as a number."""
+
+    view: PartView
+
+    @property
+    def declared(self) -> str:
+        """Its declaration."""
+        size = f"[{self._size}]" if self._is_text else ""
+        return f"{'char' if self._is_text else self.view.type} {self._name}{size}"
+
+    @property
+    def fill(self) -> tuple[str, ...]:
+        """The statements that fill it."""
+        member, value = f"row->{self._name}", f"event->parts.{self.view.member}"
+        if not self._is_text:
+            return (f"{member} = {value};",)
+        return tuple(
+            f"{member}[{index}] = (char)({value} >> {shift} & {self._mask});"
+            for index, shift in self._characters
+        )
+
+    @property
+    def value(self) -> str:
+        """Its number, out of the row."""
+        member = f"row->{self._name}"
+        if not self._is_text:
+            return member
+        each = (
+            f"({self.view.type})(uint8_t){member}[{index}] << {shift}"
+            for index, shift in self._characters
+        )
+        return f"({self.view.type})({' | '.join(each)})"
+
+    @property
+    def _name(self) -> str:
+        return f"part_{self.view.placed.name}"
+
+    @property
+    def _is_text(self) -> bool:
+        return self.view.part.type.is_text
+
+    @property
+    def _size(self) -> int:
+        return self.view.part.type.size
+
+    @property
+    def _mask(self) -> str:
+        return "0x7FU" if self.view.part.type.byte_bits == 7 else "0xFFU"
+
+    @property
+    def _characters(self) -> Iterator[tuple[int, int]]:
+        """The place of each character in the text and in the number."""
+        bits = self.view.part.type.byte_bits
+        return ((index, bits * (self._size - 1 - index)) for index in range(self._size))
+
+
+_Parts = Mapping[str, _Part]
 
 
 def rows_source(
@@ -67,7 +128,10 @@ def rows_source(
     tables = tuple(
         _table(unit.module.message(name), table) for name, table in schema.messages.items()
     )
-    spellings = [] if sender.plan.has_one_spelling else _spellings(unit, list(schema.messages))
+    parts = {view.placed.name: _Part(view) for view in decoder.parts}
+    spellings = []
+    if not sender.plan.has_one_spelling:
+        spellings = _spellings(unit, list(schema.messages), parts)
     return (
         c_environment()
         .get_template("rows/driver.c.j2")
@@ -75,39 +139,39 @@ def rows_source(
             p=decoder.prefix,
             upper=unit.module.upper,
             whole=decoder.whole,
-            parts=decoder.parts,
+            parts=tuple(parts.values()),
             header=header,
             source=source,
             tables=tables,
             spellings=spellings,
-            wrapped=_wrapped(unit, decoder) if spellings else "",
+            wrapped=_wrapped(unit, decoder, parts) if spellings else "",
             layout=layout,
         )
     )
 
 
-def _spellings(unit: Unit, tables: list[str]) -> list[_Spelling]:
+def _spellings(unit: Unit, tables: list[str], parts: _Parts) -> list[_Spelling]:
     return [
         _Spelling(
             tables.index(item.message.name),
             item.called.function,
             item.called.room,
-            tuple(argument.part for argument in item.arguments),
+            _of_row([argument.part for argument in item.arguments], parts),
         )
         for item in unit.framing.messages
         if item.message.name in tables
     ]
 
 
-def _wrapped(unit: Unit, decoder: DecoderView) -> str:
+def _wrapped(unit: Unit, decoder: DecoderView, parts: _Parts) -> str:
     """The arguments of the parts that go into a frame beside the payload."""
     frame = next(it.frame for it in unit.framing.messages if it.frame.decoder is decoder)
-    return _of_row([argument.part for argument in (*frame.identity, *frame.arguments)])
+    return _of_row([argument.part for argument in (*frame.identity, *frame.arguments)], parts)
 
 
-def _of_row(parts: Sequence[str]) -> str:
+def _of_row(names: Iterable[str], parts: _Parts) -> str:
     """Arguments behind others: the values that a row has of these parts."""
-    return "".join(f", row->part_{part}" for part in parts)
+    return "".join(f", {parts[name].value}" for name in names)
 
 
 def _table(view: MessageView, table: TableSchema) -> _Table:

@@ -55,7 +55,8 @@ def number_text(kind: NumberType) -> str:
     """Print a number's type with its byte order, or with how it is written as text."""
     if isinstance(kind, Integer) and kind.text is not None:
         return f"{code(kind.name)} as text, {_digits_text(kind.text)}"
-    return f"{code(kind.name)} {_ORDERS[kind.byte_order]}" if kind.size > 1 else code(kind.name)
+    is_plain = kind.size == 1 or (isinstance(kind, Integer) and kind.is_text)
+    return code(kind.name) if is_plain else f"{code(kind.name)} {_ORDERS[kind.byte_order]}"
 
 
 def _digits_text(form: Numeral) -> str:

@@ -28,7 +28,6 @@ from protogen.model.frame import (
 )
 from protogen.model.identities import Identities, Runs
 from protogen.model.sizes import SizeSet
-from protogen.model.types import NumberType
 from protogen.targets.emitted import EmittedNames
 from protogen.targets.markdown.fields.types import number_text
 from protogen.targets.markdown.fields.values import character, raw_text
@@ -37,7 +36,14 @@ from protogen.targets.markdown.text.anchors import decision_link
 from protogen.targets.markdown.text.code_names import in_code
 from protogen.targets.markdown.text.origin import about_line
 from protogen.targets.markdown.text.table import Table, table
-from protogen.targets.markdown.text.words import code, hex_bytes, hex_number, listed, size_text
+from protogen.targets.markdown.text.words import (
+    code,
+    hex_bytes,
+    hex_number,
+    listed,
+    plural,
+    size_text,
+)
 
 _HEADER = ("Frame byte", "Size", "Type", "Part", "Value", "Meaning")
 
@@ -62,6 +68,8 @@ def part_type(part: Part) -> str:
 
 def part_value(part: Part) -> str:
     """Return what a part holds in any frame."""
+    if isinstance(part, NumberPart) and not isinstance(part, ChoicePart) and part.type.is_text:
+        return plural(part.type.size, "character")
     match part:
         case LiteralPart():
             return literal_text(part.bytes)
@@ -92,7 +100,9 @@ def identity_values(part: IdentityPart, runs: Runs) -> str:
 
 
 def identity_value(part: IdentityPart, value: int) -> str:
-    """Print the value of an identity part: in hex, a character also as one."""
+    """Print the value of an identity part: in hex, characters also as such."""
+    if part.type.is_text:
+        return literal_text(part.encode(value))
     shown = character(value) if part.type.role == "char" else ""
     return f"{shown} {code(hex_number(value, part.type.bits))}".strip()
 
@@ -166,17 +176,21 @@ def _number_roles(part: NumberPart) -> tuple[str, ...]:
         case LengthPart():
             return (f"Number of bytes of {part_names(part.counts)}.",)
         case CounterPart():
-            return ("Counts frames and wraps.", _default(part.default, part.type))
+            return ("Counts frames and wraps.", _default(part))
         case ChoicePart():
             return _choice_roles(part)
         case ValuePart():
-            return ("The sender gives it.", _default(part.default, part.type))
+            return ("The sender gives it.", _default(part))
         case _:
             return ("Tells which message it is.",)
 
 
-def _default(value: int | None, type_: NumberType) -> str:
-    return "" if value is None else f"{raw_text(value, type_)} by default."
+def _default(part: CounterPart | ValuePart) -> str:
+    if part.default is None:
+        return ""
+    if part.type.is_text:
+        return f"{literal_text(part.encode(part.default))} by default."
+    return f"{raw_text(part.default, part.type)} by default."
 
 
 def _checksum_roles(part: ChecksumPart) -> tuple[str, ...]:

@@ -7,14 +7,14 @@ from itertools import groupby
 
 import msgspec
 
-from protogen.model.frame import ChecksumPart, IdentityPart, Part, PayloadPart
+from protogen.model.frame import ChecksumPart, IdentityPart, NumberPart, Part, PayloadPart
 from protogen.model.messages import Contradiction, Example, Message
 from protogen.model.protocol import Protocol
 from protogen.model.reading.annotate import Row, annotate
 from protogen.model.types import Field, NumberType
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.fields.values import raw_text, value_meaning
-from protogen.targets.markdown.frames.parts import identity_value, role
+from protogen.targets.markdown.frames.parts import identity_value, literal_text, role
 from protogen.targets.markdown.text.anchors import example_anchor
 from protogen.targets.markdown.text.origin import about_line
 from protogen.targets.markdown.text.table import Table, View, table
@@ -231,6 +231,8 @@ def _part_value(row: Row) -> str:
         return identity_value(part, row.value)
     if isinstance(part, ChecksumPart):
         return code(hex_number(row.value, part.type.bits))
+    if isinstance(part, NumberPart) and part.type.is_text:
+        return literal_text(part.encode(row.value))
     return code(row.value)
 
 

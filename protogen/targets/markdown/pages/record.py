@@ -78,7 +78,7 @@ def reserved(protocol: Protocol) -> Table | None:
 def _reserved_identity(protocol: Protocol, item: ReservedIdentity) -> tuple[str, ...]:
     parts = protocol.forms(item.sender)[0].frame.identity
     each = zip(parts, item.told_by.runs, strict=True)
-    named = (f"{part.name} {Identities((runs,))}" for part, runs in each)
+    named = (f"{part.name} {Identities((runs,)).shown([part])}" for part, runs in each)
     what = sentence(markdown(item.doc)) if item.doc else ""
     return f"identity, from {code(item.sender)}", code(", ".join(named)), what
 

@@ -17,6 +17,7 @@ from protogen.model.frame import (
 )
 from protogen.model.messages import Message
 from protogen.model.types import Integer
+from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.checksums import FOLDED, checksum, folded, is_plain_xor
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.layout import UNSIGNED, byte_order
@@ -115,8 +116,12 @@ def _identity_of(message: Message, frame: EngineFrame, lines: Lines) -> list[str
         value = str(message.identity[index])
         if message.chooses(index):
             given, default, value = f"{part.name}_", value, f"identity{index}"
-            lines.add(f"{value} = {default} if {given} is None else {given}")
-            lines.refuse_if(f"type({value}) is not int")
+            if part.type.is_text:
+                number = f"{text_reader(part.type, lines)}({given})"
+                lines.add(f"{value} = {default} if {given} is None else {number}")
+            else:
+                lines.add(f"{value} = {default} if {given} is None else {given}")
+                lines.refuse_if(f"type({value}) is not int")
             bounds = [_in_run(value, *run) for run in message.told_by.runs[index]]
             lines.refuse_if(f"not ({' or '.join(bounds)})")
         found.append(value)
@@ -125,6 +130,16 @@ def _identity_of(message: Message, frame: EngineFrame, lines: Lines) -> list[str
 
 def _in_run(value: str, first: int, last: int) -> str:
     return f"{value} == {first}" if first == last else f"{first} <= {value} <= {last}"
+
+
+def text_reader(type_: Integer, lines: Lines) -> str:
+    """The name of what reads the number of a text that a caller gives."""
+    return lines.constants.named("TEXT", f"_fast.text({tables.number(type_)})")
+
+
+def _variable(part: CounterPart | ValuePart) -> str:
+    """The variable that holds a part's number."""
+    return f"{part.name}_number" if part.type.is_text else f"{part.name}_"
 
 
 def encoder_arguments(of_caller: tuple[str, ...]) -> list[str]:
@@ -211,18 +226,32 @@ class _Framer(FrameFunction):
                 self.lines.refuse_if(f"{argument} is not None")
         for part in self.plan.frame.caller_parts:
             assert isinstance(part, CounterPart | ValuePart)
-            if part.default is not None:
-                self.lines.add(f"if {part.name}_ is None:")
-                self.lines.add(f"    {part.name}_ = {part.default}")
-            least, greatest = part.least, part.greatest
+            if part.type.is_text:
+                self._read_text(part)
+            else:
+                self._read_number(part)
             if isinstance(part, ChoicePart):
                 values = tuple_of(map(str, part.values))
-                self.lines.refuse_if(f"{part.name}_ not in {values}")
-            elif not _is_plain(part.type) or (least, greatest) != (0, part.type.greatest):
-                self.lines.refuse_if(f"not {least} <= {part.name}_ <= {greatest}")
-            if not _is_plain(part.type):
+                self.lines.refuse_if(f"{_variable(part)} not in {values}")
+            if not _is_plain(part.type) and not part.type.is_text:
                 integers.append(f"{part.name}_")
         return integers
+
+    def _read_number(self, part: ValuePart | CounterPart) -> None:
+        if part.default is not None:
+            self.lines.add(f"if {part.name}_ is None:")
+            self.lines.add(f"    {part.name}_ = {part.default}")
+        least, greatest = part.least, part.greatest
+        if isinstance(part, ChoicePart):
+            return
+        if not _is_plain(part.type) or (least, greatest) != (0, part.type.greatest):
+            self.lines.refuse_if(f"not {least} <= {part.name}_ <= {greatest}")
+
+    def _read_text(self, part: ValuePart | CounterPart) -> None:
+        number = f"{text_reader(part.type, self.lines)}({part.name}_)"
+        if part.default is not None:
+            number = f"{part.default} if {part.name}_ is None else {number}"
+        self.lines.add(f"{_variable(part)} = {number}")
 
     def _payload(self) -> None:
         length = self.plan.length
@@ -275,7 +304,7 @@ class _Framer(FrameFunction):
         if isinstance(part, IdentityPart):
             return self._identity[self.plan.identity.index(part)]
         assert isinstance(part, CounterPart | ValuePart)
-        return f"{part.name}_"
+        return _variable(part)
 
     def _insert(self, part: ChecksumPart) -> None:
         """Put a checksum behind all that the content has; only the last parts are checksums."""

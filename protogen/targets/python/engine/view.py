@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import msgspec
 
@@ -72,8 +72,11 @@ class EngineModule(msgspec.Struct, frozen=True):
     """True if writers do."""
 
 
-def engine_view(protocol: Protocol, of_caller: tuple[str, ...]) -> EngineModule:
-    """The fast engine of a protocol; `of_caller` are the parts that callers of `encode` give."""
+def engine_view(protocol: Protocol, of_caller: Mapping[str, str]) -> EngineModule:
+    """The fast engine of a protocol.
+
+    `of_caller` are the parts that callers of `encode` give, with their types.
+    """
     constants = Constants(names_of(protocol))
     classes = constants.classes
     frames = [EngineFrame(sender) for sender in protocol.senders]
@@ -184,7 +187,7 @@ def _arguments(*given: str, **named: str | None) -> str:
     return wrapped(call("", *given, **named), len("_fast.add_readers"), 0)[1:-1]
 
 
-def _writers(protocol: Protocol, of_caller: tuple[str, ...], codes: bool) -> str:
+def _writers(protocol: Protocol, of_caller: Iterable[str], codes: bool) -> str:
     """The arguments of `add_writers`: of one form of frame it is known where the payload lies."""
     alone = [sender for sender in protocol.senders if sender.is_only_form]
     return _arguments(
@@ -202,17 +205,22 @@ def _seen_to_be_ascii(protocol: Protocol) -> set[str]:
 
 
 def _encoder(
-    message: Message, frames: list[EngineFrame], of_caller: tuple[str, ...], constants: Constants
+    message: Message, frames: list[EngineFrame], of_caller: Mapping[str, str], constants: Constants
 ) -> Function | None:
     """The function that makes a message's frames; None where only the reference does."""
     own = [frame for frame in frames if frame.sender.sends(message)]
     if not all(frame.can_frame for frame in own):
         return None
-    given = "".join(f", {name}: int | None" for name in framing.encoder_arguments(of_caller))
+    given = "".join(
+        f", {name}: {kind} | None"
+        for name, kind in zip(
+            framing.encoder_arguments(tuple(of_caller)), of_caller.values(), strict=True
+        )
+    )
     parameters = (
         f"item: {constants.classes[message.name]}, module: object, sender: str | None{given}"
     )
-    body = framing.encoder(message, own, of_caller, constants)
+    body = framing.encoder(message, own, tuple(of_caller), constants)
     return _function(f"_encode_{message.name}", parameters, "bytes", body)
 
 
@@ -239,7 +247,7 @@ def _overload(frame: EngineFrame, group: IdentityGroup, classes: Mapping[str, st
     return _function(identities.reader_of(frame, group), "data: bytes", given, tuple(body))
 
 
-def _sender(frame: EngineFrame, of_caller: tuple[str, ...], constants: Constants) -> EngineSender:
+def _sender(frame: EngineFrame, of_caller: Mapping[str, str], constants: Constants) -> EngineSender:
     name = frame.sender.name
     cut = head = made = None
     if frame.takes_whole:
@@ -254,17 +262,19 @@ def _sender(frame: EngineFrame, of_caller: tuple[str, ...], constants: Constants
         body = identities.header(frame, constants)
         head = _function(f"_head_{name}", "head: bytes", "tuple[_typing.Any, ...]", body)
     if frame.can_frame:
-        given = framing.arguments(frame, of_caller)
-        parameters = ", ".join(["payload: bytes", *(f"{name}: int | None" for name in given)])
-        body = framing.framer(frame, of_caller, constants)
+        given = framing.arguments(frame, tuple(of_caller))
+        kinds = (*("int" for _ in frame.plan.identity), *of_caller.values())
+        typed = (f"{name}: {kind} | None" for name, kind in zip(given, kinds, strict=True))
+        parameters = ", ".join(["payload: bytes", *typed])
+        body = framing.framer(frame, tuple(of_caller), constants)
         made = _function(f"_frame_{name}", parameters, "bytes", body)
-    kinds = identities.kinds(frame) if cut else ""
+    table = identities.kinds(frame) if cut else ""
     return EngineSender(
         name,
         name.upper(),
         cut,
         head,
-        kinds,
+        table,
         made,
         frame.sender.endpoint if frame.sender.is_only_form else "",
         literal(frame.plan.end_bytes) if frame.plan.shares_delimiter else "",

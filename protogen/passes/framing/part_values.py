@@ -1,0 +1,66 @@
+"""Values of parts as they are written: numbers, characters, or texts."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from protogen.model.frame import NumberPart
+from protogen.model.types import ByteOrder, Integer
+from protogen.passes.context import Context, Loc
+from protogen.schema.syntax.parts import Part
+
+
+def text_type(context: Context, loc: Loc, item: Part, byte_bits: Literal[7, 8]) -> Integer | None:
+    """Type of a part that is a text; None where it can't be one."""
+    before = context.tally.errors
+    if item.type != "ascii":
+        text = "only a text has a size; that of a number is part of its type"
+        context.error("PG192", (*loc, "size"), text, "write `type: ascii`, or leave out `size`")
+    elif item.size is None:
+        text = "nothing says how many characters the text has"
+        context.error("PG192", (*loc, "type"), text, "add `size`, such as `size: 3`")
+    for key in ("counts", "counter", "algorithm"):
+        if getattr(item, key) is not None:
+            text = f"`{key}` is for a number, and this part is a text"
+            context.error("PG192", (*loc, key), text, "give it a type such as `uint8`")
+    for key in ("range", "byte_order"):
+        if getattr(item, key) is not None:
+            context.error("PG192", (*loc, key), f"a text has no `{key}`", f"leave out `{key}`")
+    if context.tally.errors > before or item.size is None:
+        return None
+    order: ByteOrder = "big" if item.size > 1 else "little"
+    bits = byte_bits * item.size
+    return Integer(bits=bits, byte_bits=byte_bits, byte_order=order, role="ascii")
+
+
+def number_of(context: Context, loc: Loc, part: NumberPart, value: int | str) -> int | None:
+    """The number that is meant; None where it is none of the part."""
+    problem = _wrong(part, value)
+    if problem is not None:
+        context.error("PG192", loc, *problem)
+        return None
+    if isinstance(value, str) and not part.type.is_text:
+        return ord(value)
+    return part.raw(value)
+
+
+def _wrong(part: NumberPart, value: int | str) -> tuple[str, str] | None:
+    """Reason why the value is none of the part, and what to do about it."""
+    size = part.type.size
+    characters = "one character" if size == 1 else f"{size} characters"
+    if not part.type.is_text:
+        if isinstance(value, int) or len(value) == 1:
+            return None
+        text = f"`{value}` is no number, as `{part.name}` is"
+        return text, f"write an integer or one character, or make it `{_as_text(part.type, value)}`"
+    if isinstance(value, int):
+        return f"{value} is a number, and `{part.name}` a text", f"write {characters}, in quotes"
+    if len(value) != size:
+        return f"`{value}` has not {characters}, as `{part.name}` has", "fill it up, or cut it"
+    if not value.isascii():
+        return f"`{value}` has a character that is not ASCII", "write letters, digits and marks"
+    return None
+
+
+def _as_text(type_: Integer, value: str) -> str:
+    return f"type: ascii, size: {max(type_.size, len(value))}"
