@@ -162,7 +162,8 @@ def _run(material: Material, dice: Random) -> bytes:
 def _false_start(material: Material, dice: Random) -> bytes:
     """The beginning of a frame, and then something else."""
     frame = dice.choice(material.frames)
-    return frame[: dice.randint(1, min(8, len(frame) - 1))] + dice.randbytes(dice.randrange(6))
+    most = max(1, min(8, len(frame) - 1))
+    return frame[: dice.randint(1, most)] + dice.randbytes(dice.randrange(6))
 
 
 NOISES: dict[str, Callable[[Material, Random], bytes]] = {

@@ -19,6 +19,9 @@ class Part(msgspec.Struct, frozen=True, kw_only=True, cache_hash=True):
 
     name: str
     about: About = NOTHING
+    unprotected: str | None = None
+    """The decision that accepts that these bytes can also occur inside the frame, or, of a first
+    part that is no literal, that nothing marks the start."""
 
     @property
     def size(self) -> int:
@@ -35,8 +38,6 @@ class LiteralPart(Part, frozen=True, kw_only=True):
     """Fixed bytes."""
 
     bytes: bytes
-    unprotected: str | None = None
-    """The decision that accepts that the bytes can also occur inside the frame."""
 
     @property
     def size(self) -> int:
@@ -107,8 +108,6 @@ class ChoicePart(ValuePart, frozen=True, kw_only=True):
 
     words: tuple[bytes, ...]
     """The literals, in the order of the schema."""
-    unprotected: str | None = None
-    """The decision that accepts that they can also occur inside the frame."""
 
     @property
     def values(self) -> tuple[int, ...]:

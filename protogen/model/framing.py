@@ -42,7 +42,13 @@ class AfterEnd(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Anywhere(msgspec.Struct, frozen=True, kw_only=True):
-    """Nothing marks the start: sizes and the checksum tell whether a frame starts at a byte."""
+    """Nothing marks the start: sizes and the checksum tell whether a frame starts at a byte.
+
+    Without a checksum, it starts where the frame before ends, as some decision accepts.
+    """
+
+    checked: bool = True
+    """True if a checksum tells frames from other bytes."""
 
 
 Start = StartLiteral | StartSet | AfterEnd | Anywhere

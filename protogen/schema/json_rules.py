@@ -163,8 +163,7 @@ _PART_RULES = (
     ),
     *(_bounded(f"uint{bits}", 0, 2**bits - 1) for bits in (8, 16, 32)),
     _together(
-        "These are for a literal or a checksum.",
-        {"unprotected": ["literal"], **{key: ["algorithm"] for key in ("covers", "over", "when")}},
+        "These are for a checksum.", {key: ["algorithm"] for key in ("covers", "over", "when")}
     ),
 )
 

@@ -115,7 +115,15 @@ class FramePlan:
             automaton = Delimited(self.stretches(payload, own))
             if places and any(map(automaton.holds, self.words_at(places))):
                 parts[places[-1]] = parts[places[-1]].adding(unprotected=decision)
+        if self._is_unmarked:
+            parts[0] = parts[0].adding(unprotected=decision)
         return replace(self, parts=tuple(parts))
+
+    @property
+    def _is_unmarked(self) -> bool:
+        """True if nothing marks where a frame starts, and no checksum tells."""
+        checked = any(part.role == "checksum" and not part.optional for part in self.parts)
+        return not (self.opening or self.closing or self.starts_with_set or checked)
 
     # -- as it is written --------------------------------------------------------------------
 
@@ -203,6 +211,8 @@ class _Drawing:
         self._end = draw(st.sampled_from(ENDS))
         self._has_length = draw(st.booleans())
         self._anywhere = self._start == self._end == "none"
+        self._by_position = self._anywhere and draw(st.booleans())
+        """True if a checksum is not needed."""
         self._head, self._tail = self._around_payload(list(identity))
         self._make_findable()
 
@@ -264,8 +274,15 @@ class _Drawing:
         """Add what a receiver needs: no frame is nothing but its end; a start set tells little."""
         if self._start == "none" and not self._is_never_empty():
             self._head.append(self._maker.number("value"))
+        if self._by_position and self._may_be_set():
+            self._tail.append(self._maker.checksum(optional=False))
         if self._start == "set" and self._end == "none" and not self._is_set_apart():
             self._tail.append(self._maker.checksum(optional=False))
+
+    def _may_be_set(self) -> bool:
+        """True if the range of the first part may mark the start."""
+        first = self._head[0] if self._head else None
+        return first is not None and (first.role == "length" or "range" in first.data)
 
     def _is_never_empty(self) -> bool:
         """True if something stands in every frame beside its delimiters and the payload."""
@@ -302,12 +319,15 @@ class _Drawing:
 
     def _checksums(self) -> list[PartPlan]:
         count = self._draw(st.sampled_from([0, 1, 1, 2]))
-        if self._anywhere:
+        if self._by_position:
+            count = min(1, count)
+        elif self._anywhere:
             count = max(1, count)
-        return [
-            self._maker.checksum(optional=not self._anywhere and self._draw(forms.one_in(5)))
-            for _ in range(count)
-        ]
+        return [self._maker.checksum(optional=self._is_optional()) for _ in range(count)]
+
+    def _is_optional(self) -> bool:
+        """True if a checksum may be absent: it is, where nothing has to tell a frame."""
+        return self._by_position or (not self._anywhere and self._draw(forms.one_in(5)))
 
     def _mixed(self, identity: list[PartPlan], others: list[PartPlan]) -> list[PartPlan]:
         """The identity parts in their order, with the others before, between and behind."""

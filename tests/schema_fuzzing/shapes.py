@@ -24,8 +24,8 @@ COMMON = (
     "byte order: None", "byte order: big", "byte order: little", "byte order: each sender",
     "byte order of a message", "byte order of a part", "field with byte_order", "lenient",
     "size: by the end", "size: by the message", "size: length", "size: length with a range",
-    "counter", "value", "choice", "start: choice", "checksum over wire", "checksum when payload",
-    "algorithm: parameters",
+    "counter", "value", "choice", "start: choice", "start: by position",
+    "checksum over wire", "checksum when payload", "algorithm: parameters",
     "text as a part: id", "text as a part: literal", "text as a part: value",
     "several identities", "overload by size", "overload by undecidable", "unspecified payload",
     "empty message",
@@ -91,6 +91,8 @@ def _frame(frame: FramePlan) -> Iterator[str]:
     yield from (role for role in roles if role in ("counter", "value", "choice"))
     if frame.opening and frame.parts[0].role == "choice":
         yield "start: choice"
+    if "unprotected" in frame.parts[0].data and not frame.opening:
+        yield "start: by position"
     if frame.lenient:
         yield "lenient"
     if frame.limit is not None:

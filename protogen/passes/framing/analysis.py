@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from protogen.copying import replace
-from protogen.model.frame import Cobs, Frame, PayloadPart
+from protogen.model.frame import ChoicePart, Cobs, Frame, LiteralPart, PayloadPart
 from protogen.model.framing import (
     AfterEnd,
     Anywhere,
@@ -84,6 +84,7 @@ class _Analysis:
         start = self._start(end)
         if start is None or not self._ends_known(end):
             return None
+        self._needless(start)
         self._only_end()
         if self._region_unclear():
             return None
@@ -108,14 +109,38 @@ class _Analysis:
             return AfterEnd()
         if self._always_checked():
             return Anywhere()
+        if self.frame.parts[0].unprotected is not None:
+            return None if self._holds_nothing() else Anywhere(checked=False)
         self._context.error_at_key(
             "PG146",
             self._loc,
             f"nothing tells a receiver where a frame of {self.sender} starts",
             "a frame needs a literal, a first byte with a `range` of its own, or at least a "
-            "checksum that is always there",
+            "checksum that is always there; or accept it: `unprotected:` and a decision's name on "
+            "the first part",
         )
         return None
+
+    def _holds_nothing(self) -> bool:
+        """True if a frame may have no bytes at all, which would be one at any place."""
+        if any(part.size and not part.is_optional for part in self.frame.parts):
+            return False
+        empty = [message.name for message in self._messages if message.sizes.least == 0]
+        for name in empty:
+            text = f"a frame of `{name}` can have no bytes at all, and nothing marks its start"
+            hint = "give the frame an identity or another part, or the message a field"
+            self._context.error_at_key("PG146", ("messages", name), text, hint)
+        return bool(empty)
+
+    def _needless(self, start: Start) -> None:
+        """Report parts that accept that nothing marks the start, where something does."""
+        needed = self.frame.parts[0] if start == Anywhere(checked=False) else None
+        for part in self.frame.parts:
+            is_literal = isinstance(part, LiteralPart | ChoicePart)
+            if part.unprotected is not None and part is not needed and not is_literal:
+                text = f"a receiver finds frames without `{part.name}`, so nothing needs to be"
+                place = (*self._loc, part.name, "unprotected")
+                self._context.error("PG144", place, f"{text} accepted", "remove `unprotected`")
 
     def _always_checked(self) -> bool:
         return any(not part.when_payload for part in self.frame.checksums)
@@ -251,7 +276,7 @@ class _Analysis:
             self_synchronising=synchronising,
             why_synchronising=why,
             finds_start=framing_words.finds_start(start),
-            finds_end=framing_words.finds_end(frame, end, self._messages),
+            finds_end=framing_words.finds_end(frame, start, end, self._messages),
             undetected=undetected_errors(frame, start, end, self._messages, self._payload),
             messages=per_message,
         )

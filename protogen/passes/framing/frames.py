@@ -50,12 +50,12 @@ PAYLOAD = "payload"
 
 _ROLES: dict[str, frozenset[str]] = {
     "literal": frozenset({"literal", "unprotected", "type"}),
-    "id": frozenset({"id", "type", "size", "range", "byte_order"}),
-    "counts": frozenset({"counts", "type", "range", "byte_order"}),
-    "counter": frozenset({"counter", "type", "range", "default", "byte_order"}),
+    "id": frozenset({"id", "type", "size", "range", "byte_order", "unprotected"}),
+    "counts": frozenset({"counts", "type", "range", "byte_order", "unprotected"}),
+    "counter": frozenset({"counter", "type", "range", "default", "byte_order", "unprotected"}),
     "algorithm": frozenset({"algorithm", "type", "covers", "over", "when", "byte_order"}),
-    "type": frozenset({"type", "size", "range", "default", "byte_order"}),
-    PAYLOAD: frozenset(),
+    "type": frozenset({"type", "size", "range", "default", "byte_order", "unprotected"}),
+    PAYLOAD: frozenset({"unprotected"}),
 }
 _COMMON_KEYS = frozenset({"doc", "source"})
 
@@ -141,7 +141,7 @@ class FrameBuilder:
             return None
         text = about(item.doc, item.source, self._context.find_key((*self._loc, name)))
         if role == PAYLOAD:
-            return PayloadPart(name=name, about=text)
+            return PayloadPart(name=name, about=text, unprotected=item.unprotected)
         if role == "literal":
             return literal_of(self._context, (*self._loc, name), name, item, text)
         type_ = self._type(name, item)
@@ -150,7 +150,14 @@ class FrameBuilder:
         if role == "algorithm":
             return self._checksum(name, item, type_)
         least, greatest = self._range(name, item, type_)
-        part = NumberPart(name=name, type=type_, least=least, greatest=greatest, about=text)
+        part = NumberPart(
+            name=name,
+            type=type_,
+            least=least,
+            greatest=greatest,
+            about=text,
+            unprotected=item.unprotected,
+        )
         return self._number(role, item, part)
 
     def _checksum(self, name: str, item: PartSyntax, type_: PartType) -> Part:

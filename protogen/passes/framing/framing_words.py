@@ -23,19 +23,28 @@ def finds_start(start: Start) -> str:
             return f"at {_any(start)}, which can also occur inside a frame"
         case AfterEnd():
             return "behind the end of the frame before, or at the start of the stream"
-        case Anywhere():
+        case Anywhere(checked=True):
             return "at any byte from which sizes and checksum are right"
+        case Anywhere():
+            return (
+                "where the frame before ends, or at the start of the stream; what can be no frame "
+                "is passed over byte by byte"
+            )
 
 
-def finds_end(frame: Frame, end: End | None, messages: list[Message]) -> str:
+def finds_end(frame: Frame, start: Start, end: End | None, messages: list[Message]) -> str:
     """Sentence on how a receiver finds where a frame ends."""
     if frame.length is not None:
         where = f"`{frame.length.name}` gives the size"
         return where if end is None else f"{where}; {_hex(end.bytes)} must follow"
     if end is None:
-        if all(message.sizes.fixed is not None for message in messages):
-            return "the identity gives the size; an unknown message ends at the next start"
-        return "identity and fields give the size; an unknown message ends at the next start"
+        is_fixed = all(message.sizes.fixed is not None for message in messages)
+        what = "the identity gives" if is_fixed else "identity and fields give"
+        if isinstance(start, Anywhere):
+            if not frame.identity:
+                return "the message gives the size"
+            return f"{what} the size; no frame has an unknown identity"
+        return f"{what} the size; an unknown message ends at the next start"
     if end.protected:
         return f"at {_hex(end.bytes)}, which occurs nowhere else in a frame"
     return (
@@ -60,6 +69,11 @@ def synchronisation(frame: Frame, start: Start, end: End | None) -> tuple[bool, 
             return False, (
                 "the end can occur in the data, so a receiver may start in the middle of a frame; "
                 f"it finds its way back behind a true end{_helped(frame)}"
+            )
+        case Anywhere(checked=False):
+            return False, (
+                "nothing marks the start, so a receiver that begins elsewhere, or loses a byte, "
+                "may cut frames in the wrong places from then on"
             )
     return False, f"the start can occur in the data; {_checked(frame)}"
 

@@ -22,7 +22,7 @@ from protogen.model.frame import (
     Part,
     PayloadPart,
 )
-from protogen.model.framing import End, Start, StartLiteral, StartSet
+from protogen.model.framing import Anywhere, End, Start, StartLiteral, StartSet
 from protogen.model.identities import Identities
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
@@ -43,6 +43,7 @@ def undetected_errors(
     sentences.append(_misread_size(frame, end, messages))
     sentences.append(_misread_absence(frame, messages))
     sentences.append(_false_start(frame, start))
+    sentences.append(_other_size(frame, start, messages))
     sentences.append(_early_end(frame, start, end, messages))
     sentences.append(joined_frames(frame, start, end, messages, payload))
     sentences.append(_weak_checksum(frame))
@@ -134,6 +135,15 @@ def _false_start(frame: Frame, start: Start) -> str:
         case _:
             return ""
     return f"a wrong byte that {what}, where the bytes behind it happen to be a whole frame"
+
+
+def _other_size(frame: Frame, start: Start, messages: list[Message]) -> str:
+    """Without a mark, a frame that is read too long or too short moves all that follow."""
+    sizes = {message.sizes for message in messages}
+    alike = frame.length is None and len(sizes) == 1 and sizes.pop().fixed is not None
+    if not isinstance(start, Anywhere) or start.checked or alike:
+        return ""
+    return "a wrong byte that makes another size of a frame: those behind it are cut elsewhere"
 
 
 def _early_end(frame: Frame, start: Start, end: End | None, messages: list[Message]) -> str:

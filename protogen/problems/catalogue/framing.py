@@ -125,7 +125,8 @@ Give the frame a length or an end, or the message a size.
         """\
 A receiver may be switched on in the middle of a frame, and bytes get lost. It needs something to
 find the next frame by: a literal in front or behind, an identity in front with a `range` of its
-own, or at least a checksum that tells a frame from other bytes.
+own, or at least a checksum that tells a frame from other bytes. Where the document has none of
+these, `unprotected:` on the first part names a decision that accepts position alone.
 """,
         with_frame("""
             id: {type: uint8, id: true}

@@ -161,7 +161,8 @@ class Part(Syntax):
     )
     unprotected: Annotated[Name, Ref(Kind.DECISION, missing="PG143")] | None = Field(
         None,
-        description="The decision that accepts that this literal can also occur inside a frame.",
+        description="The decision that accepts that this literal can also occur inside a frame; "
+        "or, on a first part that is none, that nothing marks the start.",
     )
     type: Annotated[Text, written_as(_PartType), Ref(Kind.TYPE)] | None = Field(
         None, description="Type of the part: uint8, uint16, char, byte, ascii ..."

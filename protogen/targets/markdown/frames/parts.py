@@ -156,6 +156,8 @@ def _roles(part: Part) -> tuple[str, ...]:
             return _checksum_roles(part)
         case CodePart():
             return (role(part),)
+        case _ if part.unprotected is not None:
+            return ("The fields of the message.", _unmarked(part.unprotected))
         case _:
             return ("The fields of the message.",)
 
@@ -172,6 +174,16 @@ def _choice_roles(part: ChoicePart) -> tuple[str, ...]:
 
 
 def _number_roles(part: NumberPart) -> tuple[str, ...]:
+    if isinstance(part, ChoicePart) or part.unprotected is None:
+        return _jobs(part)
+    return (*_jobs(part), _unmarked(part.unprotected))
+
+
+def _unmarked(decision: str) -> str:
+    return f"Nothing marks where a frame starts: {decision_link(decision)}."
+
+
+def _jobs(part: NumberPart) -> tuple[str, ...]:
     match part:
         case LengthPart():
             return (f"Number of bytes of {part_names(part.counts)}.",)
