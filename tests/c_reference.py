@@ -6,8 +6,10 @@ there can be, or fewer, is wrong as soon as they are due, because no struct of C
 
 from __future__ import annotations
 
+import re
 import struct
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
 
 from bit_runs import bits_of, number_of
@@ -115,6 +117,8 @@ class _Reader:
         return found
 
     def _number(self, type_: Integer | Float, *, constant: bool) -> int | float:
+        if isinstance(type_, Integer) and type_.is_free:
+            return self._free(type_)
         data = self._take(type_.size)
         if isinstance(type_, Integer) and type_.text is not None:
             return _written(type_, type_.text.alphabet, data, constant=constant)
@@ -132,6 +136,30 @@ class _Reader:
         if closed and not constant and value not in _names(type_):
             raise Wrong("value")
         return value
+
+    def _free(self, type_: Integer) -> int:
+        """A number in as many digits as there are characters left."""
+        form = type_.text
+        text = self._take(self._left).decode("latin-1")
+        longest = type_.signed + form.front + (1 + form.fraction if form.fraction else 0)
+        if not 1 <= len(text) <= longest:
+            raise Wrong("size")
+        sign = "[+-]?" if type_.signed else ""
+        if form.base == 16:
+            written = re.fullmatch(r"[0-9A-Fa-f]+", text)
+        elif form.fraction:
+            written = re.fullmatch(rf"{sign}([0-9]+\.?[0-9]*|\.[0-9]+)", text)
+        else:
+            written = re.fullmatch(rf"{sign}[0-9]+", text)
+        if written is None:
+            raise Wrong("value")
+        exact = Fraction(int(text, 16)) if form.base == 16 else Fraction(_with_zeros(text))
+        value = exact * 10**form.fraction if form.base == 10 else exact
+        if value.denominator != 1 or abs(value) >= form.base ** (form.front + form.fraction):
+            raise Wrong("value")
+        if type_.enum is not None and type_.enum.closed and value not in _names(type_):
+            raise Wrong("value")
+        return int(value)
 
     def _count(self, extent: Extent, scope: Scope, *, constant: bool) -> int | None:
         if isinstance(extent, Fixed):
@@ -206,6 +234,13 @@ class _Run:
     def numbers(self, type_: Array, *, constant: bool) -> list[int]:
         count = type_.extent.counts.least
         return [self.value(type_.element, constant=constant) for _ in range(count)]
+
+
+def _with_zeros(text: str) -> str:
+    """A decimal number as `Fraction` reads it: with a digit on each side of the point."""
+    front, point, behind = text.partition(".")
+    front = front if front[-1:].isdigit() else f"{front}0"
+    return f"{front}.{behind or 0}" if point else front
 
 
 def _written(type_: Integer, alphabet: bytes, data: bytes, *, constant: bool) -> int:

@@ -29,6 +29,7 @@ NAMES = (
     "flag-renamed",
     "bits-renamed",
     "field-kind",
+    "field-spelling",
 )
 """Changes of nothing but words."""
 THOROUGH = os.environ.get("HYPOTHESIS_PROFILE") == "thorough"

@@ -10,6 +10,7 @@ from protogen.evolution.change import Change, Mark, named
 from protogen.evolution.shapes import are_crossed
 from protogen.model.expressions import Expression, Operand, plain_name, rebuilt
 from protogen.model.meanings import BitField, Enum, Flags, NamedBit
+from protogen.model.numbers import are_read_alike, are_spelled_alike
 from protogen.model.types import (
     Array,
     BitOrder,
@@ -80,7 +81,9 @@ class TypeComparison:
             "field-byte-order": old.byte_order != new.byte_order and is_alike,
             "field-encoding": old.byte_bits != new.byte_bits
             or is_bool[0] != is_bool[1]
-            or old.text != new.text,
+            or not are_read_alike(old.text, new.text),
+            "field-spelling": are_read_alike(old.text, new.text)
+            and not are_spelled_alike(old.text, new.text),
         }
         found = [rule for rule, differs in tests.items() if differs]
         if old.size != new.size or old.size == 1:

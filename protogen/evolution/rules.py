@@ -111,6 +111,7 @@ RULES: tuple[Rule, ...] = (
     Rule("field-sign", _W, "a number has a sign now, or none any more", _BOTH),
     Rule("field-byte-order", _W, "a number's bytes stand in another order", _BOTH),
     Rule("field-encoding", _W, "a field is encoded another way", _BOTH),
+    Rule("field-spelling", _N, "a number is written with other zeros or letters", "nothing"),
     Rule("field-kind", _S, "the same bytes are shown another way", _USERS),
     Rule("field-count", _W, "a field has another number of elements or bytes", _BOTH),
     Rule("field-cases", _W, "a switch has other cases", _BOTH),

@@ -34,6 +34,7 @@ from protogen.model.payload_plan import (
     ConstantStep,
     Count,
     Formula,
+    IntegerStep,
     OptionalStep,
     RecordStep,
     RepeatStep,
@@ -42,7 +43,7 @@ from protogen.model.payload_plan import (
     without_constant,
 )
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Text
+from protogen.model.types import Text, codec
 from protogen.passes.framing.capacity import payload_range
 
 _TRIES = 100
@@ -226,6 +227,9 @@ class _Sampler:
     def _taken(self, step: AnyStep, value: Any) -> Any:
         """A value whose bytes are counted; where their number varies, it is text or hex digits."""
         bare = without_constant(step)
+        if isinstance(bare, IntegerStep) and bare.type.is_free:
+            self.size += len(codec(bare.type).encode(value))
+            return value
         is_text = isinstance(bare, BytesStep) and isinstance(bare.type, Text)
         fixed = step.sizes.fixed
         self.size += fixed if fixed is not None else len(value) // (1 if is_text else 2)

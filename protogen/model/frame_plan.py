@@ -470,11 +470,14 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         """True if some frame ends where the next starts, and nothing else tells."""
         return self.opens and not self.end_bytes and self.start is not StartRule.ANYWHERE
 
-    @property
+    @cached_property
     def has_one_spelling(self) -> bool:
         """True if a frame can only have the bytes that an encoder makes of what is in it."""
         lenient = self.region is not None and self.region.lenient
-        return not (lenient or self.cut_ambiguous or self.shares_delimiter)
+        if lenient or self.cut_ambiguous or self.shares_delimiter:
+            return False
+        messages = (message for group in self.groups for message in group.messages)
+        return all(message.plan.has_one_spelling for message in messages)
 
     def may_look_idle(self, message: Message) -> bool:
         """True if a frame of the message may have an end where only a start is in front of it."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from protogen.copying import replace
-from protogen.model.types import Array, Field, Fill, Struct, Switch, Type, is_integer
+from protogen.model.types import Array, Field, Fill, Integer, Struct, Switch, Type, is_integer
 
 
 def inner_types(type_: Type) -> tuple[Type, ...]:
@@ -48,6 +48,8 @@ def takes_rest(type_: Type) -> bool:
             return bool(type_.fields) and takes_rest(type_.fields[-1].type)
         case Switch():
             return type_.rest is not None or any(map(takes_rest, inner_types(type_)))
+        case Integer():
+            return type_.is_free
     return isinstance(type_.extent, Fill)
 
 

@@ -14,6 +14,7 @@ import msgspec
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.sizes import SizeSet
 from protogen.runtime.payload.number import Characters, Number
+from protogen.runtime.payload.numerals import FreeNumeral as WrittenFreely
 from protogen.runtime.payload.numerals import Numeral as WrittenNumeral
 
 ByteOrder = Literal["little", "big"]
@@ -99,6 +100,62 @@ class Numeral(msgspec.Struct, frozen=True, kw_only=True, cache_hash=True):
         return self.known or f"base{self.base} from 0x{self.alphabet[0]:02X}"
 
 
+class FreeNumeral(msgspec.Struct, frozen=True, kw_only=True, cache_hash=True):
+    """Text form of an integer: as many digits as it needs, to the end of what is around it."""
+
+    base: Literal[10, 16]
+    front: int
+    """Digits in front of the point, at most."""
+    padded: int = 1
+    """Digits in front of the point, at least; with zeros where the number has fewer."""
+    fraction: int = 0
+    """Digits behind the point. The integer is as many powers of ten greater."""
+    upper: bool = True
+    """True if hexadecimal digits are written A to F."""
+
+    @property
+    def name(self) -> str:
+        """The name in the schema language."""
+        return "decimal" if self.base == 10 else "hexadecimal"
+
+    @property
+    def label(self) -> str:
+        """The form in the words of the schema language."""
+        point = f".{self.fraction}" if self.fraction else ""
+        case = "" if self.upper else " lower"
+        return f"{self.name}[{self.padded}..{self.front}{point}]{case}"
+
+    @property
+    def greatest(self) -> int:
+        """The greatest number that has so many digits."""
+        return int(self.base ** (self.front + self.fraction)) - 1
+
+    def longest(self, *, signed: bool) -> int:
+        """Wire bytes of the longest number."""
+        return signed + self.front + (self.fraction + 1 if self.fraction else 0)
+
+    def alphabet(self, *, signed: bool) -> bytes:
+        """The characters that a decoder takes."""
+        digits = b"0123456789" if self.base == 10 else b"0123456789ABCDEFabcdef"
+        return digits + (b"." if self.fraction else b"") + (b"+-" if signed else b"")
+
+
+def are_read_alike(one: Numeral | FreeNumeral | None, other: Numeral | FreeNumeral | None) -> bool:
+    """True if a text that is a number in both forms has the same value in both."""
+    if not isinstance(one, FreeNumeral) or not isinstance(other, FreeNumeral):
+        return one == other
+    return (one.base, one.fraction) == (other.base, other.fraction)
+
+
+def are_spelled_alike(
+    one: Numeral | FreeNumeral | None, other: Numeral | FreeNumeral | None
+) -> bool:
+    """True if a number that both forms can write has the same text in both."""
+    if not isinstance(one, FreeNumeral) or not isinstance(other, FreeNumeral):
+        return one == other
+    return (one.padded, one.upper) == (other.padded, other.upper)
+
+
 class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     """An integer. Bits above its own are zero; signed ones are two's complement in these bits."""
 
@@ -109,25 +166,48 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     bit_fields: tuple[BitField, ...] = ()
     packed: bool = False
     """True if it has no bytes of its own: its bits lie among those of its neighbours."""
-    text: Numeral | None = None
+    text: Numeral | FreeNumeral | None = None
     """How it is written as text, if it is."""
 
     @cached_property
     def size(self) -> int:
-        """Wire bytes; none where it is packed."""
-        if self.text is not None:
+        """Wire bytes; none where it is packed, or where their number varies."""
+        if isinstance(self.text, Numeral):
             return self.text.size
-        return 0 if self.packed else -(-self.bits // self.byte_bits)
+        return 0 if self.packed or self.is_free else -(-self.bits // self.byte_bits)
+
+    @cached_property
+    def sizes(self) -> SizeSet:
+        """Wire bytes, as a set."""
+        if isinstance(self.text, FreeNumeral):
+            return SizeSet.between(1, self.text.longest(signed=self.signed))
+        return SizeSet.exactly(self.size)
+
+    @property
+    def is_free(self) -> bool:
+        """True if it is written as text that takes all that is left."""
+        return isinstance(self.text, FreeNumeral)
+
+    @property
+    def characters(self) -> bytes:
+        """The characters that its text can have; none where it is no text."""
+        if isinstance(self.text, FreeNumeral):
+            return self.text.alphabet(signed=self.signed)
+        return b"" if self.text is None else self.text.alphabet
 
     @cached_property
     def name(self) -> str:
         """The name in the schema language, such as `sint14` or `char`."""
+        if isinstance(self.text, FreeNumeral):
+            return self.text.name
         kind = "sint" if self.signed else "uint"
         return f"{kind}{self.bits}" if self.role == "number" else self.role
 
     @property
     def label(self) -> str:
         """The type in the words of the schema language, such as `uint16 big`."""
+        if isinstance(self.text, FreeNumeral):
+            return self.text.label
         if self.text is not None:
             return f"{self.name} as {self.text.size} digits {self.text.name}"
         plain = self.size <= 1 or self.is_text
@@ -173,19 +253,23 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
 
     @cached_property
     def least(self) -> int:
-        """The least raw value that the bits can hold."""
+        """The least raw value that the wire can hold."""
+        if isinstance(self.text, FreeNumeral):
+            return -self.text.greatest if self.signed else 0
         return -(1 << (self.bits - 1)) if self.signed else 0
 
     @cached_property
     def greatest(self) -> int:
-        """The greatest raw value that the bits can hold, and the digits of an unsigned one."""
+        """The greatest raw value that the wire can hold."""
+        if isinstance(self.text, FreeNumeral):
+            return self.text.greatest
         greatest = (1 << (self.bits - 1 if self.signed else self.bits)) - 1
         return greatest if self.text is None or self.signed else min(greatest, self.text.greatest)
 
     @property
     def is_bound_by_text(self) -> bool:
         """True if its digits hold less than its bits."""
-        return not self.signed and self.greatest < (1 << self.bits) - 1
+        return self.is_free or (not self.signed and self.greatest < (1 << self.bits) - 1)
 
     def holds(self, value: int) -> bool:
         """True if the wire can hold `value`."""
@@ -242,8 +326,17 @@ def characters(type_: Integer) -> Characters:
     return Characters(type_.size, seven_bit=type_.byte_bits == 7)
 
 
-def codec(type_: NumberType) -> Number | WrittenNumeral:
+Codec = Number | WrittenNumeral | WrittenFreely
+"""What encodes raw values and decodes them."""
+
+
+def codec(type_: NumberType) -> Codec:
     """Codec of a number's raw value; of a float it is that of its bits."""
-    if isinstance(type_, Integer) and type_.text is not None:
-        return WrittenNumeral(type_.bits, type_.text.alphabet, type_.text.size, type_.signed)
+    form = type_.text if isinstance(type_, Integer) else None
+    if isinstance(form, FreeNumeral):
+        return WrittenFreely(
+            form.base, form.front, form.padded, form.fraction, type_.signed, form.upper
+        )
+    if form is not None:
+        return WrittenNumeral(type_.bits, form.alphabet, form.size, type_.signed)
     return Number(type_.bits, type_.signed, type_.byte_order, seven_bit=type_.byte_bits == 7)

@@ -348,6 +348,13 @@ class PayloadPlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return any(step.is_refusable for step in self.steps)
 
     @cached_property
+    def has_one_spelling(self) -> bool:
+        """True if the same values always have the same bytes."""
+        return not any(
+            isinstance(step, IntegerStep) and step.type.is_free for step in every_step(self.steps)
+        )
+
+    @cached_property
     def holds_values(self) -> bool:
         """True if a record keeps anything of it."""
         return any(step.holds_values or step.fills for step in self.steps)

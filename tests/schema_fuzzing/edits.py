@@ -16,7 +16,7 @@ JUNK: tuple[Any, ...] = (
     None, True, False, 0, -1, 1, 7, 64, 255, 256, 300, 2**31, 2**64, -(2**63), 10**30, 10**390,
     0.5, -0.0, 1e308, float("nan"), float("inf"), "", " ", "x", "A", "é", "漢", "\x00", "\n",
     "fill", "payload", "self", "class", "__init__", "Not A Name", "a" * 5000, "uint0", "uint8",
-    "uint65", "lsb_first",
+    "uint65", "lsb_first", "decimal", "hexadecimal", "base10",
     "uint999999999999", "sint16", "float32", "bool", "byte", "char", "ascii", "bytes", "little",
     "big", "on", "..", "a..b", "payload..payload", "0..3", "5..2", "6..99", "1/0", "1/3", "-1/7",
     "0x10", "1e999", "cobs", "slip", "hdlc", "base16-upper", "xor-8", "CRC-99/NONE", "unspecified",
@@ -33,7 +33,7 @@ JUNK: tuple[Any, ...] = (
 NEW_KEYS: tuple[Any, ...] = (
     "type", "fields", "count", "size", "values", "closed", "flags", "bits", "const", "default",
     "packed", "range", "scale", "offset", "unit", "special", "switch", "cases", "byte_order",
-    "unknown", "digits", "code", "chars", "id",
+    "unknown", "digits", "code", "chars", "fraction", "case", "id",
     "from", "min_size", "max_size", "literal", "unprotected", "counts", "counter", "algorithm",
     "covers", "over", "when", "escape", "substitute", "encoding", "preset", "lenient", "examples",
     "overloads", "exchanges", "decisions", "reserved", "link", "types", "transparency", "payload",

@@ -191,6 +191,8 @@ def _kinds(setting: Setting) -> list[str]:
         kinds += ["packed array", "packed struct"]
     if setting.may_fill:
         kinds += ["fill"] * 8
+        if setting.byte_bits == 8:
+            kinds += ["written"] * 3
     if any(_fits(declared, setting) for declared in setting.types):
         kinds += ["declared"] * 3
     return kinds
@@ -327,6 +329,39 @@ def _fill(draw: st.DrawFn, setting: Setting) -> Built:
     return replace(built, fills=True)
 
 
+@st.composite
+def _written(draw: st.DrawFn, setting: Setting) -> Built:
+    """A number in as many digits as it needs, where it fits the budget."""
+    base = draw(st.sampled_from([10, 16]))
+    data: dict[str, Any] = {"type": "decimal" if base == 10 else "hexadecimal"}
+    fraction = draw(st.integers(0, 4)) if base == 10 else 0
+    is_signed = base == 10 and draw(st.booleans())
+    most = min(18 - fraction, setting.budget - is_signed - (fraction + 1 if fraction else 0))
+    if most < 1:
+        return draw(number(setting))
+    front = draw(st.integers(1, min(most, 16)))
+    data["digits"] = {"max": front}
+    if draw(st.booleans()):
+        data["digits"]["min"] = draw(st.integers(1, front))
+    if fraction:
+        data["fraction"] = fraction
+    if base == 16 and draw(st.booleans()):
+        data["case"] = draw(st.sampled_from(["upper", "lower"]))
+    greatest = base ** (front + fraction) - 1
+    least = -greatest if is_signed else 0
+    ends = st.integers(least, greatest) | st.sampled_from([least, 0, greatest])
+    if base == 10 and not is_signed:
+        data["range"] = [0, draw(ends)]
+    elif is_signed and draw(forms.one_in(3)):
+        data["range"] = [-1, draw(st.integers(0, greatest))]
+    if draw(forms.one_in(4)):
+        data["unit"] = draw(forms.a_unit)
+    if draw(forms.one_in(6)):
+        data["special"] = {"nothing": draw(ends)}
+    longest = is_signed + front + (fraction + 1 if fraction else 0)
+    return Built(forms.short({**data, **draw(forms.about())}, "type"), Size(1, longest), fills=True)
+
+
 # --- switches -----------------------------------------------------------------------------------
 
 
@@ -383,4 +418,5 @@ _ITEMS: Mapping[str, Callable[[Setting], st.SearchStrategy[Built]]] = {
     "packed array": packed_arrays,
     "packed struct": packed_structs,
     "fill": _fill,
+    "written": _written,
 }

@@ -211,7 +211,7 @@ class Maker:
         keys["algorithm"] = algorithm
         if optional:
             keys["when"] = "payload"
-        values = type_.bytes_between(0, type_.greatest)
+        values = type_.bytes_between(*_sum_bounds(algorithm, width, type_.greatest))
         return PartPlan(self.name(), "checksum", keys, values, optional=optional, type=type_)
 
     def _folded(self) -> tuple[Any, int]:
@@ -276,6 +276,14 @@ def identity_values(part: PartPlan) -> st.SearchStrategy[int]:
     if type_.type == "ascii":
         return characters(type_.size).map(lambda text: number_of(text, type_))
     return st.integers(*part.bounds)
+
+
+def _sum_bounds(algorithm: Any, width: int, greatest: int) -> tuple[int, int]:
+    """The least and the greatest checksum: one that is masked and moved is between these."""
+    if not isinstance(algorithm, dict) or "mask" not in algorithm:
+        return 0, greatest
+    low, high = algorithm.get("add", 0), algorithm["mask"] + algorithm.get("add", 0)
+    return (low, high) if high < 1 << width else (0, greatest)
 
 
 def identity_bounds(keys: dict[str, Any], type_: PartType) -> tuple[int, int]:

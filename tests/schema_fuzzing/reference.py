@@ -98,9 +98,23 @@ def _switch_bytes(type_: Switch, value: Any, scope: Scope) -> bytes:
 
 def number_bytes(type_: Integer, value: int) -> bytes:
     """A number in groups of 7 or 8 bits, or as digits."""
+    if type_.is_free:
+        return _free_bytes(type_, value)
     if type_.text is not None:
         return _digits(value % (1 << type_.bits), type_.text.size, type_.text.alphabet)
     return _grouped(value % (1 << type_.bits), type_.size, type_.byte_bits, type_.byte_order)
+
+
+def _free_bytes(type_: Integer, value: int) -> bytes:
+    """A number with all digits behind its point, and no needless zeros in front of the others."""
+    form = type_.text
+    if form.base == 16:
+        text = f"{value:x}".rjust(form.padded, "0")
+        return (text.upper() if form.upper else text).encode()
+    whole, part = divmod(abs(value), 10**form.fraction)
+    behind = f".{str(part).rjust(form.fraction, '0')}" if form.fraction else ""
+    sign = "-" if value < 0 else ""
+    return f"{sign}{str(whole).rjust(form.padded, '0')}{behind}".encode()
 
 
 def _digits(raw: int, size: int, alphabet: bytes) -> bytes:

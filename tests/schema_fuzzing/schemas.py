@@ -9,10 +9,12 @@ from typing import Any
 from hypothesis import strategies as st
 
 from schema_fuzzing import forms, names
+from schema_fuzzing.alphabets import payload_alphabet
 from schema_fuzzing.frames import FramePlan, frames
 from schema_fuzzing.messages import MessagePlan, Plan, messages, overload
 from schema_fuzzing.numbers import ORDERS
 from schema_fuzzing.parts import Maker, PartPlan, every_payload_byte
+from schema_fuzzing.setting import Declared
 from schema_fuzzing.shapes import shapes_of
 from schema_fuzzing.types import declared_types
 
@@ -64,7 +66,7 @@ class _Drawing:
         )
         found = self._draw(messages(plan))
         overloads = self._overloads(plan, found)
-        finished = self._finished(drawn, found)
+        finished = self._finished(drawn, found, types)
         data = self._root(types=types, found=found, frames=finished)
         if overloads:
             data["overloads"] = overloads
@@ -116,7 +118,10 @@ class _Drawing:
         return self._draw(frames(self._byte_bits, order, identity, self._payload))
 
     def _finished(
-        self, drawn: Mapping[str, FramePlan], found: list[MessagePlan]
+        self,
+        drawn: Mapping[str, FramePlan],
+        found: list[MessagePlan],
+        types: Sequence[Declared],
     ) -> dict[str, FramePlan]:
         """The frames with what depends on the messages."""
         finished: dict[str, FramePlan] = {}
@@ -125,7 +130,12 @@ class _Drawing:
             least = min(message.size.least for message in sent)
             slack = self._draw(st.sampled_from([0, 0, 1, 1000]))
             bounded = frame.with_least_payload(least, slack)
-            finished[key] = bounded.with_unprotected(self._payload, DECISION)
+            payload = self._payload
+            if self._byte_bits == 8:
+                declared = {item.name: item.built.data for item in types}
+                sent_data = [message.data for message in sent]
+                payload = payload_alphabet(sent_data, declared, delimited=frame.delimited)
+            finished[key] = bounded.with_unprotected(payload, DECISION)
         return finished
 
     def _overloads(self, plan: Plan, found: list[MessagePlan]) -> dict[str, Any]:

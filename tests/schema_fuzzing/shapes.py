@@ -10,7 +10,7 @@ from schema_fuzzing.frames import FramePlan
 _FIELD_KEYS = (
     "values", "closed", "flags", "bits", "const", "default", "range", "scale", "offset", "unit",
     "special", "byte_order", "unknown", "switch", "packed", "digits",
-    "code", "chars", "when",
+    "code", "chars", "when", "fraction", "case",
 )  # fmt: skip
 
 _CODES = (
@@ -30,7 +30,8 @@ COMMON = (
     "several identities", "overload by size", "overload by undecidable", "unspecified payload",
     "empty message",
     "type: ascii", "type: bytes", "type: bool", "type: byte", "type: char", "type: float32",
-    "type: float64", "type: struct", "type: switch", "declared struct", "declared number",
+    "type: float64", "type: decimal", "type: hexadecimal", "type: struct", "type: switch",
+    "declared struct", "declared number",
     "number: fixed", "number: counted", "number: fill", "number: fill, bounded", "struct: fixed",
     "struct: counted", "struct: fill", "ascii: fixed", "ascii: counted", "bytes: counted",
     "bytes: fill", "number: fill from a least number", "bytes: fill from a least number",

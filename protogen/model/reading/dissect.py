@@ -32,7 +32,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.model.reading.readings import integer_reading, physical, quoted, value_name
 from protogen.model.reading.wire import Unit
-from protogen.model.types import Field, Fixed, Float, Scalar, Text, codec
+from protogen.model.types import Field, Fixed, Float, Integer, NumberType, Scalar, Text, codec
 from protogen.runtime.errors import ByteError
 from protogen.runtime.payload.bits import BitReader
 from protogen.runtime.payload.number import Number
@@ -216,7 +216,7 @@ class _Reader:
             self.rows.append(_bits(item, run, base, row.offset))
 
     def _scalar(self, step: ScalarStep, path: str, scope: Scope) -> None:
-        size = _count(step.count, scope) if isinstance(step, BytesStep) else step.type.size
+        size = _count(step.count, scope) if isinstance(step, BytesStep) else _size(step.type)
         size = self._cursor.left if size is None else size
         label = step.type.label
         row = self._cursor.take(size, path, label, subject=step.field, value_type=step.type)
@@ -253,6 +253,11 @@ def _bits(item: PackedNumber, run: BitReader, base: str, offset: int) -> Row:
         value_type=type_,
     )
     return row.reads(value, _meaning(step, value), _fault(step, value))
+
+
+def _size(type_: NumberType) -> int | None:
+    """Bytes of a number; None: as many as there are."""
+    return None if isinstance(type_, Integer) and type_.is_free else type_.size
 
 
 def _count(count: Count, scope: Scope) -> int | None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from protogen.model.nesting import inner_types
-from protogen.model.types import Array, Extent, Field, Fill, Octets, Struct, Text, Type
+from protogen.model.types import Array, Extent, Field, Fill, Integer, Octets, Struct, Text, Type
 
 _Count = Callable[[Extent], int]
 _Choose = Callable[[Iterable[int]], int]
@@ -47,6 +47,8 @@ def _size(type_: Type, count: _Count, choose: _Choose) -> int:
     if fixed is not None:
         return fixed
     match type_:
+        case Integer():
+            return choose((type_.sizes.least, type_.sizes.greatest))
         case Text() | Octets():
             return count(type_.extent)
         case Array():

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from protogen.model.messages import Message
 from protogen.model.nesting import holds_whole_bytes, inner_types
 from protogen.model.payload_plan import constant_bytes
-from protogen.model.types import Field, Integer, Struct, Switch, Type, is_text
+from protogen.model.types import Field, Integer, Octets, Struct, Switch, Text, Type, is_text
 from protogen.passes.proofs.wire_code import EVERY_BYTE, SEVEN_BITS, ByteSet
 
 _NOTHING: ByteSet = frozenset()
@@ -37,15 +37,16 @@ def _of_fields(fields: Iterable[Field]) -> ByteSet:
 
 
 def _of_field(field: Field) -> ByteSet:
-    if field.const is not None:
+    is_char = isinstance(field.type, Integer) and field.type.role == "char"
+    if field.const is not None and (is_char or isinstance(field.type, Text | Octets)):
         return frozenset(constant_bytes(field))
     return _of(field.type)
 
 
 def _of(type_: Type) -> ByteSet:
     match type_:
-        case Integer(text=form) if form is not None:
-            return frozenset(form.alphabet)
+        case Integer() if type_.text is not None:
+            return frozenset(type_.characters)
         case Integer(role="char", enum=enum) if enum is not None and enum.closed:
             return frozenset(item.value for item in enum.values)
         case Struct(packed=None):

@@ -54,7 +54,7 @@ def check_keys(context: Context, name: str, item: Effective) -> None:
 def _only_for_integers(context: Context, item: Effective) -> None:
     syntax = item.syntax
     kind = "a switch" if syntax.switch else "a struct" if syntax.fields is not None else syntax.type
-    for key in (*VALUE_NAMES, "digits", "code", "chars"):
+    for key in (*VALUE_NAMES, "digits", "code", "chars", "fraction", "case"):
         if getattr(syntax, key) is not None:
             text = f"{key} are for integers, not for {kind}"
             context.error_at_key("PG110", item.at(key), text)

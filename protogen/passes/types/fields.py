@@ -19,6 +19,7 @@ from protogen.model.types import (
     Fixed,
     Float,
     Integer,
+    NumberType,
     Octets,
     Struct,
     Switch,
@@ -43,7 +44,7 @@ from protogen.passes.types.packing import (
     packed_fields,
 )
 from protogen.passes.types.setting import Setting
-from protogen.passes.types.text_numbers import says_text, with_text
+from protogen.passes.types.text_numbers import says_text, text_number, with_text
 from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
 from protogen.passes.types.value_names import with_names
 from protogen.problems import hint_for
@@ -135,11 +136,13 @@ class FieldBuilder:
         if item.syntax.fields is not None:
             return self._struct(item, item.syntax.fields, setting)
         name, layout = item.syntax.type or "", setting.layout
-        found = integer(name, layout) or float_type(name, layout)
+        found: NumberType | None = text_number(self._context, item)
         if found is None:
-            self._context.tally.errors += 1  # Reported where names are checked.
-            return UNKNOWN_TYPE
-        found = with_text(self._context, found, item)
+            found = integer(name, layout) or float_type(name, layout)
+            if found is None:
+                self._context.tally.errors += 1  # Reported where names are checked.
+                return UNKNOWN_TYPE
+            found = with_text(self._context, found, item)
         if found.size > 1 and layout.byte_order is None and not says_text(item):
             self._no_byte_order(item.at("type"))
         return self._registered(with_names(self._context, found, item), item)

@@ -7,6 +7,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from protogen.model.meanings import NamedValue
+from protogen.model.numbers import FreeNumeral
 from protogen.model.reading.readings import decimal
 from protogen.model.types import (
     NO_OFFSET,
@@ -119,7 +120,7 @@ class _Check:
 
     def _raw_range(self, low: Fraction, high: Fraction) -> str | None:
         """What to write if the bounds are physical values."""
-        scale, offset = self._item.scale or UNSCALED, self._item.offset or NO_OFFSET
+        scale, offset = self._item.scale or self._usual_scale, self._item.offset or NO_OFFSET
         raw = [(end - offset) / scale for end in (low, high)]
         if raw == [low, high] or any(end.denominator != 1 for end in raw):
             return None
@@ -135,8 +136,8 @@ class _Check:
     def scale(self) -> Fraction:
         """The scale; zero would lose every value."""
         if self._item.scale is None and self._item.offset is None:
-            return UNSCALED
-        scale = self._item.scale if self._item.scale is not None else UNSCALED
+            return self._usual_scale
+        scale = self._item.scale if self._item.scale is not None else self._usual_scale
         if scale == 0:
             self._error("PG123", "scale", "a scale of zero makes every value the same")
             return UNSCALED
@@ -145,6 +146,14 @@ class _Check:
                 self._error("PG123", key, f"`{key}` makes physical values that no float64 holds")
                 return UNSCALED
         return scale
+
+    @property
+    def _usual_scale(self) -> Fraction:
+        """The scale where none is stated: of a decimal, that of its last digit."""
+        form = self._element.text if is_integer(self._element) else None
+        if isinstance(form, FreeNumeral) and form.fraction:
+            return Fraction(1, 10**form.fraction)
+        return UNSCALED
 
     def _is_readable(self, scale: Fraction, offset: Fraction) -> bool:
         """True if physical values, and the scale itself, fit the numbers that programs use."""

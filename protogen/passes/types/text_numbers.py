@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from protogen.copying import replace
-from protogen.model.numbers import ALPHABETS, Numeral
+from protogen.model.numbers import ALPHABETS, FreeNumeral, Numeral
 from protogen.model.types import Integer, NumberType, is_integer
 from protogen.passes.context import Context
 from protogen.passes.types.declared import Effective
+from protogen.passes.types.type_names import UNKNOWN_TYPE
+from protogen.schema.syntax.fields import DigitCount
 
-_KEYS = ("digits", "code", "chars")
+_KEYS = ("digits", "code", "chars", "fraction", "case")
 _GREATEST = 1 << 64
 """No digits may stand for this number or a greater one."""
+_MOST_DIGITS = {10: 18, 16: 16}
+"""So many digits always fit 64 bits, a sign with them."""
+_USUAL_DIGITS = {10: 9, 16: 8}
+"""Digits in all where neither `range` nor `digits` bounds them: they fit 32 bits."""
 
 
 def says_text(item: Effective) -> bool:
@@ -23,7 +31,15 @@ def with_text(context: Context, found: NumberType, item: Effective) -> NumberTyp
     stated = [key for key in _KEYS if getattr(item.syntax, key) is not None]
     if not stated:
         return found
-    return _Form(context, item, stated[0]).of(found)
+    form = _Form(context, item, stated[0])
+    return form.of(found) if form.is_of_integers() else found
+
+
+def text_number(context: Context, item: Effective) -> Integer | None:
+    """The integer that a field of the type `decimal` or `hexadecimal` is; None for others."""
+    if item.syntax.type not in ("decimal", "hexadecimal"):
+        return None
+    return _Form(context, item, "type").free()
 
 
 class _Form:
@@ -39,25 +55,53 @@ class _Form:
         """The number in its text form."""
         if not is_integer(found) or found.role != "number":
             return self._misplaced(found, f"`{self._key}` is for integers such as uint16")
-        if self._item.setting.layout.packed is not None:
-            return self._misplaced(found, "integers that are packed are no text")
-        if self._item.setting.layout.byte_bits != 8:
-            return self._misplaced(found, "numbers are no text where `byte_bits` is 7")
+        if not self._is_in_bytes():
+            return found
         if (self._syntax.digits is None) == (self._syntax.code is None):
             both = self._syntax.code is not None
             text = "has one of `digits` and `code`" if both else "says how: `digits` or `code`"
             return self._misplaced(found, f"an integer that is written as text {text}")
+        self._has_no_order()
+        numeral = self._numeral(found)
+        return found if numeral is None else replace(found, text=numeral, byte_order="little")
+
+    def is_of_integers(self) -> bool:
+        """Report keys of `decimal` and `hexadecimal` on another type."""
+        for key in ("fraction", "case"):
+            if getattr(self._syntax, key) is not None:
+                kind = "decimal" if key == "fraction" else "hexadecimal"
+                text = f"`{key}` is for the type {kind}"
+                self._context.error_at_key("PG224", self._item.at(key), text)
+                return False
+        if isinstance(self._syntax.digits, int | DigitCount):
+            text = "`digits` of an integer are base10, base16-upper or base16-lower"
+            hint = "their number is `chars`; as many as the number needs has the type `decimal`"
+            self._context.error("PG224", self._item.at("digits"), text, hint)
+            return False
+        return True
+
+    def _misplaced(self, found: NumberType, text: str) -> NumberType:
+        self._context.error_at_key("PG224", self._item.at(self._key), text)
+        return found
+
+    def _is_in_bytes(self) -> bool:
+        """True if characters can stand here: neither packed bits nor bytes of 7 bits."""
+        layout = self._item.setting.layout
+        text = "numbers are no text where `byte_bits` is 7" if layout.byte_bits != 8 else ""
+        if layout.packed is not None:
+            text = "integers that are packed are no text"
+        if text:
+            self._context.error_at_key("PG224", self._item.at(self._key), text)
+        return not text
+
+    def _has_no_order(self) -> None:
         if self._syntax.byte_order is not None:
             text = "digits have no byte order: the highest one always comes first"
             self._context.error(
                 "PG222", self._item.at("byte_order"), text, "leave `byte_order` out"
             )
-        numeral = self._numeral(found)
-        return found if numeral is None else replace(found, text=numeral, byte_order="little")
 
-    def _misplaced(self, found: NumberType, text: str) -> NumberType:
-        self._context.error_at_key("PG224", self._item.at(self._key), text)
-        return found
+    # --- as many digits each time ---------------------------------------------------------------
 
     def _numeral(self, found: Integer) -> Numeral | None:
         alphabet = self._alphabet()
@@ -85,7 +129,8 @@ class _Form:
         """The characters of the digits."""
         code = self._syntax.code
         if code is None:
-            return ALPHABETS[self._syntax.digits or "base10"]
+            digits = self._syntax.digits
+            return ALPHABETS[digits if isinstance(digits, str) else "base10"]
         last = code.add + (1 << code.bits) - 1
         if last > 0xFF:
             text = f"characters would go up to {last}, and a byte goes up to 255"
@@ -95,6 +140,71 @@ class _Form:
 
     def _place(self, key: str) -> tuple[str | int, ...]:
         return self._item.at(key if getattr(self._syntax, key) is not None else self._key)
+
+    # --- as many digits as the number needs -----------------------------------------------------
+
+    def free(self) -> Integer:
+        """An integer that takes all that is left."""
+        base: Literal[10, 16] = 10 if self._syntax.type == "decimal" else 16
+        self._only_keys(base)
+        self._has_no_order()
+        if not self._is_in_bytes():
+            return UNKNOWN_TYPE
+        if not self._item.setting.delimited:
+            text = "the frame does not say where the payload ends, so nothing says where this does"
+            hint = (
+                "give a length part to the frame, or write it as `{type: uint16, digits: base10}`"
+            )
+            self._context.error("PG118", self._item.at("type"), text, hint)
+        fraction = (self._syntax.fraction or 0) if base == 10 else 0
+        padded, front = self._front(base, fraction)
+        form = FreeNumeral(
+            base=base,
+            front=front,
+            padded=padded,
+            fraction=fraction,
+            upper=self._syntax.case != "lower",
+        )
+        low = self._syntax.range[0] if self._syntax.range is not None else -1
+        signed = base == 10 and low < 0
+        return Integer(bits=form.greatest.bit_length() + signed, signed=signed, text=form)
+
+    def _only_keys(self, base: int) -> None:
+        """Report keys that mean nothing for such numbers."""
+        others = ("code", "chars", "case" if base == 10 else "fraction", "const")
+        for key in others:
+            if getattr(self._syntax, key) is not None:
+                text = f"`{key}` is not for the type {self._syntax.type}"
+                hint = "a text that is always the same is `ascii`" if key == "const" else None
+                self._context.error_at_key("PG224", self._item.at(key), text, hint)
+        if isinstance(self._syntax.digits, str):
+            text = f"`digits` of the type {self._syntax.type} are a number"
+            self._context.error("PG224", self._item.at("digits"), text)
+
+    def _front(self, base: int, fraction: int) -> tuple[int, int]:
+        """The least and the greatest number of digits in front of the point."""
+        digits = self._syntax.digits
+        least = digits if isinstance(digits, int) else None
+        most = None
+        if isinstance(digits, DigitCount):
+            least, most = digits.min, digits.max
+        if most is None:
+            most = max(least or 1, self._usual(base, fraction))
+        if most + fraction > _MOST_DIGITS[base] or (least or 1) > most:
+            count = f"more than {_MOST_DIGITS[base]} digits may not fit 64 bits"
+            text = f"at least {least} digits and at most {most}" if (least or 1) > most else count
+            key = "digits" if digits is not None else "fraction"
+            self._context.error("PG225", self._item.at(key), text)
+            return 1, 1
+        return least or 1, most
+
+    def _usual(self, base: int, fraction: int) -> int:
+        """Digits in front where nothing says how many there are at most."""
+        if self._syntax.range is None:
+            return max(1, _USUAL_DIGITS[base] - fraction)
+        ends = (abs(int(end)) for end in self._syntax.range)
+        needed = max(_digits_of(end // int(base**fraction), base) for end in ends)
+        return min(needed, max(1, _MOST_DIGITS[base] - fraction))
 
 
 def _digits_of(value: int, base: int) -> int:

@@ -18,7 +18,9 @@ _INTEGER = re.compile(r"[us]int(0|[1-9][0-9]{0,5})")
 GREATEST_WIDTH = 64
 """Bits of the widest integer."""
 
-PLAIN_NAMES = ("byte", "char", "bool", "float32", "float64", "ascii", "bytes")
+PLAIN_NAMES = (
+    "byte", "char", "bool", "float32", "float64", "ascii", "bytes", "decimal", "hexadecimal",
+)  # fmt: skip
 """Built-in types that carry no width in their name."""
 
 COMMON_NAMES = (

@@ -31,6 +31,7 @@ from protogen.runtime.constructs.numbers import (
     Int,
     SevenBit,
     SevenBitFloat,
+    Written,
 )
 from protogen.runtime.constructs.pieces import Count, PayloadError, Piece
 from protogen.runtime.constructs.strings import Latin1, Latin1Fill, Octets, OctetsFill
@@ -73,5 +74,6 @@ __all__ = [
     "Struct",
     "When",
     "Whole",
+    "Written",
     "prefix_size",
 ]

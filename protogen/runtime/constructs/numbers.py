@@ -6,12 +6,13 @@ import struct
 from collections.abc import Iterable
 from typing import Any, BinaryIO, Literal, Protocol
 
-from construct import Construct  # type: ignore[import-untyped,unused-ignore]
+import construct  # type: ignore[import-untyped,unused-ignore]
+from construct import Construct
 
 from protogen.runtime.constructs.pieces import Around, PayloadError, Piece, read
 from protogen.runtime.errors import ByteError
 from protogen.runtime.payload.number import ByteOrder, Number
-from protogen.runtime.payload.numerals import Numeral
+from protogen.runtime.payload.numerals import FreeNumeral, Numeral
 
 
 class _Codec(Protocol):
@@ -70,6 +71,35 @@ def Digits(bits: int, alphabet: bytes, size: int, signed: bool = False) -> Piece
     b'C0DE'
     """
     return _Scalar(Numeral(bits, alphabet, size, signed))
+
+
+class Written(Piece):
+    """An integer as text that takes all that is left, as `numeral` reads and writes it."""
+
+    def __init__(self, numeral: FreeNumeral) -> None:
+        super().__init__()
+        self._numeral = numeral
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> int:
+        offset, data = stream.tell(), stream.read()
+        if not 1 <= len(data) <= self._numeral.longest:
+            problem = f"needs 1 to {self._numeral.longest} characters, not {len(data)}"
+            raise PayloadError("size", path, offset, problem)
+        try:
+            return self._numeral.decode(data)
+        except ByteError as error:
+            raise PayloadError(error.reason, path, offset, str(error)) from None
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
+        try:
+            data = self._numeral.encode(obj)
+        except (ValueError, TypeError) as error:
+            raise PayloadError("value", path, stream.tell(), str(error)) from None
+        stream.write(data)
+        return obj
+
+    def _sizeof(self, context: Any, path: str) -> int:
+        raise construct.SizeofError("the size depends on the number", path=path)
 
 
 class _FloatCodec:

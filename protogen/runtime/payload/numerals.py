@@ -1,9 +1,11 @@
-"""Integers written as text: digits, as many each time."""
+"""Integers written as text."""
 
 from __future__ import annotations
 
+from typing import Literal
+
 from protogen.runtime.errors import ByteError
-from protogen.runtime.payload.number import Number
+from protogen.runtime.payload.number import Number, as_integer
 from protogen.runtime.values import Frozen
 
 
@@ -52,3 +54,71 @@ class Numeral(Frozen):
         if raw >> self.bits:
             raise ByteError("value", f"{raw} does not fit {self.bits} bits")
         return self._number.value_of(raw)
+
+
+class FreeNumeral(Frozen):
+    """An integer as decimal or hexadecimal digits, as many as it needs.
+
+    `front` digits at most stand in front of the point and at least `padded`, with zeros where the
+    number has fewer; with a `fraction` so many stand behind the point, and the integer is as many
+    powers of ten greater than what is written. A decoder takes whatever means the same and is no
+    longer than the longest number: fewer digits, other zeros, a plus, letters of the other case.
+    """
+
+    __slots__ = ("base", "fraction", "front", "greatest", "longest", "padded", "signed", "upper")
+
+    base: Literal[10, 16]
+    front: int
+    padded: int
+    fraction: int
+    signed: bool
+    upper: bool
+    """Case of hexadecimal digits."""
+    greatest: int
+    """The greatest integer that so many digits stand for."""
+    longest: int
+    """Bytes of the longest number."""
+
+    def __init__(
+        self,
+        base: Literal[10, 16],
+        front: int,
+        padded: int = 1,
+        fraction: int = 0,
+        signed: bool = False,
+        upper: bool = True,
+    ) -> None:
+        self._set(base, front, padded, fraction, signed, upper)
+        object.__setattr__(self, "greatest", base ** (front + fraction) - 1)
+        longest = signed + front + (fraction + 1 if fraction else 0)
+        object.__setattr__(self, "longest", longest)
+
+    def encode(self, value: int) -> bytes:
+        """The number as an encoder writes it. Raises ValueError if it has too many digits."""
+        value = as_integer(value)
+        least = -self.greatest if self.signed else 0
+        if not least <= value <= self.greatest:
+            raise ValueError(f"{value} is not in {least}..{self.greatest}")
+        form = "d" if self.base == 10 else "X" if self.upper else "x"
+        digits = f"{abs(value):0{self.padded + self.fraction}{form}}"
+        if self.fraction:
+            digits = f"{digits[: -self.fraction]}.{digits[-self.fraction :]}"
+        return f"{'-' if value < 0 else ''}{digits}".encode()
+
+    def decode(self, data: bytes) -> int:
+        """The integer that is written. Raises ByteError where nothing means one."""
+        digits = data[1:] if self.signed and data[:1] in (b"+", b"-") else data
+        front, _, behind = digits.partition(b".") if self.fraction else (digits, b"", b"")
+        own, zeros = behind[: self.fraction], behind[self.fraction :]
+        if not self._are_digits(front + own) or zeros.strip(b"0"):
+            raise ByteError("value", f"{data!r} is no number here")
+        value = int((front + own.ljust(self.fraction, b"0")), self.base)
+        if len(data) > self.longest or value > self.greatest:
+            raise ByteError("value", f"{data!r} has too many digits")
+        return -value if data[:1] == b"-" else value
+
+    def _are_digits(self, text: bytes) -> bool:
+        """True if there are some, and nothing else."""
+        if self.base == 10:
+            return text.isdigit()
+        return bool(text) and not text.translate(None, b"0123456789ABCDEFabcdef")

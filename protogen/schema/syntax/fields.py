@@ -109,6 +109,32 @@ DigitsName = Literal["base10", "base16-upper", "base16-lower"]
 Positive = Annotated[Count, Field(ge=1)]
 
 
+class DigitCount(Syntax):
+    """How many digits stand in front of the point."""
+
+    min: Positive | None = Field(
+        None, description="At least so many, with zeros where the number has fewer; 1 if not said."
+    )
+    max: Positive | None = Field(
+        None, description="At most so many; as the `range` needs, or 9 in all, if not said."
+    )
+
+
+def _digits_form(value: Any) -> str:
+    if isinstance(value, str):
+        return "name"
+    return "count" if isinstance(value, int) else "mapping"
+
+
+Digits = Annotated[
+    Annotated[DigitsName, Tag("name")]
+    | Annotated[Positive, Tag("count")]
+    | Annotated[DigitCount, Tag("mapping")],
+    Discriminator(_digits_form),
+]
+"""Kind of digits, or how many there are."""
+
+
 class CharacterCode(Syntax):
     """How the characters of an integer come of its bits."""
 
@@ -163,7 +189,7 @@ class FieldSyntax(Syntax):
     type: TypeName | None = Field(
         None,
         description="uint1..uint64, sint1..sint64, byte, char, bool, float32, float64, ascii, "
-        "bytes, or a name declared under types.",
+        "bytes, decimal, hexadecimal, or a name declared under types.",
     )
     fields: dict[Name, FieldRef] | None = Field(
         None, description="The field is a struct of these fields."
@@ -193,10 +219,19 @@ class FieldSyntax(Syntax):
         "byte boundaries: lsb_first (bit 0 of each byte comes first, and of each number) or "
         "msb_first (bit 7 and the most significant bit do).",
     )
-    digits: DigitsName | None = Field(
+    digits: Digits | None = Field(
         None,
         description="The integer is written as text, the highest digit first: base10, "
-        "base16-upper or base16-lower.",
+        "base16-upper or base16-lower. Of decimal and hexadecimal: digits in front of the point "
+        "at least, or a mapping.",
+    )
+    fraction: Count | None = Field(
+        None,
+        description="Digits behind the point of a decimal; the raw value is as many powers of "
+        "ten greater.",
+    )
+    case: Literal["upper", "lower"] | None = Field(
+        None, description="Case of hexadecimal digits; upper if not said."
     )
     chars: Positive | None = Field(
         None,

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from protogen.model.expressions import plain_name
-from protogen.model.numbers import Numeral
+from protogen.model.numbers import FreeNumeral, Numeral
 from protogen.model.protocol import Protocol
 from protogen.model.types import (
     Array,
@@ -97,8 +97,10 @@ def type_format(type_: Type, names: Names) -> str:
 def _integer(type_: Integer) -> str:
     if type_.role == "bool":
         return "_c.Bit" if type_.packed else "_c.Flag01"
+    if isinstance(type_.text, FreeNumeral):
+        return call("_c.Written", numeral(type_))
     if type_.text is not None:
-        return call("_c.Digits", *numeral_arguments(type_, type_.text))
+        return call("_c.Digits", *_digits(type_, type_.text))
     if type_.packed:
         return call("_c.Bits", str(type_.bits), signed="True" if type_.signed else None)
     kind = "_c.SevenBit" if type_.byte_bits == 7 else "_c.Int"
@@ -107,8 +109,25 @@ def _integer(type_: Integer) -> str:
     return call(kind, *arguments, order=_order(type_))
 
 
-def numeral_arguments(type_: Integer, form: Numeral) -> tuple[str, ...]:
-    """The arguments of what reads and writes an integer as digits."""
+def numeral(type_: Integer) -> str:
+    """What reads and writes an integer as text."""
+    form = type_.text
+    if isinstance(form, Numeral):
+        return call("_rt.Numeral", *_digits(type_, form))
+    assert form is not None
+    return call(
+        "_rt.FreeNumeral",
+        str(form.base),
+        str(form.front),
+        padded=str(form.padded) if form.padded > 1 else None,
+        fraction=str(form.fraction) if form.fraction else None,
+        signed="True" if type_.signed else None,
+        upper=None if form.upper else "False",
+    )
+
+
+def _digits(type_: Integer, form: Numeral) -> tuple[str, ...]:
+    """The arguments of what reads and writes an integer as so many digits."""
     alphabet = octets_in_class(form.alphabet)
     if not form.known:
         first = form.alphabet[0]

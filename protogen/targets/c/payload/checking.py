@@ -31,6 +31,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.checked_places import CheckedWalk
+from protogen.targets.c.payload.free_numerals import FreeDigits
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import loaded
 from protogen.targets.c.payload.numerals import Digits
@@ -113,8 +114,30 @@ class Checker(CheckedWalk):
 
     # --- numbers ----------------------------------------------------------------------------------
 
+    def _written(self, step: IntegerStep) -> None:
+        """A number that takes all characters that are left."""
+        self._flush()
+        self._require(0)
+        digits, address, left = FreeDigits.of(step.type), self._address(), self._left()
+        self._refuse(f"{left} < 1U || {left} > {unsigned(digits.longest)}", "SIZE")
+        self._refuse(digits.fault(self.helpers, address, left), "VALUE")
+        if Check.CLOSED in step.checks:
+            value = digits.value(self.helpers, address, left)
+            self._refuse(f"!{self.helpers.known(step.type)}({value})", "VALUE")
+        self._end()
+
+    def _left(self) -> str:
+        """The number of bytes that are left."""
+        offset = self._sum(self._offset)
+        if offset == "0":
+            return "size"
+        return f"size - ({offset})" if "+" in offset else f"size - {offset}"
+
     def number(self, step: NumberStep, place: str) -> None:
         """A number."""
+        if isinstance(step, IntegerStep) and step.type.is_free:
+            self._written(step)
+            return
         self._begin(_carried(step))
         is_needed = isinstance(step, IntegerStep) and step.is_needed
         if step.can_be_wrong or is_needed:
@@ -294,9 +317,7 @@ class Checker(CheckedWalk):
         if self._fixed:
             return
         self._require(0)
-        offset = self._sum(self._offset)
-        left = f"size - {offset}" if offset != "0" else "size"
-        left = f"size - ({offset})" if "+" in offset else left
+        left = self._left()
         self._refuse(_outside(count, left, 1), "SIZE")
         if seven:
             check = f"!{self.helpers.seven_bit()}({self._address()}, {left})"

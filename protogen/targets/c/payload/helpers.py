@@ -273,15 +273,17 @@ class Helpers:
         arguments = (names.writer, "const void *from", "size_t size")
         return self.helper("write_bytes", "void", arguments, body)
 
-    def buffered(self, name: str, store: str, kind: str, size: int) -> str:
-        """The function that hands to a writer what `store` makes of a value: so many bytes."""
+    def buffered(
+        self, name: str, store: str, parameters: tuple[str, ...], passed: str, room: int
+    ) -> str:
+        """The function that hands to a writer what `store` makes of these, and says the size of."""
         names = self._names
         body = [
-            f"uint8_t text[{size}];",
-            f"{store}(text, value);",
-            f"{self.write_bytes()}({names.writing}, text, sizeof text);",
+            f"uint8_t text[{room}];",
+            f"const size_t size = {store}(text, {passed});",
+            f"{self.write_bytes()}({names.writing}, text, size);",
         ]
-        return self.helper(name, "void", (names.writer, f"{kind} value"), body)
+        return self.helper(name, "void", (names.writer, *parameters), body)
 
     # --- bytes ----------------------------------------------------------------------------------
 

@@ -17,6 +17,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.model.types import Float, NumberType
 from protogen.targets.c.lines import Lines
+from protogen.targets.c.payload.free_numerals import FreeDigits
 from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole
 from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, members_of, number_in
@@ -61,6 +62,11 @@ class Load(PlacedWalk):
 
     def number(self, step: NumberStep, place: str) -> None:
         """A number."""
+        if isinstance(step, IntegerStep) and step.type.is_free:
+            self.catch_up()
+            written = FreeDigits.of(step.type).value(self.helpers, self.address(), self._left())
+            self.lines.add(f"{place} = {written};")
+            return
         value = loaded(self.helpers, step.type, self.byte(), self.address())
         self.lines.add(f"{place} = {value};")
         self.skip(step.type.size)
@@ -89,10 +95,13 @@ class Load(PlacedWalk):
             self.lines.add(f"{count} = 0U;")
             return
         self.catch_up()
-        left = "size" if self._name == "payload" else "(size_t)(payload + size - at)"
-        left = f"{left} - {self._offset}U" if self._offset else left
-        self.lines.add(f"{count} = ({counting_type(greatest)})({left});")
+        self.lines.add(f"{count} = ({counting_type(greatest)})({self._left()});")
         self._copy(place, count)
+
+    def _left(self) -> str:
+        """The number of bytes that are left."""
+        left = "size" if self._name == "payload" else "(size_t)(payload + size - at)"
+        return f"{left} - {self._offset}U" if self._offset else left
 
     def _copy(self, place: str, count: int | str) -> None:
         self.lines.add(f"{self.helpers.copy()}({place}, {self.address()}, {amount(count)});")

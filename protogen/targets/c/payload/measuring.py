@@ -10,11 +10,14 @@ from protogen.model.payload_plan import (
     BytesStep,
     ChooseStep,
     ConstantStep,
+    IntegerStep,
+    NumberStep,
     OptionalStep,
     RepeatStep,
     RestStep,
 )
 from protogen.targets.c.lines import Lines
+from protogen.targets.c.payload.free_numerals import FreeDigits
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.walk import Walk, times
 
@@ -45,6 +48,11 @@ class Measure(Walk):
             self._add(fixed)
         else:
             super().step(step, place)
+
+    def number(self, step: NumberStep, place: str) -> None:
+        """A number of as many digits as it needs; others have a fixed size."""
+        assert isinstance(step, IntegerStep)
+        self._add(FreeDigits.of(step.type).size(self.helpers, place))
 
     def constant(self, step: ConstantStep) -> None:
         """A constant."""

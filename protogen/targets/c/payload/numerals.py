@@ -21,7 +21,7 @@ class Digits(msgspec.Struct, frozen=True):
     @classmethod
     def of(cls, type_: Integer) -> Digits:
         """The digits of a type that has some."""
-        assert type_.text is not None
+        assert isinstance(type_.text, Numeral)
         return cls(type_, type_.text)
 
     @property
@@ -67,12 +67,13 @@ class Digits(msgspec.Struct, frozen=True):
         """The function that writes the digits of what `raw` gives."""
         arguments = ("uint8_t *at", f"{self._held} value")
         name = f"store_{self._words}_{self.form.size}"
-        return helpers.helper(name, "void", arguments, self._store())
+        return helpers.helper(name, "size_t", arguments, self._store())
 
     def write(self, helpers: Helpers) -> str:
         """The function that hands these digits to a writer."""
-        name, size = f"write_{self._words}_{self.form.size}", self.form.size
-        return helpers.buffered(name, self.store(helpers), self._held, size)
+        name, parameters = f"write_{self._words}_{self.form.size}", (f"{self._held} value",)
+        store = self.store(helpers)
+        return helpers.buffered(name, store, parameters, "value", self.form.size)
 
     def raw(self, value: str) -> str:
         """The unsigned number whose digits are those of a value."""
@@ -126,6 +127,7 @@ class Digits(msgspec.Struct, frozen=True):
             f"    at[i - 1U] = (uint8_t)({self._character()});",
             f"    value = ({self._held})(value {f'>> {bits}' if bits else f'/ {base}'});",
             "}",
+            f"return {self.form.size}U;",
         ]
 
     def _runs(self) -> list[tuple[int, int, int]]:

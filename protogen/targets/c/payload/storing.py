@@ -18,6 +18,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.model.types import Integer, NumberType
 from protogen.targets.c.lines import Lines
+from protogen.targets.c.payload.free_numerals import FreeDigits
 from protogen.targets.c.payload.helpers import Helpers, is_plain, parted
 from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, bytes_of
@@ -64,6 +65,10 @@ class _Output(Walk):
         """Put an integer that is written as text."""
         raise NotImplementedError
 
+    def _free(self, digits: FreeDigits, step: IntegerStep, value: str) -> None:
+        """Put an integer that is written in as many digits as it needs."""
+        raise NotImplementedError
+
     def constant(self, step: ConstantStep) -> None:
         """Its bytes."""
         for byte in step.data:
@@ -75,7 +80,9 @@ class _Output(Walk):
         if isinstance(step, FloatStep):
             place = f"{self.helpers.bits_of_float(step.type)}({place})"
             type_ = step.type.unsigned
-        if isinstance(type_, Integer) and type_.text is not None:
+        if isinstance(step, IntegerStep) and step.type.is_free:
+            self._free(FreeDigits.of(step.type), step, place)
+        elif isinstance(type_, Integer) and type_.text is not None:
             self._digits(Digits.of(type_), place)
         elif type_.size == 1:
             self._byte(_byte_of(type_, place))
@@ -118,8 +125,16 @@ class Store(_Output, PlacedWalk):
         self.skip(type_.size)
 
     def _digits(self, digits: Digits, value: str) -> None:
-        self.lines.add(f"{digits.store(self.helpers)}({self.address()}, {digits.raw(value)});")
+        stored = f"{digits.store(self.helpers)}({self.address()}, {digits.raw(value)})"
+        self.lines.add(f"(void){stored};")
         self.skip(digits.form.size)
+
+    def _free(self, digits: FreeDigits, step: IntegerStep, value: str) -> None:
+        if step.is_last:
+            self.lines.add(f"(void){digits.stored(self.helpers, self.address(), value)};")
+            return
+        self.settle()
+        self.lines.add(f"at += {digits.stored(self.helpers, 'at', value)};")
 
     def _bytes(self, place: str, count: int | str) -> None:
         self.lines.add(f"{self.helpers.copy()}({self.address()}, {place}, {amount(count)});")
@@ -143,6 +158,9 @@ class Put(_Output):
     def _digits(self, digits: Digits, value: str) -> None:
         write = digits.write(self.helpers)
         self.lines.add(f"{write}({self._writing}, {digits.raw(value)});")
+
+    def _free(self, digits: FreeDigits, step: IntegerStep, value: str) -> None:
+        self.lines.add(f"{digits.written(self.helpers, self._writing, value)};")
 
     def _bytes(self, place: str, count: int | str) -> None:
         write = self.helpers.write_bytes()

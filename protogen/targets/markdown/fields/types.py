@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from protogen.model.numbers import Numeral
+from protogen.model.numbers import FreeNumeral, Numeral
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -53,8 +53,11 @@ def _packed(step: RecordStep | RepeatStep) -> str:
 @lru_cache(maxsize=1024)
 def number_text(kind: NumberType) -> str:
     """Print a number's type with its byte order, or with how it is written as text."""
-    if isinstance(kind, Integer) and kind.text is not None:
-        return f"{code(kind.name)} as text, {_digits_text(kind.text)}"
+    form = kind.text if isinstance(kind, Integer) else None
+    if isinstance(form, FreeNumeral):
+        return f"{code(form.name)}, {_free_text(form)}"
+    if form is not None:
+        return f"{code(kind.name)} as text, {_digits_text(form)}"
     is_plain = kind.size == 1 or (isinstance(kind, Integer) and kind.is_text)
     return code(kind.name) if is_plain else f"{code(kind.name)} {_ORDERS[kind.byte_order]}"
 
@@ -68,6 +71,15 @@ def _digits_text(form: Numeral) -> str:
         return f"{plural(form.size, 'hexadecimal digit')} ({letters} case)"
     bits, first = form.base.bit_length() - 1, hex_number(form.alphabet[0], 8)
     return f"{plural(form.size, 'character')}, each {plural(bits, 'bit')} plus {code(first)}"
+
+
+def _free_text(form: FreeNumeral) -> str:
+    """Print how many digits there are in front of the point, and behind it."""
+    digits = f"{form.padded} to {form.front}" if form.padded < form.front else str(form.front)
+    front = f"{digits} digit{'' if form.front == 1 else 's'}"
+    if form.fraction:
+        return f"{front}, point, {plural(form.fraction, 'digit')}"
+    return front if form.base == 10 else f"{front} ({'upper' if form.upper else 'lower'} case)"
 
 
 def _extended(element: str, count: Count, noun: str) -> str:

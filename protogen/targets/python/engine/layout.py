@@ -29,7 +29,8 @@ def code_of(step: AnyStep) -> str | None:
     """
     value = without_constant(step)
     if isinstance(value, NumberStep):
-        return _number_code(value.type)
+        is_free = isinstance(value, IntegerStep) and value.type.is_free
+        return None if is_free else _number_code(value.type)
     if isinstance(value, BytesStep) and value.count.is_fixed:
         return f"{value.count.known}s"
     if isinstance(value, RecordStep | RepeatStep) and value.packing is not None:

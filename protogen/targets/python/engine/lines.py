@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from protogen.model.types import Integer, NumberType
-from protogen.targets.python.formats import numeral_arguments
-from protogen.targets.python.literals import call
+from protogen.targets.python.formats import numeral
 from protogen.targets.python.names import Names
 from protogen.targets.python.wrapping import WIDTH, wrapped
 
@@ -34,8 +33,7 @@ class Constants:
     def number(self, type_: NumberType) -> str:
         """The name of what reads and writes an integer that `struct` does not know."""
         if isinstance(type_, Integer) and type_.text is not None:
-            numeral = call("_rt.Numeral", *numeral_arguments(type_, type_.text))
-            return self.named("NUMBER", numeral)
+            return self.named("NUMBER", numeral(type_))
         seven = type_.byte_bits == 7
         arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
         return self.named("NUMBER", f"_rt.Number({arguments})")

@@ -244,6 +244,8 @@ class _Reader(Converter, Raw):
                 return self._optional(step)
             case BytesStep() if not step.count.is_fixed:
                 return self._variable_string(step)
+            case IntegerStep() if step.type.is_free:
+                return self._written(step)
         target = self.lines.local()
         self._scalar(target, step, is_field=False)
         self._flush()
@@ -292,6 +294,15 @@ class _Reader(Converter, Raw):
             self.lines.add(f"{value} = data[{start}:{end}]")
             self._move_to(end)
         return self.string(value, step)
+
+    def _written(self, step: IntegerStep) -> str:
+        """Take a number out of all characters that are left."""
+        value, start = self.lines.local(), self.place.text
+        text = f"data[{start}:]" if start != "0" else "data"
+        decode = f"{self.lines.constants.number(step.type)}.decode({text})"
+        self.lines.add(f"{value} = {self.named(decode, step)}")
+        self._move_to_end("len(data)")
+        return value
 
     def _count(self, count: Count) -> str:
         """The number of bytes or elements that earlier fields give, or that never changes."""

@@ -275,7 +275,11 @@ class _Writer(Raw):
         if _is_looked_up(step) and (item is None or not _is_bounded(item)):
             # Nothing but an integer is an index of a list, but -1 is that of the last element.
             self.lines.refuse_if(f"{value} < {type_.least} or {value} > {type_.greatest}")
-        self._put(step, self._coded(value, step))
+        if type_.is_free:
+            encode = f"{self.lines.constants.number(type_)}.encode({value})"
+            self._bytes.piece(encode)
+        else:
+            self._put(step, self._coded(value, step))
 
     def _unseen(self, value: str, step: IntegerStep) -> None:
         """See to it that a value is an integer where neither `struct` nor a list does."""

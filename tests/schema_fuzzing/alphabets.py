@@ -1,0 +1,107 @@
+"""The bytes that the payloads of drawn messages can hold, worked out apart from the compiler."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+EVERY = frozenset(range(256))
+_DIGITS = {
+    "base10": frozenset(b"0123456789"),
+    "base16-upper": frozenset(b"0123456789ABCDEF"),
+    "base16-lower": frozenset(b"0123456789abcdef"),
+}
+_WRITTEN = ("digits", "code", "fraction", "case")
+
+Types = Mapping[str, Any]
+"""What is declared."""
+
+
+def payload_alphabet(messages: Iterable[Any], types: Types, *, delimited: bool) -> frozenset[int]:
+    """The bytes of payloads: any, unless something in them is a number that is written as text."""
+    fields = [message.get("fields", {}) for message in messages]
+    if "unspecified" in fields or not any(_is_text(item, types) for item in fields):
+        return EVERY
+    return frozenset().union(*(_of_fields(item, types, last=delimited) for item in fields))
+
+
+def _full(item: Any, types: Types) -> dict[str, Any]:
+    """A field with what its declared type says."""
+    found = {"type": item} if isinstance(item, str) else dict(item)
+    while found.get("type") in types:
+        declared = types[found.pop("type")]
+        found = {**({"type": declared} if isinstance(declared, str) else declared), **found}
+    return found
+
+
+def _inner(item: Mapping[str, Any]) -> Iterator[Any]:
+    yield from item.get("fields", {}).values()
+    yield from item.get("cases", {}).values()
+
+
+def _is_text(fields: Mapping[str, Any], types: Types) -> bool:
+    for field in fields.values():
+        full = _full(field, types)
+        written = full.get("type") in ("decimal", "hexadecimal")
+        if written or any(key in full for key in _WRITTEN):
+            return True
+        if any(_is_text({"": inner}, types) for inner in _inner(full)):
+            return True
+    return False
+
+
+def _of_fields(fields: Mapping[str, Any], types: Types, *, last: bool) -> frozenset[int]:
+    found: frozenset[int] = frozenset()
+    for index, field in enumerate(fields.values()):
+        found |= _of_field(_full(field, types), types, last=last and index == len(fields) - 1)
+    return found
+
+
+def _of_field(item: dict[str, Any], types: Types, *, last: bool) -> frozenset[int]:
+    if "switch" in item:
+        if last:
+            return EVERY  # The bytes of a value without a case.
+        return frozenset().union(
+            *(_of_field(_full(case, types), types, last=False) for case in item["cases"].values())
+        )
+    if "packed" in item:
+        return EVERY
+    if "fields" in item:
+        return _of_fields(item["fields"], types, last=last and "count" not in item)
+    return _of_value(item)
+
+
+def _of_value(item: dict[str, Any]) -> frozenset[int]:
+    if item["type"] == "hexadecimal":
+        return frozenset(b"0123456789ABCDEFabcdef")
+    if item["type"] == "decimal":
+        signs = b"+-" if item.get("range", [-1])[0] < 0 else b""
+        return frozenset(b"0123456789" + signs + (b"." if item.get("fraction") else b""))
+    if "code" in item:
+        first = item["code"]["add"]
+        return frozenset(range(first, first + 2 ** item["code"]["bits"]))
+    if "digits" in item:
+        return _DIGITS[item["digits"]]
+    named = {
+        name: entry["value"] if isinstance(entry, dict) else entry
+        for name, entry in item.get("values", {}).items()
+    }
+    if "const" in item and "count" not in item:
+        return _of_constant(item, named)
+    if item["type"] == "char" and item.get("closed"):
+        return frozenset(map(_code, named.values()))
+    return EVERY
+
+
+def _of_constant(item: Mapping[str, Any], named: Mapping[str, Any]) -> frozenset[int]:
+    constant = item["const"]
+    if item["type"] == "char":
+        return frozenset({_code(named.get(constant, constant))})
+    if item["type"] == "ascii":
+        padding = b"\0" if len(constant) < item["size"] else b""
+        return frozenset(constant.encode() + padding)
+    return frozenset(bytes.fromhex(constant["hex"])) if item["type"] == "bytes" else EVERY
+
+
+def _code(value: Any) -> int:
+    return ord(value) if isinstance(value, str) else value
