@@ -138,28 +138,24 @@ class _Reader:
         return value
 
     def _free(self, type_: Integer) -> int:
-        """A number in as many digits as there are characters left."""
+        """A number in as many digits as there are characters, up to the next separator."""
         form = type_.text
-        text = self._take(self._left).decode("latin-1")
+        if form.leads and self._take(1)[0] != form.separator:
+            raise Wrong("value")
+        left = self._payload[self.at :]
+        mark = None if form.separator is None else bytes([form.separator])
+        text = self._take(len(left if mark is None else left.split(mark)[0])).decode("latin-1")
         longest = type_.signed + form.front + (1 + form.fraction if form.fraction else 0)
+        if not text and form.empty:
+            return 0 if form.base == 256 else form.base ** (form.front + form.fraction)
         if not 1 <= len(text) <= longest:
             raise Wrong("size")
-        sign = "[+-]?" if type_.signed else ""
-        if form.base == 16:
-            written = re.fullmatch(r"[0-9A-Fa-f]+", text)
-        elif form.fraction:
-            written = re.fullmatch(rf"{sign}([0-9]+\.?[0-9]*|\.[0-9]+)", text)
-        else:
-            written = re.fullmatch(rf"{sign}[0-9]+", text)
-        if written is None:
-            raise Wrong("value")
-        exact = Fraction(int(text, 16)) if form.base == 16 else Fraction(_with_zeros(text))
-        value = exact * 10**form.fraction if form.base == 10 else exact
-        if value.denominator != 1 or abs(value) >= form.base ** (form.front + form.fraction):
+        value = _number_in(text, form, signed=type_.signed)
+        if form.base == 256 and form.empty and value == 0:
             raise Wrong("value")
         if type_.enum is not None and type_.enum.closed and value not in _names(type_):
             raise Wrong("value")
-        return int(value)
+        return value
 
     def _count(self, extent: Extent, scope: Scope, *, constant: bool) -> int | None:
         if isinstance(extent, Fixed):
@@ -234,6 +230,26 @@ class _Run:
     def numbers(self, type_: Array, *, constant: bool) -> list[int]:
         count = type_.extent.counts.least
         return [self.value(type_.element, constant=constant) for _ in range(count)]
+
+
+def _number_in(text: str, form: Any, *, signed: bool) -> int:
+    """The number that a text is."""
+    sign = "[+-]?" if signed else ""
+    if form.base == 256:
+        return ord(text)
+    if form.base == 16:
+        written = re.fullmatch(r"[0-9A-Fa-f]+", text)
+    elif form.fraction:
+        written = re.fullmatch(rf"{sign}([0-9]+\.?[0-9]*|\.[0-9]+)", text)
+    else:
+        written = re.fullmatch(rf"{sign}[0-9]+", text)
+    if written is None:
+        raise Wrong("value")
+    exact = Fraction(int(text, 16)) if form.base == 16 else Fraction(_with_zeros(text))
+    value = exact * 10**form.fraction if form.base == 10 else exact
+    if value.denominator != 1 or abs(value) >= form.base ** (form.front + form.fraction):
+        raise Wrong("value")
+    return int(value)
 
 
 def _with_zeros(text: str) -> str:

@@ -192,6 +192,39 @@ class TestOtherForms:
         assert said(found) == [("WIRE", "field-encoding", "old receiver of new frames", "rejected")]
 
 
+TEXT = "  order: {id: 2, from: host, separator: SIGN, fields: {a: FORM, b: decimal}}\n"
+
+
+class TestSeparators:
+    """What becomes of messages whose fields are text."""
+
+    @pytest.mark.parametrize(
+        ("edit", "expected"),
+        [
+            (("SIGN", '";"'), {("WIRE", "field-encoding")}),
+            (("SIGN", '{byte: ",", in_front: true}'), {("WIRE", "field-encoding")}),
+            (("FORM", "{type: decimal, digits: {min: 3, max: 9}}"), {("NONE", "field-spelling")}),
+            (("FORM", "{type: decimal, digits: {max: 4}}"), {("WIRE", "field-width")}),
+            (("FORM", "{type: decimal, fraction: 2, digits: 7}"), {("WIRE", "field-encoding")}),
+        ],
+    )
+    def test_frames_show_what_changed(
+        self, edit: tuple[str, str], expected: set[tuple[str, str]], tmp_path: Path
+    ) -> None:
+        before = "  order: {id: 2, from: host, fields: {mode: mode}}\n"
+        texts = [
+            SCHEMA.replace(before, text.replace("SIGN", '","').replace("FORM", "decimal"))
+            for text in (TEXT, TEXT.replace(*edit))
+        ]
+        old, new = (compiled(tmp_path / f"{i}.yaml", text) for i, text in enumerate(texts))
+        found = findings(old, new)[1]
+        seen = {(item.category.value, item.rule.name) for item in found}
+        assert expected <= seen
+        harmful = [item for item in found if item.category.value == "WIRE"]
+        assert bool(harmful) == ("WIRE" in {category for category, _ in expected})
+        assert all(item.witnesses for item in harmful)
+
+
 class TestCases:
     def test_each_case_has_a_frame_that_selects_it(self, tmp_path: Path) -> None:
         old = "  order: {id: 2, from: host, fields: {mode: mode}}\n"

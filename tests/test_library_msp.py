@@ -228,7 +228,7 @@ def wire(convert: Any, step: AnyStep | RestStep, value: Any, values: Values) -> 
         case RepeatStep():
             return [byte for item in value for byte in wire(convert, step.element, item, values)]
         case ChooseStep():
-            chosen = step.case(values[step.selector_name])
+            chosen = step.case(values[step.expression.text])
             assert chosen is not None
             return wire(convert, chosen, value, values)
         case IntegerStep():
@@ -248,7 +248,7 @@ def taken(readbytes: Any, step: AnyStep | RestStep, data: bytearray, values: Val
         case RepeatStep():
             return [taken(readbytes, step.element, data, {step.element.name: it}) for it in value]
         case ChooseStep():
-            chosen = step.case(values[step.selector_name])
+            chosen = step.case(values[step.expression.text])
             assert chosen is not None
             return taken(readbytes, chosen, data, {chosen.name: value})
         case IntegerStep():

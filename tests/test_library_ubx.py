@@ -98,7 +98,7 @@ def mapped(
                 elements = enumerate(value, 1)
                 return [change(step.element, name, item, (*at, n)) for n, item in elements]
             case ChooseStep():
-                chosen = step.case(values[step.selector_name])
+                chosen = step.case(values[step.expression.text])
                 assert chosen is not None
                 return change(chosen, name, value, at)
             case _:

@@ -49,7 +49,7 @@ def takes_rest(type_: Type) -> bool:
         case Switch():
             return type_.rest is not None or any(map(takes_rest, inner_types(type_)))
         case Integer():
-            return type_.is_free
+            return type_.takes_rest
     return isinstance(type_.extent, Fill)
 
 

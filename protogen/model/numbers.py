@@ -16,6 +16,7 @@ from protogen.model.sizes import SizeSet
 from protogen.runtime.payload.number import Characters, Number
 from protogen.runtime.payload.numerals import FreeNumeral as WrittenFreely
 from protogen.runtime.payload.numerals import Numeral as WrittenNumeral
+from protogen.runtime.payload.numerals import Separated
 
 ByteOrder = Literal["little", "big"]
 IntegerRole = Literal["number", "byte", "char", "bool", "ascii"]
@@ -101,10 +102,14 @@ class Numeral(msgspec.Struct, frozen=True, kw_only=True, cache_hash=True):
 
 
 class FreeNumeral(msgspec.Struct, frozen=True, kw_only=True, cache_hash=True):
-    """Text form of an integer: as many digits as it needs, to the end of what is around it."""
+    """Text form of an integer: as many digits as it needs, or one character.
 
-    base: Literal[10, 16]
-    front: int
+    It goes to the end of what is around it, or to the next separator.
+    """
+
+    base: Literal[10, 16, 256]
+    """That of a character is 256."""
+    front: int = 1
     """Digits in front of the point, at most."""
     padded: int = 1
     """Digits in front of the point, at least; with zeros where the number has fewer."""
@@ -112,30 +117,56 @@ class FreeNumeral(msgspec.Struct, frozen=True, kw_only=True, cache_hash=True):
     """Digits behind the point. The integer is as many powers of ten greater."""
     upper: bool = True
     """True if hexadecimal digits are written A to F."""
+    separator: int | None = None
+    """The byte that stands between this and what follows, if one does."""
+    leads: bool = False
+    """True if the separator also stands in front."""
+    empty: bool = False
+    """True if there may be no text."""
 
     @property
     def name(self) -> str:
         """The name in the schema language."""
-        return "decimal" if self.base == 10 else "hexadecimal"
+        return {10: "decimal", 16: "hexadecimal", 256: "char"}[self.base]
 
     @property
     def label(self) -> str:
         """The form in the words of the schema language."""
         point = f".{self.fraction}" if self.fraction else ""
         case = "" if self.upper else " lower"
-        return f"{self.name}[{self.padded}..{self.front}{point}]{case}"
+        count = "" if self.base == 256 else f"[{self.padded}..{self.front}{point}]{case}"
+        place = f" behind {self.separator:02X}" if self.separator is not None and self.leads else ""
+        return f"{self.name}{count}{place}{' or nothing' if self.empty else ''}"
 
     @property
     def greatest(self) -> int:
         """The greatest number that has so many digits."""
         return int(self.base ** (self.front + self.fraction)) - 1
 
+    @property
+    def absent(self) -> int:
+        """What no text stands for, where there may be none: no digits have this value."""
+        return 0 if self.base == 256 else self.greatest + 1
+
+    @property
+    def top(self) -> int:
+        """The greatest integer that stands for anything."""
+        return max(self.greatest, self.absent) if self.empty else self.greatest
+
     def longest(self, *, signed: bool) -> int:
-        """Wire bytes of the longest number."""
+        """Bytes of the longest text."""
         return signed + self.front + (self.fraction + 1 if self.fraction else 0)
 
+    def sizes(self, *, signed: bool) -> SizeSet:
+        """Wire bytes, with those of the separator in front."""
+        return SizeSet.between(
+            self.leads + (not self.empty), self.leads + self.longest(signed=signed)
+        )
+
     def alphabet(self, *, signed: bool) -> bytes:
-        """The characters that a decoder takes."""
+        """The characters that a decoder takes, without the separator."""
+        if self.base == 256:
+            return bytes(item for item in range(256) if item != self.separator)
         digits = b"0123456789" if self.base == 10 else b"0123456789ABCDEFabcdef"
         return digits + (b"." if self.fraction else b"") + (b"+-" if signed else b"")
 
@@ -144,7 +175,10 @@ def are_read_alike(one: Numeral | FreeNumeral | None, other: Numeral | FreeNumer
     """True if a text that is a number in both forms has the same value in both."""
     if not isinstance(one, FreeNumeral) or not isinstance(other, FreeNumeral):
         return one == other
-    return (one.base, one.fraction) == (other.base, other.fraction)
+    forms = [
+        (form.base, form.fraction, form.separator, form.leads, form.empty) for form in (one, other)
+    ]
+    return forms[0] == forms[1]
 
 
 def are_spelled_alike(
@@ -180,19 +214,28 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     def sizes(self) -> SizeSet:
         """Wire bytes, as a set."""
         if isinstance(self.text, FreeNumeral):
-            return SizeSet.between(1, self.text.longest(signed=self.signed))
+            return self.text.sizes(signed=self.signed)
         return SizeSet.exactly(self.size)
 
     @property
     def is_free(self) -> bool:
-        """True if it is written as text that takes all that is left."""
+        """True if it is written as text of as many characters as it needs."""
         return isinstance(self.text, FreeNumeral)
+
+    @property
+    def takes_rest(self) -> bool:
+        """True if nothing but the end of what is around it ends it."""
+        return isinstance(self.text, FreeNumeral) and self.text.separator is None
 
     @property
     def characters(self) -> bytes:
         """The characters that its text can have; none where it is no text."""
         if isinstance(self.text, FreeNumeral):
-            return self.text.alphabet(signed=self.signed)
+            own = self.text.alphabet(signed=self.signed)
+            if self.role == "char" and self.enum is not None and self.enum.closed:
+                absent = {self.text.absent} if self.text.empty else set[int]()
+                own = bytes({item.value for item in self.enum.values} - absent)
+            return own + (bytes((self.text.separator,)) if self.text.separator is not None else b"")
         return b"" if self.text is None else self.text.alphabet
 
     @cached_property
@@ -262,7 +305,7 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     def greatest(self) -> int:
         """The greatest raw value that the wire can hold."""
         if isinstance(self.text, FreeNumeral):
-            return self.text.greatest
+            return self.text.top
         greatest = (1 << (self.bits - 1 if self.signed else self.bits)) - 1
         return greatest if self.text is None or self.signed else min(greatest, self.text.greatest)
 
@@ -334,8 +377,11 @@ def codec(type_: NumberType) -> Codec:
     """Codec of a number's raw value; of a float it is that of its bits."""
     form = type_.text if isinstance(type_, Integer) else None
     if isinstance(form, FreeNumeral):
+        between = None
+        if form.separator is not None:
+            between = Separated(form.separator, form.leads, form.empty)
         return WrittenFreely(
-            form.base, form.front, form.padded, form.fraction, type_.signed, form.upper
+            form.base, form.front, form.padded, form.fraction, type_.signed, form.upper, between
         )
     if form is not None:
         return WrittenNumeral(type_.bits, form.alphabet, form.size, type_.signed)

@@ -31,7 +31,7 @@ from protogen.runtime.lazy import importer, lazily
 from protogen.runtime.payload.enums import Flags, OpenEnum
 from protogen.runtime.payload.message import Message, Record, Sizes
 from protogen.runtime.payload.number import Characters, Number
-from protogen.runtime.payload.numerals import FreeNumeral, Numeral
+from protogen.runtime.payload.numerals import FreeNumeral, Numeral, Separated
 from protogen.runtime.payload.physical import (
     BitRange,
     EnumRange,
@@ -96,6 +96,7 @@ __all__ = [
     "Reason",
     "Record",
     "SenderSpec",
+    "Separated",
     "Sizes",
     "StartLiteral",
     "StartSet",

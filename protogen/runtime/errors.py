@@ -9,8 +9,8 @@ Reason = Literal[
 ]
 """Reason why bytes are no frame."""
 
-ByteFault = Literal["value", "encoding"]
-"""Reason why bytes are no value: a wrong one, or a bit set that has to be clear."""
+ByteFault = Literal["value", "encoding", "size"]
+"""Reason why bytes are no value: a wrong one, a bit set that has to be clear, or too few."""
 
 
 class CodecError(ValueError):

@@ -19,10 +19,16 @@ Types = Mapping[str, Any]
 
 def payload_alphabet(messages: Iterable[Any], types: Types, *, delimited: bool) -> frozenset[int]:
     """The bytes of payloads: any, unless something in them is a number that is written as text."""
-    fields = [message.get("fields", {}) for message in messages]
-    if "unspecified" in fields or not any(_is_text(item, types) for item in fields):
+    found = list(messages)
+    fields = [message.get("fields", {}) for message in found]
+    if "unspecified" in fields:
         return EVERY
-    return frozenset().union(*(_of_fields(item, types, last=delimited) for item in fields))
+    separators = [message["separator"] for message in found if "separator" in message]
+    is_text = bool(separators) or any(_is_text(item, types) for item in fields)
+    if not is_text:
+        return EVERY
+    between = {_code(item["byte"] if isinstance(item, dict) else item) for item in separators}
+    return frozenset(between).union(*(_of_fields(item, types, last=delimited) for item in fields))
 
 
 def _full(item: Any, types: Types) -> dict[str, Any]:

@@ -33,7 +33,8 @@ JUNK: tuple[Any, ...] = (
 NEW_KEYS: tuple[Any, ...] = (
     "type", "fields", "count", "size", "values", "closed", "flags", "bits", "const", "default",
     "packed", "range", "scale", "offset", "unit", "special", "switch", "cases", "byte_order",
-    "unknown", "digits", "code", "chars", "fraction", "case", "id",
+    "unknown", "digits", "code", "chars", "fraction", "case", "empty", "separator",
+    "in_front", "byte", "id",
     "from", "min_size", "max_size", "literal", "unprotected", "counts", "counter", "algorithm",
     "covers", "over", "when", "escape", "substitute", "encoding", "preset", "lenient", "examples",
     "overloads", "exchanges", "decisions", "reserved", "link", "types", "transparency", "payload",

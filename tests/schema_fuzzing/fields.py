@@ -12,6 +12,7 @@ from schema_fuzzing import expressions, forms
 from schema_fuzzing.names import FIELDS, fresh
 from schema_fuzzing.numbers import ORDERS, counter, integer, number
 from schema_fuzzing.packed import can_pack, packed_arrays, packed_structs
+from schema_fuzzing.separated import written_numbers
 from schema_fuzzing.setting import NOTHING, Built, Declared, Selector, Setting, Size
 
 GREATEST_DEPTH = 2
@@ -332,34 +333,10 @@ def _fill(draw: st.DrawFn, setting: Setting) -> Built:
 @st.composite
 def _written(draw: st.DrawFn, setting: Setting) -> Built:
     """A number in as many digits as it needs, where it fits the budget."""
-    base = draw(st.sampled_from([10, 16]))
-    data: dict[str, Any] = {"type": "decimal" if base == 10 else "hexadecimal"}
-    fraction = draw(st.integers(0, 4)) if base == 10 else 0
-    is_signed = base == 10 and draw(st.booleans())
-    most = min(18 - fraction, setting.budget - is_signed - (fraction + 1 if fraction else 0))
-    if most < 1:
+    if setting.budget < 1:
         return draw(number(setting))
-    front = draw(st.integers(1, min(most, 16)))
-    data["digits"] = {"max": front}
-    if draw(st.booleans()):
-        data["digits"]["min"] = draw(st.integers(1, front))
-    if fraction:
-        data["fraction"] = fraction
-    if base == 16 and draw(st.booleans()):
-        data["case"] = draw(st.sampled_from(["upper", "lower"]))
-    greatest = base ** (front + fraction) - 1
-    least = -greatest if is_signed else 0
-    ends = st.integers(least, greatest) | st.sampled_from([least, 0, greatest])
-    if base == 10 and not is_signed:
-        data["range"] = [0, draw(ends)]
-    elif is_signed and draw(forms.one_in(3)):
-        data["range"] = [-1, draw(st.integers(0, greatest))]
-    if draw(forms.one_in(4)):
-        data["unit"] = draw(forms.a_unit)
-    if draw(forms.one_in(6)):
-        data["special"] = {"nothing": draw(ends)}
-    longest = is_signed + front + (fraction + 1 if fraction else 0)
-    return Built(forms.short({**data, **draw(forms.about())}, "type"), Size(1, longest), fills=True)
+    built = draw(written_numbers(setting.budget))
+    return replace(built, data=forms.short({**built.data, **draw(forms.about())}, "type"))
 
 
 # --- switches -----------------------------------------------------------------------------------

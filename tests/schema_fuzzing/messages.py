@@ -15,6 +15,7 @@ from schema_fuzzing.frames import FramePlan
 from schema_fuzzing.names import MESSAGES, fresh, several
 from schema_fuzzing.numbers import ORDERS
 from schema_fuzzing.parts import PartPlan, identity_values, is_text, text_of
+from schema_fuzzing.separated import separated
 from schema_fuzzing.setting import Built, Declared, Setting, Size
 
 
@@ -175,7 +176,12 @@ class _Message:
             data["byte_order"] = self._draw(ORDERS)
         setting = self._setting(ordered="byte_order" in data)
         unspecified = setting.delimited and not self._whole and self._draw(forms.one_in(10))
-        fields, size = self._unspecified(setting) if unspecified else self._fields(setting)
+        if unspecified:
+            fields, size = self._unspecified(setting)
+        elif self._may_separate(setting) and self._draw(forms.one_in(5)):
+            fields, size = self._separated(setting)
+        else:
+            fields, size = self._fields(setting)
         data.update(fields)
         data.update(self._texts())
         return MessagePlan(name, self._senders, data, size)
@@ -215,6 +221,13 @@ class _Message:
         if not fields and self._draw(st.booleans()):
             return {}, size
         return {"fields": fields}, size + built.size
+
+    def _may_separate(self, setting: Setting) -> bool:
+        return setting.delimited and setting.byte_bits == 8 and setting.budget > 2
+
+    def _separated(self, setting: Setting) -> tuple[dict[str, Any], Size]:
+        separator, built = self._draw(separated(setting.budget))
+        return {"separator": separator, "fields": built.data}, built.size
 
     def _unspecified(self, setting: Setting) -> tuple[dict[str, Any], Size]:
         data: dict[str, Any] = {"fields": "unspecified"}

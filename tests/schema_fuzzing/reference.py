@@ -106,8 +106,21 @@ def number_bytes(type_: Integer, value: int) -> bytes:
 
 
 def _free_bytes(type_: Integer, value: int) -> bytes:
-    """A number with all digits behind its point, and no needless zeros in front of the others."""
+    """A number with all digits behind its point, and no needless zeros in front of the others.
+
+    The separator stands in front; nothing follows it where the value is the one that is absent.
+    """
     form = type_.text
+    front = bytes([form.separator]) if form.leads else b""
+    if form.empty and value == form.absent:
+        return front
+    return front + _characters(type_, value)
+
+
+def _characters(type_: Integer, value: int) -> bytes:
+    form = type_.text
+    if form.base == 256:
+        return bytes([value])
     if form.base == 16:
         text = f"{value:x}".rjust(form.padded, "0")
         return (text.upper() if form.upper else text).encode()

@@ -10,7 +10,7 @@ from schema_fuzzing.frames import FramePlan
 _FIELD_KEYS = (
     "values", "closed", "flags", "bits", "const", "default", "range", "scale", "offset", "unit",
     "special", "byte_order", "unknown", "switch", "packed", "digits",
-    "code", "chars", "when", "fraction", "case",
+    "code", "chars", "when", "fraction", "case", "empty",
 )  # fmt: skip
 
 _CODES = (
@@ -29,6 +29,7 @@ COMMON = (
     "text as a part: id", "text as a part: literal", "text as a part: value",
     "several identities", "overload by size", "overload by undecidable", "unspecified payload",
     "empty message",
+    "separated fields", "separated fields, one in front",
     "type: ascii", "type: bytes", "type: bool", "type: byte", "type: char", "type: float32",
     "type: float64", "type: decimal", "type: hexadecimal", "type: struct", "type: switch",
     "declared struct", "declared number",
@@ -146,6 +147,9 @@ def _message(data: dict[str, Any]) -> Iterator[str]:
     yield "several senders" if isinstance(data["from"], list) and data["from"][1:] else "one sender"
     if "byte_order" in data:
         yield "byte order of a message"
+    if "separator" in data:
+        in_front = isinstance(data["separator"], dict) and data["separator"].get("in_front")
+        yield f"separated fields{', one in front' if in_front else ''}"
     fields = data.get("fields", {})
     if fields == "unspecified":
         yield "unspecified payload"

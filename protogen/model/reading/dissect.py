@@ -12,6 +12,7 @@ import msgspec
 from protogen.copying import replace
 from protogen.model.expressions import Expression, reached, value_of
 from protogen.model.frame import Part
+from protogen.model.numbers import FreeNumeral
 from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     AnyStep,
@@ -124,6 +125,11 @@ class Cursor:
         self._offset += sum(len(unit.wire) for unit in taken)
         return taken
 
+    def size_to(self, byte: int, behind: int) -> int:
+        """Number of units in front of a byte that is `behind` so many of them, or of all."""
+        units = self._units[self._position + behind :]
+        return behind + next((i for i, it in enumerate(units) if it.byte == byte), len(units))
+
     def ends_with(self, data: bytes) -> bool:
         """True if the units that are left end with these bytes."""
         left = self._units[self._position :]
@@ -216,7 +222,7 @@ class _Reader:
             self.rows.append(_bits(item, run, base, row.offset))
 
     def _scalar(self, step: ScalarStep, path: str, scope: Scope) -> None:
-        size = _count(step.count, scope) if isinstance(step, BytesStep) else _size(step.type)
+        size = _count(step.count, scope) if isinstance(step, BytesStep) else self._size(step.type)
         size = self._cursor.left if size is None else size
         label = step.type.label
         row = self._cursor.take(size, path, label, subject=step.field, value_type=step.type)
@@ -226,6 +232,13 @@ class _Reader:
         if isinstance(row.value, int):
             scope[step.field.name] = row.value
         self.rows.append(row)
+
+    def _size(self, type_: NumberType) -> int | None:
+        """Bytes of a number; None: as many as there are."""
+        form = type_.text if isinstance(type_, Integer) else None
+        if not isinstance(form, FreeNumeral):
+            return type_.size
+        return None if form.separator is None else self._cursor.size_to(form.separator, form.leads)
 
 
 def _element(field: Field, index: int) -> Field:
@@ -253,11 +266,6 @@ def _bits(item: PackedNumber, run: BitReader, base: str, offset: int) -> Row:
         value_type=type_,
     )
     return row.reads(value, _meaning(step, value), _fault(step, value))
-
-
-def _size(type_: NumberType) -> int | None:
-    """Bytes of a number; None: as many as there are."""
-    return None if isinstance(type_, Integer) and type_.is_free else type_.size
 
 
 def _count(count: Count, scope: Scope) -> int | None:

@@ -21,6 +21,7 @@ from protogen.passes.framing.capacity import (
 from protogen.passes.messages.identity_reader import IdentityReader
 from protogen.passes.messages.stated_sizes import greatest_stated, least_stated
 from protogen.passes.types.fields import FieldBuilder
+from protogen.passes.types.separators import separator_of
 from protogen.passes.types.setting import Setting
 from protogen.passes.types.type_names import Layout
 from protogen.schema.syntax.messages import MessageSyntax
@@ -127,11 +128,14 @@ class _Resolution:
     # -- fields -------------------------------------------------------------------------------
 
     def _setting(self) -> Setting:
+        separator = separator_of(self._context, self._syntax, self._loc)
         return Setting(
             layout=Layout(
                 byte_bits=self._context.syntax.byte_bits,
                 byte_order=self._byte_order(),
+                separator=None if separator is None else separator.byte,
             ),
+            leads=separator is None or separator.in_front,
             capacity=self._capacity(),
             owner=self._name,
             delimited=all(map(is_delimited, self._frames.values())),
@@ -152,6 +156,7 @@ class _Resolution:
         return max(bounds) if len(bounds) == len(self._frames) else None
 
     def _unspecified(self) -> tuple[Field, ...]:
+        separator_of(self._context, self._syntax, self._loc)  # For its problem only.
         stated = self._syntax.max_size
         capacity = self._capacity()
         if stated is None and capacity is None:

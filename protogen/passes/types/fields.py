@@ -43,6 +43,7 @@ from protogen.passes.types.packing import (
     packed_elements,
     packed_fields,
 )
+from protogen.passes.types.separators import character, check_separated, with_absent
 from protogen.passes.types.setting import Setting
 from protogen.passes.types.text_numbers import says_text, text_number, with_text
 from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
@@ -81,7 +82,7 @@ class FieldBuilder:
         for name, item in syntax.items():
             if filler:
                 self._behind(filler, (*loc, name))
-            inner = setting.inside(name, behind, scope, [name] == final)
+            inner = setting.inside(name, behind, scope, first=not built, last=[name] == final)
             built[name] = self.field(name, item, (*loc, name), inner)
             behind += built[name].sizes
             if setting.layout.packed is not None:
@@ -100,6 +101,8 @@ class FieldBuilder:
             return unknown
         check_keys(self._context, name, effective)
         if not check_packing(self._context, name, effective):
+            return unknown
+        if not check_separated(self._context, name, effective):
             return unknown
         found = meaning.attach(self._context, name, self._type(effective), effective)
         return replace(found, when=self._when(effective))
@@ -137,6 +140,7 @@ class FieldBuilder:
             return self._struct(item, item.syntax.fields, setting)
         name, layout = item.syntax.type or "", setting.layout
         found: NumberType | None = text_number(self._context, item)
+        found = found or character(self._context, item)
         if found is None:
             found = integer(name, layout) or float_type(name, layout)
             if found is None:
@@ -145,7 +149,8 @@ class FieldBuilder:
             found = with_text(self._context, found, item)
         if found.size > 1 and layout.byte_order is None and not says_text(item):
             self._no_byte_order(item.at("type"))
-        return self._registered(with_names(self._context, found, item), item)
+        named = with_absent(self._context, with_names(self._context, found, item), item)
+        return self._registered(named, item)
 
     def _registered(self, type_: Integer | Float, item: Effective) -> Integer | Float:
         """The number, with the names under which its values are registered."""
@@ -250,8 +255,12 @@ class FieldBuilder:
         return None if found is None else selector_of(found)
 
     def _rest(self, cases: Sequence[Case], item: Effective) -> int | None:
-        """Greatest number of bytes for a value without a case; None where the end is not known."""
-        ends = item.setting.delimited and item.setting.last
+        """Greatest number of bytes for a value without a case; None where the end is not known.
+
+        Bytes that nobody knows could hold a separator, or begin without one.
+        """
+        separated = item.setting.layout.separator is not None
+        ends = item.setting.delimited and item.setting.last and not separated
         self._same_everywhere(ends, item)
         if not ends:
             return None

@@ -23,6 +23,7 @@ from protogen.model.types import (
 from protogen.passes.context import Context, about
 from protogen.passes.types.constants import read_constant
 from protogen.passes.types.declared import Effective
+from protogen.passes.types.separators import absent_value
 from protogen.passes.types.type_names import UNKNOWN_TYPE
 from protogen.passes.types.value_names import named_values
 from protogen.schema.text.scalars import exact_number
@@ -106,7 +107,10 @@ class _Check:
                 self._error("PG114", "range", text)
                 return None, None
             return self._ordered(*written)
-        least, greatest = _whole(type_.least), _whole(type_.greatest)
+        form = type_.text
+        # A number that is absent is none of those that digits can have.
+        most = form.greatest if isinstance(form, FreeNumeral) else type_.greatest
+        least, greatest = _whole(type_.least), _whole(most)
         if written is None:
             return least, greatest
         low, high = self._ordered(*written)
@@ -163,11 +167,13 @@ class _Check:
 
     def special(self) -> tuple[NamedValue, ...]:
         """The raw values that mean that there is no reading."""
+        absent = absent_value(self._element, self._field)
         if self._item.special is None or not is_integer(self._element):
-            return ()
+            return absent
         bounds = (self._element.least, self._element.greatest)
         here = self._field.at("special")
-        return named_values(self._context, bounds, self._item.special, here, self._item.type)
+        named = named_values(self._context, bounds, self._item.special, here, self._item.type)
+        return (*named, *absent)
 
     def _error(self, code: str, key: str, text: str, hint: str | None = None) -> None:
         self._context.error(code, self._field.at(key), text, hint)

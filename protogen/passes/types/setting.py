@@ -39,6 +39,8 @@ class Setting(msgspec.Struct, frozen=True):
     """Declared types that are being resolved, the outermost first."""
     depth: int = 0
     """Structs and declared types around."""
+    leads: bool = True
+    """True if a separator stands in front, where fields have some."""
     elsewhere: bool = False
     """True if these fields stand in no frame that is known: names may mean fields around them."""
 
@@ -47,7 +49,9 @@ class Setting(msgspec.Struct, frozen=True):
         """The greatest number of bytes that are left, where the frame bounds them."""
         return None if self.capacity is None else max(0, self.capacity - self.used)
 
-    def inside(self, name: str, behind: SizeSet, outer: Scope, last: bool) -> Setting:
+    def inside(
+        self, name: str, behind: SizeSet, outer: Scope, *, first: bool, last: bool
+    ) -> Setting:
         """The setting of the field `name`, behind so many bytes of earlier fields."""
         return replace(
             self,
@@ -55,6 +59,7 @@ class Setting(msgspec.Struct, frozen=True):
             position=None if self.layout.packed else behind.fixed,
             owner=f"{self.owner}_{name}",
             outer=outer,
+            leads=self.leads or not first,
             last=self.last and last,
         )
 

@@ -164,10 +164,13 @@ class _Form:
             padded=padded,
             fraction=fraction,
             upper=self._syntax.case != "lower",
+            separator=self._item.setting.layout.separator,
+            leads=self._item.setting.layout.separator is not None and self._item.setting.leads,
+            empty=self._syntax.empty is not None,
         )
         low = self._syntax.range[0] if self._syntax.range is not None else -1
         signed = base == 10 and low < 0
-        return Integer(bits=form.greatest.bit_length() + signed, signed=signed, text=form)
+        return Integer(bits=form.top.bit_length() + signed, signed=signed, text=form)
 
     def _only_keys(self, base: int) -> None:
         """Report keys that mean nothing for such numbers."""
@@ -190,8 +193,9 @@ class _Form:
             least, most = digits.min, digits.max
         if most is None:
             most = max(least or 1, self._usual(base, fraction))
-        if most + fraction > _MOST_DIGITS[base] or (least or 1) > most:
-            count = f"more than {_MOST_DIGITS[base]} digits may not fit 64 bits"
+        greatest = _MOST_DIGITS[base] - (base == 16 and self._syntax.empty is not None)
+        if most + fraction > greatest or (least or 1) > most:
+            count = f"more than {greatest} digits may not fit 64 bits"
             text = f"at least {least} digits and at most {most}" if (least or 1) > most else count
             key = "digits" if digits is not None else "fraction"
             self._context.error("PG225", self._item.at(key), text)

@@ -48,6 +48,8 @@ class Layout(msgspec.Struct, frozen=True):
     byte_order: ByteOrder | None
     packed: BitOrder | None = None
     """Order of the bits where numbers follow each other without byte boundaries."""
+    separator: int | None = None
+    """The byte between fields that are text."""
 
 
 def integer_width(name: str) -> int | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
-from protogen.problems.catalogue.sketch import with_fields
+from protogen.problems.catalogue.sketch import with_fields, with_message
 
 TEXT_NUMBER_CODES: tuple[Code, ...] = (
     Code(
@@ -33,5 +33,44 @@ point among them; a `hexadecimal` has 16 at most.
 """,
         with_fields("level: {type: sint8, digits: base10, chars: 3}"),
         with_fields("level: {type: sint8, digits: base16-upper}"),
+    ),
+    Code(
+        "PG226",
+        "not-separable",
+        "A field that no separator can stand beside",
+        """\
+Fields with a `separator` are text that ends where the next separator begins. So each is a number
+that is written as text (`decimal`, `hexadecimal`) or a character whose values are known (`char`
+with `values` and `closed: true`), or a struct or an array of these. Where no separator stands in
+front of the first field, that is a single number or character: else its type would be another
+there than elsewhere. `separator: {byte: ",", in_front: true}` puts one there too.
+""",
+        with_message('separator: ","\nfields: {count: decimal, angle: uint16}'),
+        with_message(
+            'separator: ","\nfields: {count: {type: decimal, range: [0, 9]}, angle: decimal}'
+        ),
+    ),
+    Code(
+        "PG227",
+        "separator-inside",
+        "A separator that a field can hold",
+        """\
+The byte that stands between fields ends each of them, so it can be no part of one: neither a digit,
+sign or point of a number, nor a value of a character.
+""",
+        with_message('separator: "-"\nfields: {count: decimal, angle: decimal}'),
+        with_message('separator: ";"\nfields: {count: decimal, angle: decimal}'),
+    ),
+    Code(
+        "PG228",
+        "nothing-to-leave-out",
+        "A field that can't be empty",
+        """\
+`empty` names the value of a number or character that stands between separators where its text is
+left out. That value is none that digits can have, so it has neither bits nor another name, and no
+`closed` list of numbers holds it; of a character it is 0.
+""",
+        with_fields("count: {type: decimal, empty: absent}"),
+        with_message('separator: ","\nfields: {count: {type: decimal, empty: absent}}'),
     ),
 )

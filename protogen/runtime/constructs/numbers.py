@@ -74,7 +74,7 @@ def Digits(bits: int, alphabet: bytes, size: int, signed: bool = False) -> Piece
 
 
 class Written(Piece):
-    """An integer as text that takes all that is left, as `numeral` reads and writes it."""
+    """An integer as text, as `numeral` reads and writes it; it knows where the text ends."""
 
     def __init__(self, numeral: FreeNumeral) -> None:
         super().__init__()
@@ -82,13 +82,12 @@ class Written(Piece):
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> int:
         offset, data = stream.tell(), stream.read()
-        if not 1 <= len(data) <= self._numeral.longest:
-            problem = f"needs 1 to {self._numeral.longest} characters, not {len(data)}"
-            raise PayloadError("size", path, offset, problem)
         try:
-            return self._numeral.decode(data)
+            value, size = self._numeral.take(data)
         except ByteError as error:
             raise PayloadError(error.reason, path, offset, str(error)) from None
+        stream.seek(offset + size)
+        return value
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
         try:

@@ -233,6 +233,11 @@ class FieldSyntax(Syntax):
     case: Literal["upper", "lower"] | None = Field(
         None, description="Case of hexadecimal digits; upper if not said."
     )
+    empty: Name | None = Field(
+        None,
+        description="Beside separators: the field may have no text, and this is the name of the "
+        "value that it then has.",
+    )
     chars: Positive | None = Field(
         None,
         description="Characters of an integer that is written as text; else as many digits as "

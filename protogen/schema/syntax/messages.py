@@ -7,6 +7,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from protogen.schema.syntax.base import (
+    ByteForm,
+    ByteNumber,
+    Character,
     Count,
     Name,
     PartValue,
@@ -156,8 +159,26 @@ Identity = Annotated[
 """Identity: a value or several, or a mapping of part to these."""
 
 
+def _to_separator(value: Any) -> Any:
+    return {"byte": value} if isinstance(value, int | str) else value
+
+
 def _text_or_mapping(value: Any) -> str:
     return "text" if isinstance(value, str) else "mapping"
+
+
+class Separator(Syntax):
+    """The byte between the fields of a message."""
+
+    byte: ByteNumber = Field(description="The separator.")
+    in_front: bool = Field(False, description="One stands in front of the first field too.")
+
+
+Separated = Annotated[
+    Separator,
+    BeforeValidator(_to_separator, json_schema_input_type=ByteForm | Character | Separator),
+]
+"""A byte or character, or a mapping."""
 
 
 class MessageSyntax(Syntax):
@@ -177,6 +198,11 @@ class MessageSyntax(Syntax):
     doc: Text | None = Field(None, description="What a reader should know.")
     source: SourceRef | None = Field(None, description="Where the message is written down.")
     byte_order: ByteOrder | None = Field(None, description="Byte order of its fields.")
+    separator: Separated | None = Field(
+        None,
+        description="A byte that stands between the fields, which are text: decimal, hexadecimal "
+        "and closed char, and structs and arrays of them.",
+    )
     fields: Annotated[
         Annotated[Literal["unspecified"], Tag("text")]
         | Annotated[dict[Name, FieldRef], Tag("mapping")],

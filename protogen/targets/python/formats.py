@@ -123,7 +123,15 @@ def numeral(type_: Integer) -> str:
         fraction=str(form.fraction) if form.fraction else None,
         signed="True" if type_.signed else None,
         upper=None if form.upper else "False",
+        separated=_separated(form),
     )
+
+
+def _separated(form: FreeNumeral) -> str | None:
+    if form.separator is None:
+        return None
+    leads, empty = ("True" if stated else None for stated in (form.leads, form.empty))
+    return call("_rt.Separated", f"0x{form.separator:02X}", leads=leads, empty=empty)
 
 
 def _digits(type_: Integer, form: Numeral) -> tuple[str, ...]:

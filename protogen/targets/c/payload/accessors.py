@@ -32,7 +32,7 @@ def is_readable(step: AnyStep) -> bool:
     if isinstance(element, RecordStep):
         # Nothing outside of it may say what is in it.
         return bool(element.sizes.fixed and element.holds_values) and not element.type.needs
-    return isinstance(element, NumberStep)
+    return isinstance(element, NumberStep) and element.sizes.fixed is not None
 
 
 def claim_accessor(names: Names, record: str, field: str) -> str:

@@ -114,17 +114,39 @@ class Checker(CheckedWalk):
 
     # --- numbers ----------------------------------------------------------------------------------
 
-    def _written(self, step: IntegerStep) -> None:
-        """A number that takes all characters that are left."""
+    def _written(self, step: IntegerStep, place: str) -> None:
+        """A number that takes all characters that are left, or those up to the next separator."""
+        digits = FreeDigits.of(step.type)
+        if not step.type.takes_rest:
+            self._separated(step, digits, place)
+            return
         self._flush()
         self._require(0)
-        digits, address, left = FreeDigits.of(step.type), self._address(), self._left()
-        self._refuse(f"{left} < 1U || {left} > {unsigned(digits.longest)}", "SIZE")
-        self._refuse(digits.fault(self.helpers, address, left), "VALUE")
-        if Check.CLOSED in step.checks:
-            value = digits.value(self.helpers, address, left)
-            self._refuse(f"!{self.helpers.known(step.type)}({value})", "VALUE")
+        self._text(step, digits, self._left())
         self._end()
+
+    def _separated(self, step: IntegerStep, digits: FreeDigits, place: str) -> None:
+        self._settle()
+        if digits.leads:
+            self._require(1)
+            self._refuse(f"{self._byte()} != {digits.leads}", "VALUE")
+            self._offset = 1
+        size = self.variable("length")
+        found = digits.text_size(self.helpers, self._address(), self._left())
+        self.lines.add(f"const size_t {size} = {found};")
+        self._text(step, digits, size)
+        if step.is_needed:
+            self._keep(step, place, digits.value(self.helpers, self._address(), size))
+        self._move(f"{self._offset}U + {size}" if self._offset else size)
+
+    def _text(self, step: IntegerStep, digits: FreeDigits, size: str) -> None:
+        """So many characters, which have to stand for something."""
+        address = self._address()
+        self._refuse(digits.misfit(size), "SIZE")
+        self._refuse(digits.fault(self.helpers, address, size), "VALUE")
+        if Check.CLOSED in step.checks:
+            value = digits.value(self.helpers, address, size)
+            self._refuse(f"!{self.helpers.known(step.type)}({value})", "VALUE")
 
     def _left(self) -> str:
         """The number of bytes that are left."""
@@ -136,7 +158,7 @@ class Checker(CheckedWalk):
     def number(self, step: NumberStep, place: str) -> None:
         """A number."""
         if isinstance(step, IntegerStep) and step.type.is_free:
-            self._written(step)
+            self._written(step, place)
             return
         self._begin(_carried(step))
         is_needed = isinstance(step, IntegerStep) and step.is_needed

@@ -7,9 +7,16 @@ import msgspec
 from protogen.model.numbers import FreeNumeral
 from protogen.model.types import Integer, storage_bits
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.spelling import integer_type, unsigned
+from protogen.targets.c.spelling import constant, hexadecimal, integer_type, unsigned
 
 _TEXT = ("const uint8_t *at", "size_t size")
+_TEXT_SIZE = """\
+size_t length = 0U;
+while (length < size && at[length] != separator) {
+    length++;
+}
+return length;
+"""
 _ROOM = 21
 """Bytes of the longest number of all: 18 digits, a sign and a point, and some to spare."""
 
@@ -174,19 +181,66 @@ class FreeDigits(msgspec.Struct, frozen=True):
         """Bytes of the longest number."""
         return self.form.longest(signed=self.type.signed)
 
+    @property
+    def leads(self) -> str:
+        """The separator in front, as a number; empty where none stands there."""
+        return hexadecimal(self.form.separator or 0) if self.form.leads else ""
+
+    @property
+    def is_single(self) -> bool:
+        """True if the text is always one character."""
+        return self.form.base == 256 and not self.form.empty
+
+    @property
+    def absent(self) -> str:
+        """What having no text stands for; empty where there always is some."""
+        return constant(self.form.absent, self.type) if self.form.empty else ""
+
     # --- what steps print -----------------------------------------------------------------------
 
+    def text_size(self, helpers: Helpers, address: str, left: str) -> str:
+        """The bytes in front of the next separator, of so many that are left."""
+        separator = hexadecimal(self.form.separator or 0)
+        parameters = (*_TEXT, "uint8_t separator")
+        name = helpers.helper("text_size", "size_t", parameters, _TEXT_SIZE)
+        return f"{name}({address}, {left}, {separator})"
+
+    def misfit(self, size: str) -> str:
+        """The condition that a text has too many bytes or too few."""
+        above = f"{size} > {unsigned(self.longest)}"
+        if self.is_single:
+            return f"{size} != 1U"
+        return above if self.form.empty else f"{size} < 1U || {above}"
+
     def fault(self, helpers: Helpers, address: str, size: str) -> str:
-        """The condition that these bytes, as many as a number can have, are none."""
+        """The condition that these bytes, as many as a text can have, stand for nothing.
+
+        Empty where all of them stand for something.
+        """
+        wrong = self._fault(helpers, address, size)
+        return f"{size} > 0U && {wrong}" if self.form.empty and wrong else wrong
+
+    def _fault(self, helpers: Helpers, address: str, size: str) -> str:
+        if self.form.base == 256:
+            return f"*({address}) == 0U" if self.form.empty else ""
         check = self._check(helpers)
         tenth = unsigned(self.form.greatest // self.form.base)
         return f"!{check}({', '.join((address, size, *self._fraction, tenth))})"
 
     def value(self, helpers: Helpers, address: str, size: str) -> str:
         """The number that lies there."""
-        number = f"{self._read(helpers)}({', '.join((address, size, *self._fraction))})"
+        number = self.present(helpers, address, size)
+        return f"{size} > 0U ? {number} : {self.absent}" if self.form.empty else number
+
+    def present(self, helpers: Helpers, address: str, size: str) -> str:
+        """The number of a text that there is."""
         member = integer_type(self.type)
-        return number if member == self._kind else f"({member}){number}"
+        if self.form.base == 256:
+            number = f"*({address})" if "+" in address else f"*{address}"
+        else:
+            number = f"{self._read(helpers)}({', '.join((address, size, *self._fraction))})"
+            number = number if member == self._kind else f"({member}){number}"
+        return number
 
     def stored(self, helpers: Helpers, address: str, value: str) -> str:
         """The call that writes a number; it gives the bytes that it has."""
@@ -202,7 +256,9 @@ class FreeDigits(msgspec.Struct, frozen=True):
         return f"{write}({', '.join((writing, value, *self._form))})"
 
     def size(self, helpers: Helpers, value: str) -> str:
-        """The bytes that a number has."""
+        """The bytes that a number has, without the separator in front; there is some text."""
+        if self.form.base == 256:
+            return "1U"
         least = unsigned(self.form.padded + self.form.fraction)
         counted = f"{self._size(helpers)}({value}, {least})"
         return f"{counted} + 1U" if self.form.fraction else counted
@@ -211,8 +267,7 @@ class FreeDigits(msgspec.Struct, frozen=True):
 
     @property
     def _width(self) -> int:
-        bits = self.form.greatest.bit_length() + self.type.signed
-        return max(16, storage_bits(bits))
+        return max(16, storage_bits(self.type.bits))
 
     @property
     def _held(self) -> str:

@@ -47,6 +47,7 @@ class Load(PlacedWalk):
 
     def __init__(self, helpers: Helpers, lines: Lines) -> None:
         super().__init__(helpers, lines, "const uint8_t *")
+        self._lengths = 0  # Variables for the lengths of texts.
 
     def pointed(self, plan: PayloadPlan, base: str) -> None:
         """Take a record that lies where there is an `at` already; what counts is in it."""
@@ -63,13 +64,39 @@ class Load(PlacedWalk):
     def number(self, step: NumberStep, place: str) -> None:
         """A number."""
         if isinstance(step, IntegerStep) and step.type.is_free:
-            self.catch_up()
-            written = FreeDigits.of(step.type).value(self.helpers, self.address(), self._left())
-            self.lines.add(f"{place} = {written};")
+            self._written(step, place)
             return
         value = loaded(self.helpers, step.type, self.byte(), self.address())
         self.lines.add(f"{place} = {value};")
         self.skip(step.type.size)
+
+    def _written(self, step: IntegerStep, place: str) -> None:
+        """A number that takes all characters that are left, or those up to the next separator."""
+        digits = FreeDigits.of(step.type)
+        if step.type.takes_rest:
+            self.catch_up()
+            written = digits.value(self.helpers, self.address(), self._left())
+            self.lines.add(f"{place} = {written};")
+            return
+        self.settle()
+        if digits.leads:
+            self.skip(1)
+        if digits.is_single:
+            self.lines.add(f"{place} = {self.byte()};")
+            self.skip(1)
+            return
+        self._lengths += 1
+        size = f"length_{self._lengths}" if self._lengths > 1 else "length"
+        found = digits.text_size(self.helpers, self.address(), self._left())
+        self.lines.add(f"const size_t {size} = {found};")
+        present = f"{place} = {digits.present(self.helpers, self.address(), size)};"
+        if digits.absent:
+            self.lines.add(f"{place} = {digits.absent};")
+            with self.lines.block(f"if ({size} > 0U)"):
+                self.lines.add(present)
+        else:
+            self.lines.add(present)
+        self.skip(size)
 
     def packed(self, step: RecordStep | RepeatStep, place: str) -> None:
         """Numbers that are packed."""

@@ -52,7 +52,14 @@ class Measure(Walk):
     def number(self, step: NumberStep, place: str) -> None:
         """A number of as many digits as it needs; others have a fixed size."""
         assert isinstance(step, IntegerStep)
-        self._add(FreeDigits.of(step.type).size(self.helpers, place))
+        digits = FreeDigits.of(step.type)
+        self._add(int(digits.form.leads))
+        size = digits.size(self.helpers, place)
+        if digits.absent:
+            with self.lines.block(f"if ({place} != {digits.absent})"):
+                self.lines.add(f"size += {size};")
+        else:
+            self._add(size)
 
     def constant(self, step: ConstantStep) -> None:
         """A constant."""

@@ -81,13 +81,28 @@ class _Output(Walk):
             place = f"{self.helpers.bits_of_float(step.type)}({place})"
             type_ = step.type.unsigned
         if isinstance(step, IntegerStep) and step.type.is_free:
-            self._free(FreeDigits.of(step.type), step, place)
+            self._text(FreeDigits.of(step.type), step, place)
         elif isinstance(type_, Integer) and type_.text is not None:
             self._digits(Digits.of(type_), place)
         elif type_.size == 1:
             self._byte(_byte_of(type_, place))
         else:
             self._number(type_, _raw_of(type_, place))
+
+    def _text(self, digits: FreeDigits, step: IntegerStep, value: str) -> None:
+        """Put what stands for a number, behind the separator; one that is absent has no text."""
+        if digits.leads:
+            self._byte(digits.leads)
+        if not digits.absent:
+            self._free(digits, step, value)
+            return
+        self._join()
+        with self.lines.block(f"if ({value} != {digits.absent})"):
+            self._free(digits, step, value)
+            self._join()
+
+    def _join(self) -> None:
+        """Be where two ways on meet."""
 
     def packed(self, step: RecordStep | RepeatStep, place: str) -> None:
         """Numbers that are packed."""
@@ -129,7 +144,13 @@ class Store(_Output, PlacedWalk):
         self.lines.add(f"(void){stored};")
         self.skip(digits.form.size)
 
+    def _join(self) -> None:
+        self.settle()
+
     def _free(self, digits: FreeDigits, step: IntegerStep, value: str) -> None:
+        if digits.form.base == 256:
+            self._byte(value)
+            return
         if step.is_last:
             self.lines.add(f"(void){digits.stored(self.helpers, self.address(), value)};")
             return
@@ -160,6 +181,9 @@ class Put(_Output):
         self.lines.add(f"{write}({self._writing}, {digits.raw(value)});")
 
     def _free(self, digits: FreeDigits, step: IntegerStep, value: str) -> None:
+        if digits.form.base == 256:
+            self._byte(value)
+            return
         self.lines.add(f"{digits.written(self.helpers, self._writing, value)};")
 
     def _bytes(self, place: str, count: int | str) -> None:

@@ -74,7 +74,22 @@ def _digits_text(form: Numeral) -> str:
 
 
 def _free_text(form: FreeNumeral) -> str:
-    """Print how many digits there are in front of the point, and behind it."""
+    """Print how many digits there are in front of the point, and behind it, and what separates."""
+    digits = _digits_of_free(form)
+    empty = " or nothing" if form.empty else ""
+    return f"{digits}{empty}{_behind_separator(form)}"
+
+
+def _behind_separator(form: FreeNumeral) -> str:
+    if form.separator is None or not form.leads:
+        return ""
+    byte = form.separator
+    return f", behind {code(chr(byte) if 0x20 < byte < 0x7F else f'{byte:02X}')}"
+
+
+def _digits_of_free(form: FreeNumeral) -> str:
+    if form.base == 256:
+        return "1 character"
     digits = f"{form.padded} to {form.front}" if form.padded < form.front else str(form.front)
     front = f"{digits} digit{'' if form.front == 1 else 's'}"
     if form.fraction:

@@ -150,6 +150,8 @@ class _Reader(Converter, Raw):
         else:
             self._flush()
             self.lines.add(f"{target} = {self._value(step)}")
+            if isinstance(step, IntegerStep):
+                self.raw[step.name] = target
             self._constant(target, step)
             self.raw[step.name] = target
 
@@ -296,8 +298,13 @@ class _Reader(Converter, Raw):
         return self.string(value, step)
 
     def _written(self, step: IntegerStep) -> str:
-        """Take a number out of all characters that are left."""
+        """Take a number out of the characters up to the next separator, or of all."""
         value, start = self.lines.local(), self.place.text
+        if not step.type.takes_rest:
+            end, number = self.lines.local("end"), self.lines.constants.number(step.type)
+            self.lines.add(f"{value}, {end} = {number}.take(data, {start})")
+            self._move_to(end)
+            return self.named(value, step)
         text = f"data[{start}:]" if start != "0" else "data"
         decode = f"{self.lines.constants.number(step.type)}.decode({text})"
         self.lines.add(f"{value} = {self.named(decode, step)}")

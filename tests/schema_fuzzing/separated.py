@@ -1,0 +1,157 @@
+"""Numbers in as many digits as they need, and fields of such numbers with separators."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from hypothesis import strategies as st
+
+from protogen.copying import replace
+from schema_fuzzing import forms
+from schema_fuzzing.names import FIELDS, fresh
+from schema_fuzzing.setting import NOTHING, Built, Size
+
+_SEPARATORS = (",", ";", " ", "|", 0x09, 0xFF)
+_CHARACTERS = {"left": "L", "right": "R", "comma": ",", "bar": "|", "high": 0xFF, "low": 1}
+_GREATEST_COUNT = 3
+
+
+@st.composite
+def written_numbers(draw: st.DrawFn, budget: int, *, may_be_empty: bool = False) -> Built:
+    """A number of at most so many characters, and at least one."""
+    base = draw(st.sampled_from([10, 16]))
+    data: dict[str, Any] = {"type": "decimal" if base == 10 else "hexadecimal"}
+    fraction = draw(st.integers(0, min(4, max(0, budget - 2)))) if base == 10 else 0
+    point = fraction + 1 if fraction else 0
+    is_signed = base == 10 and budget > point + 1 and draw(st.booleans())
+    front = draw(st.integers(1, min(18 - fraction, budget - is_signed - point, 15)))
+    data["digits"] = {"max": front}
+    if draw(st.booleans()):
+        data["digits"]["min"] = draw(st.integers(1, front))
+    if fraction:
+        data["fraction"] = fraction
+    if base == 16 and draw(st.booleans()):
+        data["case"] = draw(st.sampled_from(["upper", "lower"]))
+    greatest = base ** (front + fraction) - 1
+    least = -greatest if is_signed else 0
+    ends = st.integers(least, greatest) | st.sampled_from([least, 0, greatest])
+    if base == 10 and not is_signed:
+        data["range"] = [0, draw(ends)]
+    elif is_signed and draw(forms.one_in(3)):
+        data["range"] = [-1, draw(st.integers(0, greatest))]
+    if draw(forms.one_in(4)):
+        data["unit"] = draw(forms.a_unit)
+    if draw(forms.one_in(6)):
+        data["special"] = {"nothing": draw(ends)}
+    is_empty = may_be_empty and draw(st.booleans())
+    if is_empty:
+        data["empty"] = "absent"
+    return Built(data, Size(not is_empty, is_signed + front + point), fills=True)
+
+
+@st.composite
+def separated(draw: st.DrawFn, budget: int) -> tuple[Any, Built]:
+    """A separator, and the fields of a message that it stands between."""
+    byte, in_front = draw(st.sampled_from(_SEPARATORS)), draw(st.booleans())
+    scope = _Scope(draw, ord(byte) if isinstance(byte, str) else byte, budget, leads=in_front)
+    for left in reversed(range(draw(st.integers(1, 5)))):
+        scope.add(last=left == 0)
+    written: Any = {"byte": byte, "in_front": True} if in_front else byte
+    if not in_front and draw(forms.one_in(3)):
+        written = {"byte": byte}
+    return written, scope.built()
+
+
+@dataclass
+class _Scope:
+    """Fields one after another."""
+
+    draw: st.DrawFn
+    byte: int
+    budget: int
+    leads: bool
+    depth: int = 0
+
+    def __post_init__(self) -> None:
+        self._fields: dict[str, Any] = {}
+        self._size = NOTHING
+
+    def built(self) -> Built:
+        return Built(self._fields, self._size)
+
+    def add(self, *, last: bool) -> None:
+        """Add a field, with what counts it, if there is room."""
+        if self.budget < 2:
+            return
+        kinds = ["number"] * 3 + ["character"] * 2
+        if self.leads:
+            kinds += ["array", "struct"] * (self.depth < 2) + ["fill"] * (last and not self.depth)
+        kind = self.draw(st.sampled_from(kinds))
+        if kind == "array":
+            self._array()
+        elif kind == "struct":
+            self._put(self._struct(self.budget))
+        elif kind == "fill":
+            element = self._element(self.budget)
+            most = self.draw(st.integers(1, self.budget // element.size.greatest))
+            self._put(_extended(element, {"fill": True, "max": most}, Size(0, most)))
+        else:
+            self._put(self._text(self.budget, only=kind))
+
+    def _put(self, built: Built) -> str:
+        name: str = self.draw(fresh(FIELDS, self._fields))
+        self._fields[name] = forms.short(built.data, "type")
+        self._size += built.size
+        self.budget -= built.size.greatest
+        self.leads = True
+        return name
+
+    def _text(self, budget: int, only: str = "") -> Built:
+        """A number or a character, with the separator in front."""
+        kind = only or self.draw(st.sampled_from(["number", "character"]))
+        found = self._character() if kind == "character" else self._number(budget)
+        return replace(found, size=found.size + Size(self.leads, self.leads), fills=False)
+
+    def _number(self, budget: int) -> Built:
+        return self.draw(written_numbers(budget - self.leads, may_be_empty=True))
+
+    def _character(self) -> Built:
+        known = [
+            name
+            for name, value in _CHARACTERS.items()
+            if (ord(value) if isinstance(value, str) else value) != self.byte
+        ]
+        names = self.draw(st.lists(st.sampled_from(known), min_size=1, unique=True))
+        values = {name: _CHARACTERS[name] for name in names}
+        data = {"type": "char", "values": values, "closed": True}
+        is_empty = self.draw(st.booleans())
+        if is_empty:
+            data["empty"] = "absent"
+        return Built(data, Size(not is_empty, 1))
+
+    def _struct(self, budget: int) -> Built:
+        inner = _Scope(self.draw, self.byte, budget, self.leads, self.depth + 1)
+        for _ in range(self.draw(st.integers(1, 3))):
+            inner.add(last=False)
+        built = inner.built()
+        return replace(built, data={"fields": built.data})
+
+    def _element(self, budget: int) -> Built:
+        return self._struct(budget) if self.draw(st.booleans()) else self._text(budget)
+
+    def _array(self) -> None:
+        count: Any = self.draw(st.integers(1, _GREATEST_COUNT))
+        size = Size(count, count)
+        if self.draw(st.booleans()) and self.budget > 4:
+            bounds = sorted(self.draw(st.lists(st.integers(0, 3), min_size=2, max_size=2)))
+            most = max(1, bounds[1])
+            count = self._put(Built({"type": "decimal", "range": [bounds[0], most]}, Size(2, 2)))
+            size = Size(bounds[0], most)
+        budget = self.budget // max(1, size.greatest)
+        if budget >= 2:
+            self._put(_extended(self._element(budget), count, size))
+
+
+def _extended(element: Built, count: Any, size: Size) -> Built:
+    return Built({**element.data, "count": count}, element.size * size)
