@@ -84,6 +84,33 @@ def test_a_frame_that_is_sent_has_the_same_bytes(path: Path, sender: str, messag
         assert sent == Encoded(OK, frame)
 
 
+HIGH_BYTES = """\
+protocol: high_bytes
+endpoints: {host: Host}
+byte_order: big
+frame:
+  start:   {literal: 0x7E, unprotected: start}
+  length:  {type: uint16, counts: payload}
+  payload: {}
+  sum:     {type: uint8, algorithm: sum-8, covers: payload}
+messages:
+  block: {from: host, fields: {data: {type: bytes, size: {fill: true, max: 4096}}}}
+decisions:
+  start: {question: One inside?, document: Silent., choice: The sum tells., because: Nothing else.}
+"""
+
+
+@pytest.mark.parametrize("size", [7, 8, 255, 256, 257, 264, 512, 1023, 1024, 1500, 4096])
+def test_a_sum_of_many_high_bytes_does_not_overflow(size: int, tmp_path: Path) -> None:
+    path = tmp_path / "high_bytes.yaml"
+    path.write_text(HIGH_BYTES)
+    process = process_of(path)
+    for byte in (0xFF, 0xFE, 0x80):
+        data = bytes([byte]) * size
+        made = process.do(process.calls.frame("host", "block", {"data": data.hex()}, {}))
+        assert made.data == bytes([0x7E, *divmod(size, 256)]) + data + bytes([byte * size % 256])
+
+
 def test_frames_are_sent_byte_by_byte_where_nothing_in_them_depends_on_what_follows() -> None:
     refused = {
         f"{path.stem} {sender} {message}"

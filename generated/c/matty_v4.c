@@ -646,8 +646,8 @@ static uint8_t matty_v4_sum_8_negated_run(uint8_t sum, const uint8_t *data, size
         index = size;
     }
 #else
-    while (size - index >= 8U) { /* No lane of 16 bits overflows in 128 words. */
-        const size_t end = index + ((size - index > 1024U ? 1024U : size - index) & ~(size_t)7U);
+    while (size - index >= 8U) { /* No sum of lanes overflows 16 bits in 32 words. */
+        const size_t end = index + ((size - index > 256U ? 256U : size - index) & ~(size_t)7U);
         uint64_t lanes = 0;
         for (; index < end; index += 8U) {
             uint64_t word;
