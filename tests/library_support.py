@@ -26,8 +26,8 @@ ERRORS = 0.01
 """Share of bytes that are damaged where recovery is compared."""
 
 
-_ENCODED: dict[int, tuple[Case, bytes]] = {}
-"""Frames that were made, by the identity of their case, which is kept for that."""
+_ENCODED: dict[tuple[str, int], tuple[Case, bytes]] = {}
+"""Frames that were made, by schema and identity of the case, which is kept for that."""
 
 
 class Peer(Protocol):
@@ -53,9 +53,9 @@ def peer_module(name: str) -> ModuleType:
 
 def encoded(name: str, case: Case) -> bytes:
     """The frame of a case, in the first form that it fits."""
-    known = _ENCODED.get(id(case))
+    known = _ENCODED.get((name, id(case)))
     if known is None:
-        known = _ENCODED[id(case)] = case, _encoded(name, case)
+        known = _ENCODED[name, id(case)] = case, _encoded(name, case)
     return known[1]
 
 

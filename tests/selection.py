@@ -62,7 +62,7 @@ WITHOUT = {
     "test_convert_fleet.py": "fleet|killed|scheduler|this_machine|numpy",
     "test_docs.py": r"shows\[(docs/(howto|reference|background)|bench)",
     "test_layout.py": "in_any_style",
-    "test_library.py": r"all_engines.*\[(msp|ubx)",
+    "test_library.py": r"all_engines.*\[(msp|ubx|xbee2)",
     "test_lock.py": "against_a_lock",
     "test_native.py": "two_processes|builds_ahead|odd_frames|random_schemas|many_shapes|cut_off",
     "test_packaging.py": "TestWheel",
