@@ -153,11 +153,11 @@ def _restored(value: Any) -> Any:
         return tuple(_restored(item) for item in value)
     if not isinstance(value, dict):
         return value
-    if "fraction" in value:
+    if value.keys() == {"fraction"}:
         return Fraction(value["fraction"])
-    if "hex" in value:
+    if value.keys() == {"hex"}:
         return bytes.fromhex(value["hex"])
-    if "map" in value:
+    if value.keys() == {"map"}:
         return {key: _restored(item) for key, item in value["map"].items()}
     kind = _kinds()[value["class"]]
     names = defaults_of(kind)
