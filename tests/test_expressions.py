@@ -13,23 +13,19 @@ import pytest
 from expression_oracle import worked_out
 from tooling import require_compiler
 
+from protogen.model.expression_bounds import Interval, bounds_of, hull_of, is_settled, linear
 from protogen.model.expressions import (
     Arithmetic,
     Comparison,
     Expression,
-    Interval,
     Junction,
     Membership,
     Minus,
     Not,
     Number,
     Operand,
-    bounds_of,
     every,
     folded,
-    hull_of,
-    is_settled,
-    linear,
     named,
     names_in,
     plain_name,

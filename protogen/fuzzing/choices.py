@@ -12,7 +12,8 @@ from typing import Any
 
 import msgspec
 
-from protogen.model.expressions import Number, every, linear, operands
+from protogen.model.expression_bounds import linear
+from protogen.model.expressions import Number, every, operands
 from protogen.model.frame import ChoicePart, CounterPart, IdentityPart, ValuePart
 from protogen.model.identities import Runs
 from protogen.model.messages import Message

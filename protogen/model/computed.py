@@ -9,7 +9,8 @@ from collections.abc import Iterator, Sequence
 
 import msgspec
 
-from protogen.model.expressions import Expression, Linear, linear, names_in, operands, plain_name
+from protogen.model.expression_bounds import Linear, linear
+from protogen.model.expressions import Expression, names_in, operands, plain_name
 from protogen.model.nesting import inner_types
 from protogen.model.types import Counted, Field, Struct, Switch, Type
 

@@ -19,15 +19,8 @@ from typing import Any
 
 import msgspec
 
-from protogen.model.expressions import (
-    Expression,
-    Interval,
-    Operand,
-    bounds_of,
-    hull_of,
-    reached,
-    value_of,
-)
+from protogen.model.expression_bounds import Interval, bounds_of, hull_of
+from protogen.model.expressions import Expression, Operand, reached, value_of
 from protogen.model.packing import Packing
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (

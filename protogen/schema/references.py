@@ -11,14 +11,7 @@ from typing import Any
 
 import msgspec
 
-from protogen.model.expressions import (
-    Comparison,
-    Expression,
-    Membership,
-    Operand,
-    every,
-    operands,
-)
+from protogen.model.expressions import Comparison, Expression, Membership, Operand, every, operands
 from protogen.schema.expressions import ExpressionError, parse_expression
 from protogen.schema.scopes import Place, Scopes, declares
 from protogen.schema.syntax.forms import Form

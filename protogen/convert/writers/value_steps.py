@@ -23,13 +23,8 @@ from protogen.convert.columns.held_columns import (
     members_of,
     rest_of,
 )
-from protogen.model.expressions import (
-    GREATEST_BITS,
-    Expression,
-    Interval,
-    Operand,
-    plain_name,
-)
+from protogen.model.expression_bounds import Interval
+from protogen.model.expressions import GREATEST_BITS, Expression, Operand, plain_name
 from protogen.model.types import (
     Array,
     Case,

@@ -7,23 +7,21 @@ from functools import partial
 from typing import NamedTuple
 
 from protogen.copying import replace
+from protogen.model.expression_bounds import Interval, bounds_of, is_settled
 from protogen.model.expressions import (
     GREATEST_BITS,
     Arithmetic,
     Comparison,
     Expression,
-    Interval,
     Junction,
     Membership,
     Minus,
     Not,
     Number,
     Operand,
-    bounds_of,
     every,
     folded,
     inside,
-    is_settled,
     operands,
     plain_name,
 )

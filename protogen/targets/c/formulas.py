@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from protogen.model.expression_bounds import Interval, bounds_of
 from protogen.model.expressions import (
     Arithmetic,
     ArithmeticOperator,
     Comparison,
     Expression,
-    Interval,
     Junction,
     Level,
     Membership,
@@ -17,7 +17,6 @@ from protogen.model.expressions import (
     Number,
     Operand,
     Printer,
-    bounds_of,
 )
 from protogen.model.payload_plan import Formula
 from protogen.model.types import Integer
