@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from ipaddress import IPv4Address
 from typing import Any
 
-from library_support import peer_module
+from library_support import encoded, peer_module
 
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
@@ -43,6 +43,9 @@ PACKETS = {
     "receive": "common.ReceivePacket",
     "explicit_receive": "common.ExplicitRXIndicatorPacket",
     "remote_at_response": "common.RemoteATCommandResponsePacket",
+    "io_sample_64": "raw.RX64IOPacket",
+    "io_sample_16": "raw.RX16IOPacket",
+    "io_sample": "common.IODataSampleRxIndicatorPacket",
     "receive_sms": "cellular.RXSMSPacket",
     "ota_update_status": "zigbee.OTAFirmwareUpdateStatusPacket",
     "route_record": "zigbee.RouteRecordIndicatorPacket",
@@ -187,6 +190,8 @@ class DigiXbee:
 
     def knows(self, case: Case) -> bool:
         """True if it has the values of a case."""
+        if case.message.startswith("io_sample"):
+            return has_lines(case.values)
         for field, value in case.values.items():
             kind = self._enum(case, field)
             if kind is not None and value not in [it.code for it in kind if it.name != "UNKNOWN"]:
@@ -206,6 +211,8 @@ class DigiXbee:
         return getattr(peer_module(f"digi.xbee.packets.{module}"), kind)
 
     def frame(self, case: Case) -> bytes:
+        if case.message.startswith("io_sample"):
+            return self._sample_frame(case)
         without = {field for message, field in ALWAYS_ZERO if message == case.message} | DERIVED
         if case.message.startswith("socket_receive"):
             without.discard("frame_id")
@@ -216,6 +223,15 @@ class DigiXbee:
         ]
         made = self._class(case)(*given, op_mode=self._mode)
         return bytes(made.output(escaped=self._escaped))
+
+    def _sample_frame(self, case: Case) -> bytes:
+        """It makes no samples: those of ours go into a packet of it."""
+        fields = [field for field in case.values if field in HEADS]
+        size = sum(HEADS[field] for field in fields)
+        samples = encoded("xbee1", case)[4 + size : -1]
+        given = [self._given(case, field, case.values[field]) for field in fields]
+        packet = self._class(case)(*given, bytearray(samples), op_mode=self._mode)
+        return bytes(packet.output(escaped=self._escaped))
 
     def _given(self, case: Case, field: str, value: Any) -> Any:
         kind = self._enum(case, field)
@@ -242,7 +258,31 @@ class DigiXbee:
     def values(self, case: Case, frame: bytes) -> Values:
         raw = self._base.XBeeAPIPacket.unescape_data(frame) if self._escaped else bytearray(frame)
         packet = self._class(case).create_packet(raw, self._mode)
-        return {field: self._ours(case, packet, field) for field in case.values}
+        if not case.message.startswith("io_sample"):
+            return {field: self._ours(case, packet, field) for field in case.values}
+        heads = {it: self._ours(case, packet, it) for it in case.values if it in HEADS}
+        return heads | self._sampled(case.values, packet.io_sample)
+
+    def _sampled(self, values: Values, sample: Any) -> Values:
+        """The fields of a sample, ours where it has the same lines at the same levels."""
+        lines: Any = peer_module("digi.xbee.io").IOLine
+        high: Any = peer_module("digi.xbee.io").IOValue.HIGH
+        digital, analog = masks(values)
+        found = sample.digital_mask, sample.analog_mask
+        assert found == (digital, analog), (found, values)
+        theirs = {f"ad{index}": sample.get_analog_value(lines.get(index)) for index in range(6)}
+        theirs["supply"] = sample.power_supply_value if values.get("supply") is not None else None
+        for index in range(16):
+            if digital >> index & 1:
+                level = sample.get_digital_value(lines.get(index)) == high
+                assert level == bool(values["levels"] >> index & 1), index
+        assert (values["levels"] is None) == (digital == 0)
+        masked = {"sets", "channels", "digital_channels", "analog_channels", "levels"}
+        return {
+            field: value if field in masked else theirs[field]
+            for field, value in values.items()
+            if field not in HEADS
+        }
 
     def _ours(self, case: Case, packet: Any, field: str) -> Any:
         value = case.values[field]
@@ -270,6 +310,25 @@ class DigiXbee:
 
 BYTES = {"data", "parameter", "value", "key", "file", "response"}
 """Fields of bytes."""
+
+
+HEADS = {"source_64": 8, "source_16": 2, "rssi": 1, "options": 1}
+"""Fields in front of a sample, and their bytes."""
+
+
+def masks(values: Values) -> tuple[int, int]:
+    """The digital and the analog lines of a sample, a bit each."""
+    if "channels" in values:
+        return values["channels"] & 0x1FF, values["channels"] & 0x7E00
+    return values["digital_channels"], values["analog_channels"]
+
+
+def has_lines(values: Values) -> bool:
+    """True if there is a line, and all are lines that there are."""
+    if "channels" in values:
+        return bool(0 < values["channels"] < 0x8000)
+    digital, analog = masks(values)
+    return digital < 0x2000 and analog & 0x70 == 0 and (digital, analog) != (0, 0)
 
 
 def as_ours(value: Any, theirs: Any, field: str) -> Any:
