@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -13,14 +14,44 @@ from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
 
 ALL_SENSORS = 100
+COMMANDS = {
+    "start": "Start",
+    "safe": "Safe",
+    "full": "Full",
+    "power": "Power",
+    "spot": "Spot",
+    "clean": "Clean",
+    "max": "Max",
+    "seek_dock": "Seek Dock",
+}
+"""Commands without data, and their names in pyroombaadapter."""
+MOVES = [
+    "drive",
+    "motors",
+    "song",
+    "play",
+    "pwm_motors",
+    "drive_direct",
+    "drive_pwm",
+    "ask_stream",
+    "press",
+]
+"""Commands that pyroombaadapter makes of numbers."""
+SHOWN = ["reset", "stop", "leds", "sensors", "digit_characters"]
+"""Commands of pycreate2."""
 
 
 class Line:
-    """A serial line: what is there to read, and how much of it was."""
+    """A serial line: what is there to read, how much of it was, and what was written."""
 
-    def __init__(self, data: bytes) -> None:
+    def __init__(self, data: bytes = b"") -> None:
         self.data = data
         self.at = 0
+
+        self.written = b""
+
+    def write(self, data: bytes) -> None:
+        self.written += data
 
     def read(self, size: int) -> bytes:
         piece = self.data[self.at : self.at + size]
@@ -82,6 +113,93 @@ class Stream:
                 yield data[begin : line.at]
 
 
+class Host:
+    """Commands as pyroombaadapter and pycreate2 make them. Neither reads any."""
+
+    def __init__(self) -> None:
+        self._made: Any = peer_module("pyroombaadapter").PyRoombaAdapter
+        self._create: Any = peer_module("pycreate2.create2api")
+
+    def frame(self, case: Case) -> bytes:
+        line = Line()
+        if case.message in SHOWN:
+            self._show(line, case.message, case.values)
+            return line.written
+        adapter = self._made.__new__(self._made)  # it would open a port, and wait
+        adapter.serial_con = line
+        try:
+            if case.message in COMMANDS:
+                adapter._send_cmd(self._made.CMD[COMMANDS[case.message]])
+            else:
+                self._move(adapter, case.message, case.values)
+        finally:
+            adapter.serial_con = None  # it says good-bye there
+        return line.written
+
+    def _move(self, adapter: Any, message: str, values: Values) -> None:
+        match message:
+            case "drive":
+                adapter.send_drive_cmd(values["velocity"], values["radius"])
+            case "motors":
+                on = bits(values["motors"], 5)
+                adapter.send_moters_cmd(on[2], not on[4], on[0], not on[3], on[1])
+            case "song":
+                notes = [note["note"] for note in values["notes"]]
+                durations = [note["duration"] for note in values["notes"]]
+                adapter.send_song_cmd(values["number"], len(notes), notes, durations)
+            case "play":
+                adapter.send_play_cmd(values["number"])
+            case "pwm_motors":
+                adapter.send_pwm_moters(*values.values())
+            case "drive_direct":
+                adapter.send_drive_direct(values["right"], values["left"])
+            case "drive_pwm":
+                adapter.send_drive_pwm(values["right"], values["left"])
+            case "ask_stream":
+                numbers = {number: name for name, (number, *_) in self._made.SENSOR.items()}
+                adapter.data_stream_start([numbers[number] for number in values["packets"]])
+            case "press":
+                adapter.send_buttons_cmd(*bits(values["buttons"], 8))
+
+    def _show(self, line: Line, message: str, values: Values) -> None:
+        commands = self._create.SerialCommandInterface()
+        commands.ser = SimpleNamespace(write=line.write, is_open=False)
+        host = SimpleNamespace(SCI=commands)
+        match message:
+            case "leds":
+                self._create.Create2.led(host, *values.values())
+            case "digit_characters":
+                text = "".join(map(chr, values["characters"]))
+                self._create.Create2.digit_led_ascii(host, text)
+            case "sensors":
+                commands.write(self._create.OPCODES.SENSORS, (values["packet"],))
+            case _:
+                commands.write(getattr(self._create.OPCODES, message.upper()))
+
+    def known(self, case: Case) -> Case:
+        """The case as far as they go: with a radius that they allow, packets that they know."""
+        values = dict(case.values)
+        match case.message:
+            case "drive":
+                values["radius"] = max(-2000, min(values["radius"], 2000))
+            case "motors":
+                values["motors"] &= 0x1F
+            case "digit_characters":
+                values["characters"] = [ord(chr(code).upper()) for code in values["characters"]]
+            case "ask_stream":
+                known = {number for number, *_ in self._made.SENSOR.values()}
+                packets = [number for number in values["packets"] if number in known]
+                packets = packets or [min(known)]
+                values = {"size": len(packets), "packets": packets}
+        return replace(case, values=values)
+
+    def values(self, case: Case, frame: bytes) -> Values:
+        return case.values
+
+    def found(self, endpoint: str, data: bytes) -> Iterator[bytes]:
+        return iter(())
+
+
 @pytest.fixture(scope="module")
 def stream() -> Stream:
     return Stream()
@@ -95,8 +213,14 @@ def test_both_make_and_read_the_same_packets_of_a_stream(stream: Stream) -> None
     compare_frames("roomba", stream, map(single, cases_of("roomba", ["stream"])))
 
 
+def test_both_make_the_same_commands() -> None:
+    host = Host()
+    drawn = cases_of("roomba", [*COMMANDS, *MOVES, *SHOWN])
+    compare_frames("roomba", host, map(host.known, drawn))
+
+
 def test_no_frame_is_lost_that_it_finds(stream: Stream) -> None:
-    compare_recovery("roomba", "robot", stream, cases_of("roomba"))
+    compare_recovery("roomba", "robot", stream, cases_of("roomba", ["stream"]))
 
 
 def test_both_read_the_same_in_all_sensors() -> None:
