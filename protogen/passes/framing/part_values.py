@@ -7,6 +7,7 @@ from typing import Literal
 from protogen.model.frame import NumberPart
 from protogen.model.types import ByteOrder, Integer
 from protogen.passes.context import Context, Loc
+from protogen.schema.hints import number_hint
 from protogen.schema.syntax.parts import Part
 
 
@@ -52,7 +53,9 @@ def _wrong(part: NumberPart, value: int | str) -> tuple[str, str] | None:
         if isinstance(value, int) or len(value) == 1:
             return None
         text = f"`{value}` is no number, as `{part.name}` is"
-        return text, f"write an integer or one character, or make it `{_as_text(part.type, value)}`"
+        hint = number_hint(value) if any(map(str.isdigit, value)) else None
+        kind = _as_text(part.type, value)
+        return text, hint or f"write an integer or one character, or make it `{kind}`"
     if isinstance(value, int):
         return f"{value} is a number, and `{part.name}` a text", f"write {characters}, in quotes"
     if len(value) != size:
