@@ -45,7 +45,7 @@ class _Members(Mapping[str, Any]):
         self._values = values
 
     def __getitem__(self, name: str) -> Any:
-        value = self._values[name.removesuffix("_")]
+        value = self._values[name if name in self._values else name.removesuffix("_")]
         return _Members(value) if isinstance(value, Mapping) else value
 
     def __getattr__(self, name: str) -> Any:

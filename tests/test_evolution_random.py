@@ -30,6 +30,7 @@ NAMES = (
     "bits-renamed",
     "field-kind",
     "field-spelling",
+    "field-special-renamed",
 )
 """Changes of nothing but words."""
 THOROUGH = os.environ.get("HYPOTHESIS_PROFILE") == "thorough"

@@ -14,7 +14,9 @@ from protogen.schema.syntax.base import INTEGER_PATTERN
 
 JsonObject = dict[str, Any]
 
-_BUILT_IN_PATTERN = f"^({INTEGER_PATTERN}|byte|char|bool|float32|float64|ascii|bytes)$"
+_BUILT_IN_PATTERN = (
+    f"^({INTEGER_PATTERN}|byte|char|bool|float32|float64|decimal|hexadecimal|ascii|bytes)$"
+)
 """Names of types where none are declared."""
 
 _FORMS = ("fields", "switch")
