@@ -88,6 +88,8 @@ class _Reader:
 
     def _integer(self, written: object, type_: Integer) -> int:
         named = named_raw_value(type_, written)
+        if named is not None and not type_.holds(named[0]):
+            raise self._too_wide(named[0], type_)
         if named is not None:
             return self._allowed(named[0], type_)
         if isinstance(written, int) and not isinstance(written, bool):
