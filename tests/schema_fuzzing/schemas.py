@@ -20,6 +20,7 @@ from schema_fuzzing.types import declared_types
 
 DECISION = "delimiter_in_data"
 _SHARED = ""
+_IDENTITY_BITS = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +35,11 @@ class Schema:
 def schemas(draw: st.DrawFn) -> Schema:
     """Valid schemas of every shape that the language has words for."""
     return _Drawing(draw).schema()
+
+
+def _bits(part: PartPlan) -> int:
+    assert part.type is not None
+    return part.type.bits
 
 
 class _Drawing:
@@ -103,7 +109,10 @@ class _Drawing:
         maker = Maker(self._draw, self._byte_bits, order)
         count = self._draw(st.sampled_from([0, 1, 1, 1, 2, 3]))
         start = self._draw(st.booleans())
-        return [maker.new_identity(start=start and index == 0) for index in range(count)]
+        parts = [maker.new_identity(start=start and index == 0) for index in range(count)]
+        while sum(_bits(part) for part in parts) > _IDENTITY_BITS:
+            parts.pop()
+        return parts
 
     def _frames(self, identity: Mapping[str, list[PartPlan]]) -> dict[str, FramePlan]:
         if not self._per_sender:

@@ -57,6 +57,7 @@ _ROLES: dict[str, frozenset[str]] = {
     "type": frozenset({"type", "size", "range", "default", "byte_order", "unprotected"}),
     PAYLOAD: frozenset({"unprotected"}),
 }
+_IDENTITY_BITS = 64
 _COMMON_KEYS = frozenset({"doc", "source"})
 
 
@@ -121,6 +122,7 @@ class FrameBuilder:
     def _check(self, frame: Frame) -> None:
         """Check what can only be asked when all parts are there."""
         _check_checksums(self._context, frame, self._loc)
+        self._check_identity(frame)
         length = frame.length
         if length is not None and stated_range(frame) is None:
             around = counted_size(frame, length, empty=True)
@@ -132,6 +134,16 @@ class FrameBuilder:
             text = f"a frame of {self._written.endpoint} has at least {least_size(frame)} bytes"
             loc = self._written.limit_loc
             self._context.error("PG181", loc, f"{text}, and may have {frame.limit}")
+
+    def _check_identity(self, frame: Frame) -> None:
+        """Check that one number can hold all identity parts, as decoders compare them."""
+        bits = sum(part.type.bits for part in frame.identity)
+        if bits > _IDENTITY_BITS:
+            text = f"the identity has {bits} bits together, and {_IDENTITY_BITS} are the most"
+            hint = "make one of its parts a value: a part with a `type` and no `id`"
+            self._context.error_at_key(
+                "PG193", (*self._loc, frame.identity[-1].name, "id"), text, hint
+            )
 
     # -- parts --------------------------------------------------------------------------------
 

@@ -81,4 +81,34 @@ People see it as text; a text has no `range` and no `byte_order`, and does not c
             more="transparency: slip",
         ),
     ),
+    Code(
+        "PG193",
+        "wide-identity",
+        "An identity that is too wide",
+        """\
+The parts with `id` tell messages apart. Decoders compare them as one number, which has at most 64
+bits. Let those parts be the identity that are needed to tell messages apart; the others are values,
+which events show and callers give.
+""",
+        with_framed(
+            """
+                name: {type: ascii, size: 8, id: true}
+                kind: {type: uint8, id: true}
+                payload: {}
+                end: {literal: 0xC0}
+            """,
+            "status: {id: {name: THRUSTER, kind: 1}, from: robot}",
+            more="transparency: slip",
+        ),
+        with_framed(
+            """
+                name: {type: ascii, size: 8, id: true}
+                kind: {type: uint8}
+                payload: {}
+                end: {literal: 0xC0}
+            """,
+            "status: {id: THRUSTER, from: robot}",
+            more="transparency: slip",
+        ),
+    ),
 )
