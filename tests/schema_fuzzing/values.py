@@ -9,6 +9,7 @@ from math import ceil, floor
 from typing import Any
 
 from expression_oracle import worked_out
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from protogen.model.expressions import plain_name
@@ -266,7 +267,9 @@ def _size(extent: Extent, scope: Scope) -> st.SearchStrategy[int]:
         case Fixed():
             return st.just(extent.count)
         case Counted():
-            return st.just(worked_out(extent.by, scope))
+            number = worked_out(extent.by, scope)
+            assume(0 <= number <= extent.greatest)
+            return st.just(number)
     return _count(extent.counts.least, extent.greatest)
 
 

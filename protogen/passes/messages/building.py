@@ -129,6 +129,8 @@ class _Resolution:
 
     def _setting(self) -> Setting:
         separator = separator_of(self._context, self._syntax, self._loc)
+        # Fields that tell a payload's size by themselves do it by what they say, not by the room.
+        delimited = all(map(is_delimited, self._frames.values()))
         return Setting(
             layout=Layout(
                 byte_bits=self._context.syntax.byte_bits,
@@ -136,9 +138,9 @@ class _Resolution:
                 separator=None if separator is None else separator.byte,
             ),
             leads=separator is None or separator.in_front,
-            capacity=self._capacity(),
+            capacity=self._capacity() if delimited else None,
             owner=self._name,
-            delimited=all(map(is_delimited, self._frames.values())),
+            delimited=delimited,
         )
 
     def _byte_order(self) -> ByteOrder | None:

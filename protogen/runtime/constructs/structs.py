@@ -207,8 +207,7 @@ class When(Around):
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
         is_there = bool(said(self._condition, context, path))
-        is_given = obj is not None or self._takes_none(stream, context, path)
-        if is_there and is_given:
+        if is_there and (obj is not None or self._takes_none(stream, context, path)):
             return self.subcon._build(obj, stream, context, path)
         if is_there or obj is not None:
             problem = "is missing" if is_there else f"must be None, not {obj!r}"
