@@ -124,7 +124,8 @@ def count_of(fields: tuple[Field, ...], field: Field, names: Names) -> str:
     assert count is not None
     if count.by is None:
         return f"{count.known}u"
-    printer = FormulaPrinter(count.by, lambda operand: f"message.{names.member(operand.name)}")
+    path = lambda operand: ".".join(map(names.member, operand.name.split(".")))  # noqa: E731
+    printer = FormulaPrinter(count.by, lambda operand: f"message.{path(operand)}")
     return f"(size_t)({printer.text(count.by.expression)})"
 
 

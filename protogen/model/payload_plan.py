@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import Enum, auto
 from functools import cached_property
 from math import ceil, floor
-from typing import Any
+from typing import Any, cast
 
 import msgspec
 
@@ -176,6 +176,16 @@ class Step(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
     count: Count | None = None
     """Number of elements or bytes, of what has one."""
 
+    @cached_property
+    def known_size(self) -> int | None:
+        """Bytes of every such value, where that tells the places behind it; None where it does not.
+
+        Numbers of as many digits as they need are read up to where they end, whatever their size.
+        """
+        steps = every_step([cast("AnyStep", self)])
+        is_free = any(isinstance(it, IntegerStep) and it.type.is_free for it in steps)
+        return None if is_free else self.sizes.fixed
+
     @property
     def fills(self) -> bool:
         """True if it takes all elements or bytes that are left of the payload."""
@@ -297,6 +307,16 @@ class OptionalStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     condition: int | Formula
     """The condition; of constants 0 where it does not hold."""
     step: AnyStep
+
+    @cached_property
+    def known_size(self) -> int | None:
+        """Bytes of every such value, where that tells the places behind it; None where it does not.
+
+        Numbers of as many digits as they need are read up to where they end, whatever their size.
+        """
+        steps = every_step([cast("AnyStep", self)])
+        is_free = any(isinstance(it, IntegerStep) and it.type.is_free for it in steps)
+        return None if is_free else self.sizes.fixed
 
     @property
     def fills(self) -> bool:

@@ -360,7 +360,7 @@ class Checker(CheckedWalk):
 
     def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Elements."""
-        element, size = step.element, step.element.sizes.fixed
+        element, size = step.element, step.element.known_size
         if step.count.fills:
             self._filling(step, place)
         elif size is not None and not element.can_be_wrong:
@@ -434,7 +434,7 @@ class Checker(CheckedWalk):
         if self._fixed:
             return
         self._settle()
-        size, count = step.element.sizes.fixed, step.count
+        size, count = step.element.known_size, step.count
         if size and not self._needs and not step.element.can_be_wrong:
             self._filling_of(size, count)
             return
@@ -474,7 +474,7 @@ class Checker(CheckedWalk):
         if isinstance(step.selector, int):
             super().choose(step, place)
             return
-        with self._joined(step.sizes.fixed):
+        with self._joined(step.known_size):
             super().choose(step, place)
 
     def optional(self, step: OptionalStep, place: str) -> None:
@@ -483,7 +483,7 @@ class Checker(CheckedWalk):
         if isinstance(step.condition, int):
             super().optional(step, place)
             return
-        with self._joined(step.sizes.fixed):
+        with self._joined(step.known_size):
             super().optional(step, place)
 
     @contextmanager
@@ -510,7 +510,7 @@ class Checker(CheckedWalk):
     def end_branch(self, step: ChooseStep | OptionalStep) -> None:
         """Make clear where this way has ended."""
         self._flush()
-        if step.sizes.fixed is None:
+        if step.known_size is None:
             self._settle()
         else:
             self._require(0)

@@ -136,7 +136,7 @@ class Load(PlacedWalk):
 
     def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Elements."""
-        element, size = step.element, step.element.sizes.fixed
+        element, size = step.element, step.element.known_size
         if step.count.fills:
             self._filling(step, place, str(count))
         elif is_bytes(element):

@@ -254,6 +254,8 @@ class _Codec:
     def _load(self) -> str:
         lines = Lines()
         Load(self._printer.helpers, lines).message(self._item.plan)
+        if self.fixed is not None and not self._item.plan.has_one_spelling:
+            lines.put_first(f"const size_t size = {self.fixed}U;")
         if not self._item.plan.holds_values:
             lines.add("message->unused = 0U;")
         return self._function("load", lines)

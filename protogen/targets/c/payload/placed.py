@@ -91,7 +91,7 @@ class PlacedWalk(Walk):
 
     def elements(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Walk over elements one by one."""
-        element, size = step.element, step.element.sizes.fixed
+        element, size = step.element, step.element.known_size
         if size is None:
             self.settle()
             with self.loop(count) as index:
@@ -119,7 +119,7 @@ class PlacedWalk(Walk):
     @contextmanager
     def _joined(self, step: ChooseStep | OptionalStep, *, is_known: bool) -> Iterator[None]:
         """Several ways, which go on together unless nothing follows."""
-        size = step.sizes.fixed
+        size = step.known_size
         joins = not step.is_last and not is_known
         if joins and size is None:
             self.settle()
@@ -139,5 +139,5 @@ class PlacedWalk(Walk):
 
     def end_branch(self, step: ChooseStep | OptionalStep) -> None:
         """Settle where this way has ended, if something follows."""
-        if not step.is_last and step.sizes.fixed is None:
+        if not step.is_last and step.known_size is None:
             self.settle()
