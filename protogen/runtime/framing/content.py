@@ -36,6 +36,9 @@ class Content:
     def __init__(self, sender: SenderSpec[Any, Any]) -> None:
         self._sender = sender
         self._layout = sender.layout
+        around = self._layout.head_size + self._layout.tail_size(1)
+        self._room = sender.frame.greatest - around
+        """Bytes that a payload has at most in a frame that a decoder takes."""
         self.bytes = bytearray()
         self.numbers: dict[str, int] = {}
         """The values of the parts that were read."""
@@ -203,7 +206,7 @@ class Content:
         try:
             self._set_payload(self._group.measure(start))
         except PayloadFault as error:
-            if not error.missing:
+            if not error.missing or len(start) + error.missing > self._room:
                 raise Rejected(error.reason, error.problem) from None
             self._next = len(self.bytes) + error.missing
             return
