@@ -247,8 +247,8 @@ def test_a_torrent_of_noise_fills_no_memory(path: Path) -> None:
     held, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     # 18,000 bytes went through; what stays is less than a few frames with what Python needs.
-    assert held < 7_000
-    assert peak < 70_000
+    assert held < 6_000
+    assert peak < (70_000 if path.stem == "packed_bits" else 60_000)  # Its frames are the smallest.
 
 
 WITH_STARTS = [

@@ -53,7 +53,8 @@ def test_a_judge_says_what_a_candidate_says(path: Path, name: str) -> None:
             told += 1
             due = by_candidate(sender, data, is_all)
             assert found == (due.size if isinstance(due, Cut) else due), (data.hex(" "), is_all)
-    assert told > tried / 20
+    # What damages those texts, a candidate has to judge in most cases.
+    assert told > tried / (20 if path.stem == "text_parts" else 5)
 
 
 FRAME = (

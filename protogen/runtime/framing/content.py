@@ -36,9 +36,6 @@ class Content:
     def __init__(self, sender: SenderSpec[Any, Any]) -> None:
         self._sender = sender
         self._layout = sender.layout
-        around = self._layout.head_size + self._layout.tail_size(1)
-        self._room = sender.frame.greatest - around
-        """Bytes that a payload has at most in a frame that a decoder takes."""
         self.bytes = bytearray()
         self.numbers: dict[str, int] = {}
         """The values of the parts that were read."""
@@ -198,6 +195,12 @@ class Content:
         if self._group is not None:
             tail = self._layout.tail_size(self._group.greatest)
             self.limit = self._layout.head_size + self._group.greatest + tail
+
+    @property
+    def _room(self) -> int:
+        """Bytes that a payload has at most in a frame that a decoder takes."""
+        around = self._layout.head_size + self._layout.tail_size(1)
+        return self._sender.frame.greatest - around
 
     def _measure(self) -> None:
         """Try to read a message that nothing delimits but itself."""

@@ -48,6 +48,8 @@ class Load(PlacedWalk):
     def __init__(self, helpers: Helpers, lines: Lines) -> None:
         super().__init__(helpers, lines, "const uint8_t *")
         self._lengths = 0  # Variables for the lengths of texts.
+        self.reads_size = False
+        """True once something was read whose end the payload's size tells."""
 
     def pointed(self, plan: PayloadPlan, base: str) -> None:
         """Take a record that lies where there is an `at` already; what counts is in it."""
@@ -127,6 +129,7 @@ class Load(PlacedWalk):
 
     def _left(self) -> str:
         """The number of bytes that are left."""
+        self.reads_size = True
         left = "size" if self._name == "payload" else "(size_t)(payload + size - at)"
         return f"{left} - {self._offset}U" if self._offset else left
 

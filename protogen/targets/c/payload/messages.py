@@ -7,7 +7,6 @@ What the rest of the generated file uses of them is static: `validate`, `measure
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 import msgspec
@@ -121,10 +120,6 @@ class MessagePrinter(msgspec.Struct, frozen=True):
     def senders_of(self, item: Message) -> list[Sender]:
         """Those of the message's senders that are printed."""
         return list(self.protocol.senders_of(item))
-
-
-_SIZE = re.compile(r"(?<![>.])\bsize\b")
-"""The variable, and no member of that name."""
 
 
 class _Codec:
@@ -258,8 +253,9 @@ class _Codec:
 
     def _load(self) -> str:
         lines = Lines()
-        Load(self._printer.helpers, lines).message(self._item.plan)
-        if self.fixed is not None and any(map(_SIZE.search, lines.lines)):
+        load = Load(self._printer.helpers, lines)
+        load.message(self._item.plan)
+        if self.fixed is not None and load.reads_size:
             lines.put_first(f"const size_t size = {self.fixed}U;")
         if not self._item.plan.holds_values:
             lines.add("message->unused = 0U;")
