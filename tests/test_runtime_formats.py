@@ -15,7 +15,7 @@ from typing import Any
 
 import construct
 import pytest
-from compiled import SCHEMAS, module_at, name_of
+from compiled import SCHEMAS, module_at, name_of, protocol_of
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -33,7 +33,8 @@ VALUES_OF_WIRE = {"x": -2, "y": 0x82}
 @pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
 @given(data=st.data())
 def test_what_a_format_parses_it_builds_compiled_or_not(path: Path, data: Any) -> None:
-    message = data.draw(st.sampled_from(list(module_at(path).MESSAGES.values())))
+    described = data.draw(st.sampled_from(protocol_of(path).messages))
+    message = module_at(path).MESSAGES[described.name]
     least, greatest = message.SIZES.least, message.SIZES.greatest
     wire = data.draw(st.binary(min_size=least, max_size=min(greatest, least + 40)))
     wire = bytes(byte & 0x7F for byte in wire) if data.draw(st.booleans()) else wire
@@ -46,7 +47,9 @@ def test_what_a_format_parses_it_builds_compiled_or_not(path: Path, data: Any) -
     assert repr(compiled.parse(wire)) == repr(parsed)
     built = message.FORMAT.build(parsed)
     assert compiled.build(parsed) == built
-    assert built == wire or "nan" in repr(parsed)  # Python makes signalling ones quiet.
+    if described.plan.has_one_spelling:
+        assert built == wire or "nan" in repr(parsed)  # Python makes signalling ones quiet.
+    assert repr(c.Whole(message.FORMAT).parse(built)) == repr(parsed)
 
 
 def test_a_float_is_no_integer() -> None:
