@@ -62,14 +62,18 @@ def frame_of(path: Path, sender: str, message: str, values: Values, parts: Value
     return frame
 
 
+def refusal(path: Path, sender: str) -> int:
+    """What C answers where no frame can carry a payload: it is too large, or has the end in it."""
+    return RANGE if protocol_of(path).sender(sender).framing.is_cut_off else VALUE
+
+
 @EVERY_MESSAGE
 def test_a_frame_has_the_bytes_that_python_makes(path: Path, sender: str, message: str) -> None:
     process = process_of(path)
     for values, parts, frame in frames_of(path, sender, message):
         made = process.do(process.calls.frame(sender, message, values, parts))
         assert made.intact
-        is_cut_off = protocol_of(path).sender(sender).framing.is_cut_off
-        refused = (RANGE if is_cut_off else VALUE, b"")
+        refused = (refusal(path, sender), b"")
         assert (made.result, made.data) == (refused if frame is None else (OK, frame))
 
 

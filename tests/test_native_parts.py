@@ -505,12 +505,15 @@ def joined(library: Library, data: memoryview, middle: int, engine: NativeEngine
 def test_a_part_joins_the_one_in_front_while_it_is_decoded(path: Path, sender: str) -> None:
     """It is told where that one stopped, and numbers on whatever it had found until then."""
     library = library_of(protocol_of(path), protocol_of(path).sender(sender))
+    plan = protocol_of(path).sender(sender).plan
     material = material_of(path, sender, greatest=3000)
     found = []
     for seed in SEEDS[:4]:
         data = memoryview(stream_of(material, Random(f"{path.stem} {sender} {seed}"), 800).data)
         found.append(joined(library, data, len(data) // 2, NativeEngine(library)))
-    assert any(found)
+    # What begins anywhere meets the frames again, but not where their place alone tells them.
+    is_told = plan.start_words or plan.end_bytes or plan.checksums
+    assert any(found) or not is_told
 
 
 def test_a_part_that_joined_may_become_full() -> None:

@@ -323,9 +323,9 @@ def _fill(draw: st.DrawFn, setting: Setting) -> Built:
     else:
         most = setting.room // each
         extent = draw(st.sampled_from(["fill", {"fill": True}]))
-    least = 0
-    if isinstance(extent, dict) and min(most, setting.budget // each) > 2 and draw(forms.one_in(3)):
-        least = extent["min"] = draw(st.integers(0, min(most, setting.budget // each) - 2))
+    least, room = 0, min(most, setting.budget // each) - 2
+    if isinstance(extent, dict) and room > 0 and draw(st.booleans()):
+        least = extent["min"] = draw(st.integers(1, room))
     built = draw(_extended(element, extent, Size(least, most)))
     return replace(built, fills=True)
 
