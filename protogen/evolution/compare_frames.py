@@ -195,7 +195,7 @@ def _default(part: Part) -> int | str | None:
 
 def _layout(type: PartType) -> tuple[object, ...]:
     """Layout of its bytes; how the number is shown does not count."""
-    return type.bits, type.signed, type.byte_bits, type.byte_order
+    return type.bits, type.signed, type.byte_bits, type.byte_order, type.text
 
 
 def _sum(algorithm: ChecksumSpec) -> object:

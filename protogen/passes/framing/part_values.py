@@ -24,7 +24,7 @@ def text_type(context: Context, loc: Loc, item: Part, byte_bits: Literal[7, 8]) 
         if getattr(item, key) is not None:
             text = f"`{key}` is for a number, and this part is a text"
             context.error("PG192", (*loc, key), text, "give it a type such as `uint8`")
-    for key in ("range", "byte_order"):
+    for key in ("range", "byte_order", "digits", "chars", "code"):
         if getattr(item, key) is not None:
             context.error("PG192", (*loc, key), f"a text has no `{key}`", f"leave out `{key}`")
     if context.tally.errors > before or item.size is None:

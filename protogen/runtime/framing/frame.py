@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from protogen.runtime.checksum import Checksum
 from protogen.runtime.payload.number import Number
+from protogen.runtime.payload.numerals import Numeral
 from protogen.runtime.transparency import Transparency
 from protogen.runtime.values import Frozen
 
@@ -32,7 +33,7 @@ class IdentityPart(NamedTuple):
     """Tells, alone or with others, which message the frame carries."""
 
     name: str
-    number: Number
+    number: Number | Numeral
 
     @property
     def size(self) -> int:
@@ -47,7 +48,7 @@ class LengthPart(NamedTuple):
     """
 
     name: str
-    number: Number
+    number: Number | Numeral
     counts: tuple[str, ...]
     least: int
     greatest: int
@@ -65,7 +66,7 @@ class ValuePart(NamedTuple):
     """
 
     name: str
-    number: Number
+    number: Number | Numeral
     least: int
     greatest: int
     default: int | None = None
@@ -104,7 +105,7 @@ class ChecksumPart(NamedTuple):
     """A checksum of other parts: of their bytes before any stuffing, or as they are on the wire."""
 
     name: str
-    number: Number
+    number: Number | Numeral
     algorithm: Checksum
     covers: tuple[str, ...]
     over_wire: bool = False

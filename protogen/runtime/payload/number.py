@@ -110,7 +110,7 @@ class Characters(Number):
         return self.decode(text.encode("latin-1").ljust(self.size, b"\0"))
 
 
-def given_number(number: Number, value: object) -> int:
+def given_number(number: object, value: object) -> int:
     """The number that a caller gives, which may be a text. Raises EncodeError."""
     return number.number(value) if isinstance(number, Characters) else as_integer(value)
 

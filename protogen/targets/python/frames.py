@@ -24,6 +24,7 @@ from protogen.model.frame import (
 from protogen.model.framing import AfterEnd, Anywhere, End, Start, StartLiteral, StartSet
 from protogen.model.protocol import Sender
 from protogen.model.types import Integer
+from protogen.targets.python.formats import numeral
 from protogen.targets.python.literals import call, mapping, octets, text, tuple_of
 
 
@@ -56,6 +57,8 @@ def number(type_: Integer) -> str:
     if type_.is_text:
         seven_bits = "True" if type_.byte_bits == 7 else None
         return call("_rt.Characters", str(type_.size), seven_bit=seven_bits)
+    if type_.text is not None:
+        return numeral(type_)
     order = text(type_.byte_order) if type_.size > 1 else None
     seven = "True" if type_.byte_bits == 7 else None
     return call("_rt.Number", str(type_.bits), order=order, seven_bit=seven)

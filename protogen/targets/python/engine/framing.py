@@ -395,4 +395,4 @@ def _is_packed(part: Part) -> bool:
 
 
 def _is_plain(type_: Integer) -> bool:
-    return type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64)
+    return type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64) and type_.text is None
