@@ -191,7 +191,12 @@ class Maker:
     def identity(self, name: str, keys: dict[str, Any], type_: PartType) -> PartPlan:
         """An identity part of which all but its place is known."""
         bounds = identity_bounds(keys, type_)
-        return PartPlan(name, "id", keys, type_.bytes_between(*bounds), type=type_, bounds=bounds)
+        values = type_.bytes_between(0, type_.greatest)
+        if type_.type != "ascii":
+            values = type_.bytes_between(*bounds)
+        elif "range" in keys:
+            values = (frozenset(range(bounds[0], bounds[1] + 1)),) * type_.size
+        return PartPlan(name, "id", keys, values, type=type_, bounds=bounds)
 
     def text(self) -> tuple[PartType, dict[str, Any]]:
         """The type of a text, and the keys that say so."""
@@ -202,13 +207,19 @@ class Maker:
     def _text_part(self, role: str, **more: Any) -> PartPlan:
         type_, keys = self.text()
         keys.update(more)
+        each = (1 << self._byte_bits) - 1
+        first, last, values = 0, 0x7F, (frozenset(range(each + 1)),) * type_.size
+        if self._draw(forms.one_in(3)):
+            first = self._draw(st.integers(0, 0x60))
+            last = self._draw(st.integers(first + 6, 0x7F))
+            keys["range"] = [
+                self._draw(forms.raw_number(end, character=True)) for end in (first, last)
+            ]
+            values = (frozenset(range(first, last + 1)),) * type_.size
         if role == "value" and self._draw(st.booleans()):
-            keys["default"] = self._draw(characters(type_.size))
+            keys["default"] = self._draw(characters(type_.size, first, last))
         keys.update(self._draw(forms.about()))
-        bounds = (0, type_.greatest)
-        return PartPlan(
-            self.name(), role, keys, type_.bytes_between(*bounds), type=type_, bounds=bounds
-        )
+        return PartPlan(self.name(), role, keys, values, type=type_, bounds=(first, last))
 
     def new_identity(self, *, start: bool = False) -> PartPlan:
         """An identity part; `start`: its range sets it apart from 7-bit bytes."""
@@ -282,9 +293,10 @@ def _adds_words(algorithm: Any) -> bool:
     return bool(algorithm.get("words")) or algorithm.get("xor", 0) > 8
 
 
-def characters(size: int) -> st.SearchStrategy[str]:
-    """Texts of exactly so many ASCII characters."""
-    return st.text(st.characters(max_codepoint=0x7F), min_size=size, max_size=size)
+def characters(size: int, first: int, last: int) -> st.SearchStrategy[str]:
+    """Texts of exactly so many characters between two."""
+    each = st.characters(min_codepoint=first, max_codepoint=last)
+    return st.text(each, min_size=size, max_size=size)
 
 
 def is_text(part: PartPlan) -> bool:
@@ -311,7 +323,7 @@ def identity_values(part: PartPlan) -> st.SearchStrategy[int]:
     type_ = part.type
     assert type_ is not None
     if type_.type == "ascii":
-        return characters(type_.size).map(lambda text: number_of(text, type_))
+        return characters(type_.size, *part.bounds).map(lambda text: number_of(text, type_))
     return st.integers(*part.bounds)
 
 
@@ -326,7 +338,7 @@ def _sum_bounds(algorithm: Any, width: int, greatest: int) -> tuple[int, int]:
 def identity_bounds(keys: dict[str, Any], type_: PartType) -> tuple[int, int]:
     """The range of an identity part as numbers."""
     if "range" not in keys:
-        return 0, type_.greatest
+        return 0, 0x7F if type_.type == "ascii" else type_.greatest
     least, greatest = (ord(end) if isinstance(end, str) else end for end in keys["range"])
     return least, greatest
 

@@ -46,7 +46,7 @@ from protogen.passes.framing.part_digits import (
     too_few_digits,
 )
 from protogen.passes.framing.part_runs import written_out
-from protogen.passes.framing.part_values import number_of, text_type
+from protogen.passes.framing.part_values import number_of, text_bounds, text_type
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width
@@ -207,8 +207,8 @@ class FrameBuilder:
         if item.default is None:
             return None
         default = number_of(self._context, loc, part, item.default)
-        if default is not None and not part.least <= default <= part.greatest:
-            text = f"{default} is out of {part.least} to {part.greatest}"
+        if default is not None and not part.holds(default):
+            text = f"{part.shown(default)} is out of {part.allowed}"
             self._context.error("PG114", loc, text)
         return default
 
@@ -265,6 +265,8 @@ class FrameBuilder:
         return found
 
     def _range(self, name: str, item: PartSyntax, type_: PartType) -> tuple[int, int]:
+        if type_.is_text:
+            return text_bounds(self._context, (*self._loc, name), item, type_)
         if item.range is None:
             return type_.least, type_.greatest
         least, greatest = item.range

@@ -70,11 +70,13 @@ def part_bytes(part: Part, payload: ByteSet) -> tuple[ByteSet, ...]:
 def _number_bytes(part: TypedPart, least: int, greatest: int) -> tuple[ByteSet, ...]:
     """The range bounds the number's most significant byte, and all of it if it is one byte.
 
-    Of digits it bounds each.
+    Of digits it bounds each, and so it does of the characters of a text.
     """
     type_ = part.type
     if isinstance(type_.text, Numeral):
         return _digits(type_.text, least, greatest)
+    if isinstance(part, NumberPart) and part.between is not None:
+        return (frozenset(range(part.between[0], part.between[1] + 1)),) * type_.size
     every = SEVEN_BITS if type_.byte_bits == 7 else EVERY_BYTE
     shift = type_.byte_bits * (type_.size - 1)
     top = frozenset(range(least >> shift, (greatest >> shift) + 1))

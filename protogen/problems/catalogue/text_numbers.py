@@ -13,10 +13,10 @@ TEXT_NUMBER_CODES: tuple[Code, ...] = (
         """\
 `digits` (base10, base16-upper, base16-lower) and `code` (some bits in each character) say how an
 integer such as `uint16`, a field or a part of a frame, is written as text; `chars` says in how many
-characters. An integer has one of `digits` and `code`. Characters, booleans, floats and texts have no
-digits, and neither have packed integers and bytes of 7 bits. The types `decimal` and `hexadecimal` are written in as many
-digits as the number needs: their `digits` are a number, only a decimal has a `fraction`, only a
-hexadecimal one a `case`, and neither a `const`.
+characters. An integer has one of `digits` and `code`. Characters, booleans, floats and texts have
+no digits, and neither have packed integers and bytes of 7 bits. The types `decimal` and
+`hexadecimal` are written in as many digits as the number needs: their `digits` are a number, only a
+decimal has a `fraction`, only a hexadecimal one a `case`, and neither a `const`.
 """,
         with_fields("level: {type: uint8, chars: 3}"),
         with_fields("level: {type: uint8, digits: base10, chars: 3}"),

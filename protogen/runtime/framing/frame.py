@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from protogen.runtime.checksum import Checksum
-from protogen.runtime.payload.number import Number
+from protogen.runtime.payload.number import Characters, Number
 from protogen.runtime.payload.numerals import Numeral
 from protogen.runtime.transparency import Transparency
 from protogen.runtime.values import Frozen
@@ -79,13 +79,20 @@ class ValuePart(NamedTuple):
 
     def holds(self, value: int) -> bool:
         """True if the value is one that the part can have."""
-        return value in self.values if self.values else self.least <= value <= self.greatest
+        if self.values:
+            return value in self.values
+        number = self.number
+        is_text = not isinstance(number, Characters) or number.holds(value)
+        return self.least <= value <= self.greatest and is_text
 
     @property
     def allowed(self) -> str:
         """Values that the part can have, in words."""
         if self.values:
             return f"one of {', '.join(f'0x{value:02X}' for value in self.values)}"
+        number = self.number
+        if isinstance(number, Characters) and number.between:
+            return f"a text of {number.allowed}"
         return f"in {self.least}..{self.greatest}"
 
 

@@ -206,7 +206,10 @@ class Part(Syntax):
         None,
         description="The part is present only in frames whose payload is not empty.",
     )
-    range: RawRange | None = Field(None, description="Least and greatest value of the part.")
+    range: RawRange | None = Field(
+        None,
+        description="Least and greatest value of the part; of a text, of each of its characters.",
+    )
     default: PartValue | None = Field(
         None, description="What an encoder writes where the caller gives no value."
     )

@@ -114,10 +114,22 @@ def _number(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberVi
 def _out_of_bounds(part: NumberPart, value: str) -> str:
     if isinstance(part, ChoicePart):
         return none_of(part, value)
+    if part.between is not None:
+        return has_others(part, part.between, value)
     conditions = [f"{value} < {part.least}U"] if part.least > part.type.least else []
     if part.greatest < part.type.greatest:
         conditions.append(f"{value} > {part.greatest}U")
     return " || ".join(conditions)
+
+
+def has_others(part: NumberPart, between: tuple[int, int], value: str) -> str:
+    """The condition that some character of a text is not between these two."""
+    (first, last), bits, found = between, part.type.byte_bits, []
+    for place in range(part.type.size - 1, -1, -1):
+        character = f"(uint8_t)({value} >> {bits * place} & {hexadecimal((1 << bits) - 1)})"
+        found += [f"{character} < {hexadecimal(first)}"] if first > 0 else []
+        found += [f"{character} > {hexadecimal(last)}"] if last < (1 << bits) - 1 else []
+    return " || ".join(found)
 
 
 def none_of(part: ChoicePart, value: str) -> str:
