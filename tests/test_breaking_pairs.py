@@ -95,6 +95,7 @@ KINDS: dict[str, Data] = {
 
 PARTS: dict[str, Data] = {
     "choice of literals": {"literal": {"any_of": [0x10, 0x20], "default": 0x10}},
+    "digits of a part": {"type": "uint8", "digits": "base16-upper", "default": 0},
 }
 """The part `number` of the frame, around the fields of `uint8`."""
 
@@ -383,6 +384,22 @@ def of_parts() -> Iterator[Pair]:
          "old receivers refuse other numbers"),
         ("choice of literals", "one", number(literal=0x10), "WIRE",
          "new receivers refuse the other"),
+        ("digits of a part", "case", frame("number", digits="base16-lower"), "WIRE",
+         "letters are others"),
+        ("digits of a part", "base", frame("number", digits="base10"), "WIRE",
+         "the payload moves"),
+        ("digits of a part", "chars", frame("number", chars=3), "WIRE", "the payload moves"),
+        ("digits of a part", "code", number(type="uint8", code={"bits": 4, "add": 0x30}), "WIRE",
+         "ten is a colon, and no A"),
+        ("digits of a part", "width", frame("number", type="uint7"), "WIRE",
+         "new receivers refuse 80 to FF"),
+        ("digits of a part", "no text", number(type="uint8", default=0), "WIRE",
+         "one byte instead of two digits"),
+        ("digits of a part", "needed chars", frame("number", chars=2), "PASS", "two are needed"),
+        ("digits of a part", "range", frame("number", range=[0, 100]), "PASS",
+         "receivers take any number"),
+        ("uint8", "crc in digits", frame("crc", digits="base16-upper", byte_order=None), "WIRE",
+         "four digits instead of two bytes"),
         ("uint8", "several starts", lambda d: (
             d["frame"]["start"].update(literal={"any_of": [0xAA, 0xAC]}),
             d["transparency"]["escape"].update(of=[0xAA, 0xAB, 0xAC]),

@@ -111,7 +111,9 @@ AWAITED_BY_THE_REFERENCE = {
     ("cobs", "station"),  # What a COBS group stands for is not clear before its end.
     ("hdlc", "station"),  # One flag ends a frame and starts the next.
     ("hdlc_lenient", "station"),
-    ("separated_line", "receiver"),  # Fields that separators end are left to the reference.
+    ("separated_line", "receiver"),  # Behind the payload stands something that is no checksum.
+    ("digit_parts", "station"),
+    ("digit_lengths", "station"),
     ("slip", "station"),
     ("told_numbers", "station"),
     ("told_presence", "station"),

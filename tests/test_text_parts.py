@@ -19,6 +19,7 @@ from tooling import require_tool
 from protogen.runtime.api import EncodeError
 
 SCHEMA = ROOT / "tests" / "framings" / "text_parts.yaml"
+BOUNDED = ROOT / "tests" / "framings" / "bounded_texts.yaml"
 ENGINES = ["fast", "construct"]
 PING = bytes.fromhex("24 57 49 50 49 4E 2A 41 22 0D 0A")
 """Of the station WI, with *A: worked out in tests/vectors/text_parts.yaml."""
@@ -66,6 +67,16 @@ def test_only_lenient_encoding_takes_what_is_not_ascii(station: Any, engine: str
     wire = station.encode(station.Ping(), strict=False, engine=engine, talker="Gÿ")
     (event,) = station.Decoder("station", engine=engine).feed(wire)
     assert event.parts.talker == "Gÿ"
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("tag", ["aBc", "ab", "a{b", "ab\0"])
+def test_a_text_has_its_characters_in_range(engine: str, tag: str) -> None:
+    module: Any = module_at(BOUNDED)
+    assert module.encode(module.Ping(), engine=engine, tag="zaz")[1:4] == b"zaz"
+    for strict in (True, False):  # A receiver refuses others, as a start can stand in the data.
+        with pytest.raises(EncodeError, match="is not a text of 3 characters from a to z"):
+            module.encode(module.Ping(), strict=strict, engine=engine, tag=tag)
 
 
 def test_lines_of_json_have_the_texts(station: Any) -> None:

@@ -119,7 +119,7 @@ class _Frames:
 
     def _range(self, old: NumberPart, new: NumberPart) -> Change:
         """Receivers hold a length to its range, and other numbers where that finds starts."""
-        words = named(f"{old.least}..{old.greatest}", f"{new.least}..{new.greatest}")
+        words = named(*(f"{it.shown(it.least)}..{it.shown(it.greatest)}" for it in (old, new)))
         if _refuses(self._old, old, new) or _refuses(self._new, new, old):
             return self._change("frame-value-range", old.name, words)
         if not isinstance(old, LengthPart):
@@ -195,7 +195,7 @@ def _default(part: Part) -> int | str | None:
 
 def _layout(type: PartType) -> tuple[object, ...]:
     """Layout of its bytes; how the number is shown does not count."""
-    return type.bits, type.signed, type.byte_bits, type.byte_order
+    return type.bits, type.signed, type.byte_bits, type.byte_order, type.text
 
 
 def _sum(algorithm: ChecksumSpec) -> object:

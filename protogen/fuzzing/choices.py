@@ -60,12 +60,17 @@ def part_choices(part: CounterPart | ValuePart) -> Choices:
         values = tuple(map(part.shown, part.values))
         return Choices(values, lambda random: random.choice(values))
     if part.type.is_text:
-        return _text_part_choices(part.type.size)
+        return _text_part_choices(part.type.size, part.between)
     least, greatest = part.least, part.greatest
     return Choices((least, greatest), lambda random: random.randint(least, greatest))
 
 
-def _text_part_choices(size: int) -> Choices:
+def _text_part_choices(size: int, between: tuple[int, int] | None) -> Choices:
+    if between is not None:
+        ends = [chr(character) * size for character in between]
+        return Choices(
+            ends, lambda random: "".join(chr(random.randint(*between)) for _ in range(size))
+        )
     texts = [character * size for character in ("A", "\n", chr(_LAST_OF_ASCII))]
     return Choices(["", *texts], lambda random: _any_text(random, random.randint(0, size)))
 

@@ -9,6 +9,7 @@ import msgspec
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.origin import NOTHING, About
 from protogen.model.types import Integer, characters, codec
+from protogen.runtime.payload.number import shown_character
 
 PartType = Integer
 """Type of a part that is a number: an integer of whole bytes, in wire order."""
@@ -73,7 +74,29 @@ class NumberPart(TypedPart, frozen=True, kw_only=True):
 
     least: int
     greatest: int
-    """Bounds of the raw value, both included."""
+    """Bounds of the raw value, both included; of a text, those of each character, repeated."""
+
+    @property
+    def between(self) -> tuple[int, int] | None:
+        """The least and the greatest character of a text; None where it may have any."""
+        if not self.type.is_text or not self.is_bounded:
+            return None
+        mask = (1 << self.type.byte_bits) - 1
+        return self.least & mask, self.greatest & mask
+
+    @property
+    def allowed(self) -> str:
+        """The bounds in words."""
+        if self.between is None:
+            return f"{self.least} to {self.greatest}"
+        return f"{self.type.size} characters from {' to '.join(map(shown_character, self.between))}"
+
+    def holds(self, value: int) -> bool:
+        """True if a value is in bounds: a text, if each of its characters is."""
+        if self.between is None:
+            return self.least <= value <= self.greatest
+        first, last = self.between
+        return all(first <= character <= last for character in self.encode(value))
 
     @property
     def is_bounded(self) -> bool:
@@ -113,6 +136,10 @@ class ChoicePart(ValuePart, frozen=True, kw_only=True):
     def values(self) -> tuple[int, ...]:
         """The literals as numbers, in the same order."""
         return tuple(map(codec(self.type).decode, self.words))
+
+    @property
+    def between(self) -> None:
+        """None: literals may have any characters."""
 
     @property
     def is_bounded(self) -> bool:

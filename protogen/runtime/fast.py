@@ -66,7 +66,10 @@ def text(characters: Characters) -> Callable[[Any], int]:
     def number(value: Any) -> int:
         if type(value) is not str or not value.isascii():
             raise NeedsReference
-        return characters.number(value)
+        found = characters.number(value)
+        if not characters.holds(found):
+            raise NeedsReference
+        return found
 
     return number
 

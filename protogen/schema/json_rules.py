@@ -84,6 +84,11 @@ def _each(inner: JsonObject) -> JsonObject:
     return {"additionalProperties": inner}
 
 
+_ONE_KIND_OF_DIGITS: JsonObject = {
+    "$comment": "An integer is written as digits, or as characters of a code.",
+    "not": _with("digits", "code"),
+}
+
 _FIELD_RULES = (
     _one_of("A field has a type, or is a struct of fields, or a switch.", ("type", *_FORMS)),
     _together("A switch has cases.", {"cases": ["switch"], "switch": ["cases"]}),
@@ -109,10 +114,7 @@ _FIELD_RULES = (
         "Only integers have digits.",
         _none_of(_WRITTEN),
     ),
-    {
-        "$comment": "An integer is written as digits, or as characters of a code.",
-        "not": _with("digits", "code"),
-    },
+    _ONE_KIND_OF_DIGITS,
     _where(_with("switch"), "A switch has nothing to pack.", _none_of(("packed",))),
     _where(
         {**_type_like(f"{INTEGER_PATTERN}|byte|char|bool"), "required": ["type", "packed"]},
@@ -156,6 +158,8 @@ _PART_RULES = (
         "Only a choice of literals can be a text.",
         {"properties": {"literal": {"type": "object"}, "type": {"const": "ascii"}}},
     ),
+    _where(_type_like("byte|char|ascii"), "Only integers have digits.", _none_of(_WRITTEN)),
+    _ONE_KIND_OF_DIGITS,
     _where(_with("size"), "Only a text has a size.", {"properties": {"type": {"const": "ascii"}}}),
     _where(_with("algorithm"), "A checksum says what it covers.", _with("covers")),
     _where(

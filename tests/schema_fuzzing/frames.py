@@ -381,7 +381,7 @@ class _Drawing:
             and self._draw(st.booleans())
         ]  # fmt: skip
         counted = sum(part.size for part in others)
-        type_, keys = self._maker.type(least_greatest=counted + 12)
+        type_, keys = self._maker.type(least_greatest=counted + 18)
         counted += type_.size if itself else 0
         names = {part.name for part in others} | {"payload"}
         names |= {parts[place].name} if itself else set()

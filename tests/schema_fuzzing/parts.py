@@ -12,6 +12,7 @@ from protogen.copying import replace
 from schema_fuzzing import forms
 from schema_fuzzing.names import PARTS, fresh
 from schema_fuzzing.numbers import ORDERS
+from schema_fuzzing.part_digits import ONE_OF_16, Digits, digits_of
 
 ALGORITHMS = (
     ("xor-8", 8), ("sum-8", 8), ("sum-8/negated", 8), ("fletcher-16", 16), ("fletcher-16/256", 16),
@@ -34,17 +35,26 @@ class PartType:
     bits: int
     byte_bits: int
     order: str
+    digits: Digits | None = None
 
     @property
     def size(self) -> int:
+        if self.digits is not None:
+            return self.digits.size
         return -(-self.bits // self.byte_bits)
 
     @property
     def greatest(self) -> int:
-        return (1 << self.bits) - 1
+        greatest = (1 << self.bits) - 1
+        return greatest if self.digits is None else min(greatest, self.digits.greatest)
 
     def bytes_between(self, least: int, greatest: int) -> tuple[frozenset[int], ...]:
-        """Range of each byte: the bounds tell of the most significant one, of others nothing."""
+        """Range of each byte: the bounds tell of the most significant one, of others nothing.
+
+        Of digits they tell of each.
+        """
+        if self.digits is not None:
+            return self.digits.bytes_between(least, greatest)
         shift = self.byte_bits * (self.size - 1)
         top = frozenset(range(least >> shift, (greatest >> shift) + 1))
         rest = (frozenset(range(1 << self.byte_bits)),) * (self.size - 1)
@@ -126,6 +136,8 @@ class Maker:
         names += [(f"uint{width}", width) for width in (self._byte_bits, 8, 8, 12, 16)]
         if bits is not None:
             names = [item for item in names if item[1] == bits] or [(f"uint{bits}", bits)]
+        if self._byte_bits == 8 and self._draw(forms.one_in(5)):
+            return self._digits(bits, one_byte=one_byte, least_greatest=least_greatest)
         if one_byte:
             names = [item for item in names if item[1] <= self._byte_bits or item[0] == "byte"]
         names = [item for item in names if (1 << item[1]) > least_greatest]
@@ -136,6 +148,21 @@ class Maker:
         if -(-width // byte_bits) > 1 and (order is None or self._draw(forms.one_in(4))):
             order = keys["byte_order"] = self._draw(ORDERS)
         return PartType(name, width, byte_bits, order or "little"), keys
+
+    def _digits(
+        self, bits: int | None, *, one_byte: bool, least_greatest: int
+    ) -> tuple[PartType, dict[str, Any]]:
+        """The type of a number that is written as digits."""
+        if one_byte:
+            kind = self._draw(st.sampled_from(["base16-upper", "base16-lower"]))
+            type_, keys = PartType("uint4", 4, 8, "little", ONE_OF_16[kind]), {"digits": kind}
+            return type_, {"type": "uint4", **keys}
+        widths = [width for width in (4, 7, 8, 10, 12, 16, 20) if 1 << width > least_greatest]
+        width = bits or self._draw(st.sampled_from(widths))
+        is_whole = bits is not None or least_greatest > 0
+        digits, keys = self._draw(digits_of(width, whole=is_whole))
+        name = f"uint{width}"
+        return PartType(name, width, 8, "little", digits), {"type": name, **keys}
 
     def number(self, role: str, *, start: bool = False) -> PartPlan:
         """A counter or a value; `start`: one byte with a range, which marks the frame's start."""
@@ -164,7 +191,12 @@ class Maker:
     def identity(self, name: str, keys: dict[str, Any], type_: PartType) -> PartPlan:
         """An identity part of which all but its place is known."""
         bounds = identity_bounds(keys, type_)
-        return PartPlan(name, "id", keys, type_.bytes_between(*bounds), type=type_, bounds=bounds)
+        values = type_.bytes_between(0, type_.greatest)
+        if type_.type != "ascii":
+            values = type_.bytes_between(*bounds)
+        elif "range" in keys:
+            values = (frozenset(range(bounds[0], bounds[1] + 1)),) * type_.size
+        return PartPlan(name, "id", keys, values, type=type_, bounds=bounds)
 
     def text(self) -> tuple[PartType, dict[str, Any]]:
         """The type of a text, and the keys that say so."""
@@ -175,13 +207,19 @@ class Maker:
     def _text_part(self, role: str, **more: Any) -> PartPlan:
         type_, keys = self.text()
         keys.update(more)
+        each = (1 << self._byte_bits) - 1
+        first, last, values = 0, 0x7F, (frozenset(range(each + 1)),) * type_.size
+        if self._draw(forms.one_in(3)):
+            first = self._draw(st.integers(0, 0x60))
+            last = self._draw(st.integers(first + 6, 0x7F))
+            keys["range"] = [
+                self._draw(forms.raw_number(end, character=True)) for end in (first, last)
+            ]
+            values = (frozenset(range(first, last + 1)),) * type_.size
         if role == "value" and self._draw(st.booleans()):
-            keys["default"] = self._draw(characters(type_.size))
+            keys["default"] = self._draw(characters(type_.size, first, last))
         keys.update(self._draw(forms.about()))
-        bounds = (0, type_.greatest)
-        return PartPlan(
-            self.name(), role, keys, type_.bytes_between(*bounds), type=type_, bounds=bounds
-        )
+        return PartPlan(self.name(), role, keys, values, type=type_, bounds=(first, last))
 
     def new_identity(self, *, start: bool = False) -> PartPlan:
         """An identity part; `start`: its range sets it apart from 7-bit bytes."""
@@ -209,6 +247,9 @@ class Maker:
             algorithm, width = self._parameters()
         type_, keys = self.type(width)
         keys["algorithm"] = algorithm
+        needs_order = type_.digits is not None and _adds_words(algorithm)
+        if needs_order and (self._order is None or self._draw(forms.one_in(4))):
+            keys["byte_order"] = self._draw(ORDERS)
         if optional:
             keys["when"] = "payload"
         values = type_.bytes_between(*_sum_bounds(algorithm, width, type_.greatest))
@@ -245,9 +286,17 @@ class Maker:
         return found, width
 
 
-def characters(size: int) -> st.SearchStrategy[str]:
-    """Texts of exactly so many ASCII characters."""
-    return st.text(st.characters(max_codepoint=0x7F), min_size=size, max_size=size)
+def _adds_words(algorithm: Any) -> bool:
+    """True if words are added, whose bytes have an order."""
+    if isinstance(algorithm, str):
+        return algorithm in ("xor-16", "xor-32")
+    return bool(algorithm.get("words")) or algorithm.get("xor", 0) > 8
+
+
+def characters(size: int, first: int, last: int) -> st.SearchStrategy[str]:
+    """Texts of exactly so many characters between two."""
+    each = st.characters(min_codepoint=first, max_codepoint=last)
+    return st.text(each, min_size=size, max_size=size)
 
 
 def is_text(part: PartPlan) -> bool:
@@ -274,7 +323,7 @@ def identity_values(part: PartPlan) -> st.SearchStrategy[int]:
     type_ = part.type
     assert type_ is not None
     if type_.type == "ascii":
-        return characters(type_.size).map(lambda text: number_of(text, type_))
+        return characters(type_.size, *part.bounds).map(lambda text: number_of(text, type_))
     return st.integers(*part.bounds)
 
 
@@ -289,7 +338,7 @@ def _sum_bounds(algorithm: Any, width: int, greatest: int) -> tuple[int, int]:
 def identity_bounds(keys: dict[str, Any], type_: PartType) -> tuple[int, int]:
     """The range of an identity part as numbers."""
     if "range" not in keys:
-        return 0, type_.greatest
+        return 0, 0x7F if type_.type == "ascii" else type_.greatest
     least, greatest = (ord(end) if isinstance(end, str) else end for end in keys["range"])
     return least, greatest
 

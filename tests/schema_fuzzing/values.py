@@ -67,6 +67,12 @@ def parts_of(draw: st.DrawFn, frame: Frame, message: Message) -> dict[str, int |
 def _part(part: ValuePart | CounterPart) -> st.SearchStrategy[int | str]:
     if isinstance(part, ChoicePart):
         return st.sampled_from(list(map(part.shown, part.values)))
+    if part.between is not None:
+        first, last = part.between
+        each = st.characters(min_codepoint=first, max_codepoint=last)
+        return st.text(each, min_size=part.type.size, max_size=part.type.size).filter(
+            lambda text: text == text.rstrip("\0")
+        )
     if part.type.is_text:
         return _text(0, part.type.size).map(lambda text: text.rstrip("\0"))
     return _between(part.least, part.greatest)

@@ -151,8 +151,8 @@ class _Frame:
 
     def _number(self, part: NumberPart, value: int, row: Row) -> Row:
         self._numbers[part.name] = value
-        fits = part.least <= value <= part.greatest
-        fault = "" if fits else f"must be from {part.least} to {part.greatest}"
+        fits = part.holds(value)
+        fault = "" if fits else f"must be {'' if part.between else 'from '}{part.allowed}"
         if isinstance(part, ChoicePart):
             words = " or ".join(word.hex(" ").upper() for word in part.words)
             fault = "" if value in part.values else f"must be {words}"

@@ -28,6 +28,7 @@ from protogen.model.frame import (
     PayloadPart,
     ValuePart,
 )
+from protogen.model.types import ByteOrder
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.capacity import (
@@ -37,24 +38,33 @@ from protogen.passes.framing.capacity import (
     stated_range,
 )
 from protogen.passes.framing.literals import literal_of
+from protogen.passes.framing.part_digits import (
+    digits_type,
+    is_written,
+    no_byte_order,
+    part_type_hint,
+    too_few_digits,
+)
 from protogen.passes.framing.part_runs import written_out
-from protogen.passes.framing.part_values import number_of, text_type
+from protogen.passes.framing.part_values import number_of, text_bounds, text_type
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.framing.written_frames import WrittenFrame
-from protogen.passes.types.type_names import Layout, has_width, integer, integer_width, type_hint
+from protogen.passes.types.type_names import Layout, has_width, integer, integer_width
 from protogen.problems import hint_for
 from protogen.schema.syntax.parts import CrcParameters, SumParameters, XorParameters
 from protogen.schema.syntax.parts import Part as PartSyntax
 
 PAYLOAD = "payload"
 
+_TYPE = frozenset({"type", "byte_order", "digits", "chars", "code"})
+_NUMBER = _TYPE | {"range", "unprotected"}
 _ROLES: dict[str, frozenset[str]] = {
     "literal": frozenset({"literal", "unprotected", "type"}),
-    "id": frozenset({"id", "type", "size", "range", "byte_order", "unprotected"}),
-    "counts": frozenset({"counts", "type", "range", "byte_order", "unprotected"}),
-    "counter": frozenset({"counter", "type", "range", "default", "byte_order", "unprotected"}),
-    "algorithm": frozenset({"algorithm", "type", "covers", "over", "when", "byte_order"}),
-    "type": frozenset({"type", "size", "range", "default", "byte_order", "unprotected"}),
+    "id": _NUMBER | {"id", "size"},
+    "counts": _NUMBER | {"counts"},
+    "counter": _NUMBER | {"counter", "default"},
+    "algorithm": _TYPE | {"algorithm", "covers", "over", "when"},
+    "type": _NUMBER | {"size", "default"},
     PAYLOAD: frozenset({"unprotected"}),
 }
 _IDENTITY_BITS = 64
@@ -197,8 +207,8 @@ class FrameBuilder:
         if item.default is None:
             return None
         default = number_of(self._context, loc, part, item.default)
-        if default is not None and not part.least <= default <= part.greatest:
-            text = f"{default} is out of {part.least} to {part.greatest}"
+        if default is not None and not part.holds(default):
+            text = f"{part.shown(default)} is out of {part.allowed}"
             self._context.error("PG114", loc, text)
         return default
 
@@ -240,8 +250,10 @@ class FrameBuilder:
             return None
         if found is None or found.signed or found.role == "bool":
             text = f"`{item.type}` is no unsigned integer, which a part of a frame is"
-            self._context.error("PG104", loc, text, type_hint(item.type))
+            self._context.error("PG104", loc, text, part_type_hint(item.type))
             return None
+        if is_written(item):
+            return digits_type(self._context, (*self._loc, name), item, found)
         if item.algorithm is None and found.bits < found.byte_bits:
             text = f"a part takes whole bytes, and `{item.type}` is less than one"
             hint = f"make it `uint{found.byte_bits}`, with a `range` if its upper bits are zero"
@@ -253,6 +265,8 @@ class FrameBuilder:
         return found
 
     def _range(self, name: str, item: PartSyntax, type_: PartType) -> tuple[int, int]:
+        if type_.is_text:
+            return text_bounds(self._context, (*self._loc, name), item, type_)
         if item.range is None:
             return type_.least, type_.greatest
         least, greatest = item.range
@@ -291,11 +305,16 @@ class FrameBuilder:
         covers = self._covers(name, item)
         if algorithm is None or covers is None:
             return None
-        if algorithm.words is not None:
-            algorithm = replace(algorithm, words=type_.byte_order)
+        if algorithm.words is None:
+            no_byte_order(self._context, (*self._loc, name), item, type_)
+        else:
+            algorithm = replace(algorithm, words=self._word_order(name, item, type_))
         if algorithm.width != type_.bits:
             text = f"{algorithm.name} has {algorithm.width} bits, {item.type} has {type_.bits}"
             self._error("PG135", name, "type", text)
+        elif algorithm.bounds[1] > type_.greatest:
+            loc = (*self._loc, name)
+            too_few_digits(self._context, loc, item, algorithm.name, algorithm.bounds[1])
         if item.when is not None and self._is_in_front(name):
             text = "in front of the payload, a receiver can't know yet whether it is empty"
             self._error("PG131", name, "when", text, "put the checksum behind the payload")
@@ -308,6 +327,17 @@ class FrameBuilder:
             when_payload=item.when is not None,
             about=about(item.doc, item.source, self._context.find_key((*self._loc, name))),
         )
+
+    def _word_order(self, name: str, item: PartSyntax, type_: PartType) -> ByteOrder:
+        """The order of the bytes in the words of a sum: that of the part, unless it is digits."""
+        if type_.text is None:
+            return type_.byte_order
+        order = item.byte_order or self._layout.byte_order
+        if order is None:
+            hint = "set `byte_order: little` or `big` on the part or the protocol"
+            text = "nothing says in which order the bytes of the words are that are added"
+            self._error("PG109", name, "algorithm", text, hint)
+        return order or "little"
 
     def _error(self, code: str, name: str, key: str, text: str, hint: str | None = None) -> None:
         self._context.error(code, (*self._loc, name, key), text, hint)

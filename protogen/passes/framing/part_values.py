@@ -10,6 +10,8 @@ from protogen.passes.context import Context, Loc
 from protogen.schema.hints import number_hint
 from protogen.schema.syntax.parts import Part
 
+_LAST_OF_ASCII = 0x7F
+
 
 def text_type(context: Context, loc: Loc, item: Part, byte_bits: Literal[7, 8]) -> Integer | None:
     """Type of a part that is a text; None where it can't be one."""
@@ -24,7 +26,7 @@ def text_type(context: Context, loc: Loc, item: Part, byte_bits: Literal[7, 8]) 
         if getattr(item, key) is not None:
             text = f"`{key}` is for a number, and this part is a text"
             context.error("PG192", (*loc, key), text, "give it a type such as `uint8`")
-    for key in ("range", "byte_order"):
+    for key in ("byte_order", "digits", "chars", "code"):
         if getattr(item, key) is not None:
             context.error("PG192", (*loc, key), f"a text has no `{key}`", f"leave out `{key}`")
     if context.tally.errors > before or item.size is None:
@@ -32,6 +34,21 @@ def text_type(context: Context, loc: Loc, item: Part, byte_bits: Literal[7, 8]) 
     order: ByteOrder = "big" if item.size > 1 else "little"
     bits = byte_bits * item.size
     return Integer(bits=bits, byte_bits=byte_bits, byte_order=order, role="ascii")
+
+
+def text_bounds(context: Context, loc: Loc, item: Part, type_: Integer) -> tuple[int, int]:
+    """The least and the greatest text: all characters are the first, or the last, that may be."""
+    if item.range is None:
+        return type_.least, type_.greatest
+    first, last = item.range
+    if first > last:
+        text = f"the range is empty: {first} is greater than {last}"
+        context.error("PG115", (*loc, "range"), text)
+    elif not 0 <= first <= last <= _LAST_OF_ASCII:
+        text = f"the characters of a text are 0 to {_LAST_OF_ASCII}, not {first} to {last}"
+        context.error("PG114", (*loc, "range"), text)
+    each = sum(1 << type_.byte_bits * place for place in range(type_.size))
+    return first * each, last * each
 
 
 def number_of(context: Context, loc: Loc, part: NumberPart, value: int | str) -> int | None:

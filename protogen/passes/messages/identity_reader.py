@@ -90,9 +90,9 @@ class IdentityReader:
             text = f"the range is empty: {first} is greater than {last}"
             self._context.error("PG115", place, text)
             return None
-        wrong = [end for end in (first, last) if not part.least <= end <= part.greatest]
+        wrong = [end for end in (first, last) if not part.holds(end)]
         if wrong:
-            text = f"{wrong[0]} is no value of `{part.name}`: {part.least} to {part.greatest}"
+            text = f"{part.shown(wrong[0])} is no value of `{part.name}`: {part.allowed}"
             self._context.error("PG152", place, text)
             return None
         return first, last

@@ -22,6 +22,7 @@ from protogen.model.frame import (
     Substitution,
     TypedPart,
 )
+from protogen.model.numbers import Numeral
 from protogen.passes.proofs.codewords import Segment
 
 ByteSet = frozenset[int]
@@ -67,13 +68,30 @@ def part_bytes(part: Part, payload: ByteSet) -> tuple[ByteSet, ...]:
 
 
 def _number_bytes(part: TypedPart, least: int, greatest: int) -> tuple[ByteSet, ...]:
-    """The range bounds the number's most significant byte, and all of it if it is one byte."""
+    """The range bounds the number's most significant byte, and all of it if it is one byte.
+
+    Of digits it bounds each, and so it does of the characters of a text.
+    """
     type_ = part.type
+    if isinstance(type_.text, Numeral):
+        return _digits(type_.text, least, greatest)
+    if isinstance(part, NumberPart) and part.between is not None:
+        return (frozenset(range(part.between[0], part.between[1] + 1)),) * type_.size
     every = SEVEN_BITS if type_.byte_bits == 7 else EVERY_BYTE
     shift = type_.byte_bits * (type_.size - 1)
     top = frozenset(range(least >> shift, (greatest >> shift) + 1))
     rest = (every,) * (type_.size - 1)
     return (top, *rest) if type_.byte_order == "big" else (*rest, top)
+
+
+def _digits(form: Numeral, least: int, greatest: int) -> tuple[ByteSet, ...]:
+    """The characters of each digit of the numbers in between."""
+    found: list[ByteSet] = []
+    for _ in range(form.size):
+        values = range(least, min(greatest, least + form.base - 1) + 1)
+        found.append(frozenset(form.alphabet[value % form.base] for value in values))
+        least, greatest = least // form.base, greatest // form.base
+    return tuple(reversed(found))
 
 
 def segments(frame: Frame, payload: ByteSet, delimiters: Iterable[str]) -> list[Segment]:

@@ -5,16 +5,15 @@ from __future__ import annotations
 from typing import Literal
 
 from protogen.copying import replace
-from protogen.model.numbers import ALPHABETS, FreeNumeral, Numeral
+from protogen.model.numbers import FreeNumeral
 from protogen.model.types import Integer, NumberType, is_integer
 from protogen.passes.context import Context
 from protogen.passes.types.declared import Effective
+from protogen.passes.types.fixed_digits import FixedDigits, digits_of
 from protogen.passes.types.type_names import UNKNOWN_TYPE
-from protogen.schema.syntax.fields import DigitCount
+from protogen.schema.syntax.digits import DigitCount
 
 _KEYS = ("digits", "code", "chars", "fraction", "case")
-_GREATEST = 1 << 64
-"""No digits may stand for this number or a greater one."""
 _MOST_DIGITS = {10: 18, 16: 16}
 """So many digits always fit 64 bits, a sign with them."""
 _USUAL_DIGITS = {10: 9, 16: 8}
@@ -57,12 +56,11 @@ class _Form:
             return self._misplaced(found, f"`{self._key}` is for integers such as uint16")
         if not self._is_in_bytes():
             return found
-        if (self._syntax.digits is None) == (self._syntax.code is None):
-            both = self._syntax.code is not None
-            text = "has one of `digits` and `code`" if both else "says how: `digits` or `code`"
-            return self._misplaced(found, f"an integer that is written as text {text}")
+        fixed = FixedDigits(self._context, self._syntax, self._item.at)
+        if not fixed.is_one_kind():
+            return found
         self._has_no_order()
-        numeral = self._numeral(found)
+        numeral = fixed.of(found)
         return found if numeral is None else replace(found, text=numeral, byte_order="little")
 
     def is_of_integers(self) -> bool:
@@ -100,46 +98,6 @@ class _Form:
             self._context.error(
                 "PG222", self._item.at("byte_order"), text, "leave `byte_order` out"
             )
-
-    # --- as many digits each time ---------------------------------------------------------------
-
-    def _numeral(self, found: Integer) -> Numeral | None:
-        alphabet = self._alphabet()
-        if alphabet is None:
-            return None
-        is_power = len(alphabet) & (len(alphabet) - 1) == 0
-        if found.signed and not is_power:
-            text = f"{found.name} can't be written in digits base10: there is none for a minus"
-            hint = "write it as `decimal`, or in digits base16-upper"
-            self._context.error("PG225", self._item.at("digits"), text, hint)
-            return None
-        needed = _digits_of((1 << found.bits) - 1, len(alphabet))
-        size = self._syntax.chars or needed
-        if len(alphabet) ** size > _GREATEST:
-            text = f"{size} digits can stand for numbers of more than 64 bits"
-            self._context.error("PG225", self._place("chars"), text)
-            return None
-        if found.signed and size < needed:
-            text = f"the bits of {found.name} need {needed} characters, not {size}"
-            self._context.error("PG225", self._place("chars"), text)
-            return None
-        return Numeral(alphabet=alphabet, size=size)
-
-    def _alphabet(self) -> bytes | None:
-        """The characters of the digits."""
-        code = self._syntax.code
-        if code is None:
-            digits = self._syntax.digits
-            return ALPHABETS[digits if isinstance(digits, str) else "base10"]
-        last = code.add + (1 << code.bits) - 1
-        if last > 0xFF:
-            text = f"characters would go up to {last}, and a byte goes up to 255"
-            self._context.error("PG225", (*self._item.at("code"), "add"), text)
-            return None
-        return bytes(range(code.add, last + 1))
-
-    def _place(self, key: str) -> tuple[str | int, ...]:
-        return self._item.at(key if getattr(self._syntax, key) is not None else self._key)
 
     # --- as many digits as the number needs -----------------------------------------------------
 
@@ -207,14 +165,5 @@ class _Form:
         if self._syntax.range is None:
             return max(1, _USUAL_DIGITS[base] - fraction)
         ends = (abs(int(end)) for end in self._syntax.range)
-        needed = max(_digits_of(end // int(base**fraction), base) for end in ends)
+        needed = max(digits_of(end // int(base**fraction), base) for end in ends)
         return min(needed, max(1, _MOST_DIGITS[base] - fraction))
-
-
-def _digits_of(value: int, base: int) -> int:
-    """How many digits a number has."""
-    count = 1
-    while value >= base:
-        value //= base
-        count += 1
-    return count

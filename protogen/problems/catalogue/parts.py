@@ -60,7 +60,8 @@ written as two. Messages that share all of their identities may be told apart by
 `type: ascii` makes a part of the frame a text of `size` characters, 1 to 8, such as a talker and a
 sentence. Each is one byte, in the order in which they are written. A value of such a part, as `id`
 and `default` give it, has exactly that many characters: blanks and other fillers are part of it.
-People see it as text; a text has no `range` and no `byte_order`, and does not count.
+People see it as text; a text has no `byte_order` and does not count, and its `range` is that of
+each character.
 """,
         with_framed(
             """

@@ -111,7 +111,8 @@ def _part_value(part: ValuePart, given: GivenValue, strict: bool) -> int:
     if strict and isinstance(given, str) and not given.isascii():
         raise EncodeError(part.name, f"{given!r} has a character that is not ASCII")
     if strict and not part.holds(number):
-        raise EncodeError(part.name, f"{number} is not {part.allowed}")
+        shown = repr(given) if isinstance(given, str) and not part.values else number
+        raise EncodeError(part.name, f"{shown} is not {part.allowed}")
     return number
 
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from protogen.runtime.checksum import Checksum
-from protogen.runtime.payload.number import Number
+from protogen.runtime.payload.number import Characters, Number
+from protogen.runtime.payload.numerals import Numeral
 from protogen.runtime.transparency import Transparency
 from protogen.runtime.values import Frozen
 
@@ -32,7 +33,7 @@ class IdentityPart(NamedTuple):
     """Tells, alone or with others, which message the frame carries."""
 
     name: str
-    number: Number
+    number: Number | Numeral
 
     @property
     def size(self) -> int:
@@ -47,7 +48,7 @@ class LengthPart(NamedTuple):
     """
 
     name: str
-    number: Number
+    number: Number | Numeral
     counts: tuple[str, ...]
     least: int
     greatest: int
@@ -65,7 +66,7 @@ class ValuePart(NamedTuple):
     """
 
     name: str
-    number: Number
+    number: Number | Numeral
     least: int
     greatest: int
     default: int | None = None
@@ -78,13 +79,20 @@ class ValuePart(NamedTuple):
 
     def holds(self, value: int) -> bool:
         """True if the value is one that the part can have."""
-        return value in self.values if self.values else self.least <= value <= self.greatest
+        if self.values:
+            return value in self.values
+        number = self.number
+        is_text = not isinstance(number, Characters) or number.holds(value)
+        return self.least <= value <= self.greatest and is_text
 
     @property
     def allowed(self) -> str:
         """Values that the part can have, in words."""
         if self.values:
             return f"one of {', '.join(f'0x{value:02X}' for value in self.values)}"
+        number = self.number
+        if isinstance(number, Characters) and number.between:
+            return f"a text of {number.allowed}"
         return f"in {self.least}..{self.greatest}"
 
 
@@ -104,7 +112,7 @@ class ChecksumPart(NamedTuple):
     """A checksum of other parts: of their bytes before any stuffing, or as they are on the wire."""
 
     name: str
-    number: Number
+    number: Number | Numeral
     algorithm: Checksum
     covers: tuple[str, ...]
     over_wire: bool = False

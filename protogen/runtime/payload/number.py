@@ -83,16 +83,31 @@ class Number(Frozen):
 class Characters(Number):
     """An integer of which each byte is a character, the first one the highest.
 
-    To people it is a text of up to `size` characters, which zeros fill up.
+    To people it is a text of up to `size` characters, which zeros fill up. With `between`, each of
+    exactly so many is from the first to the second of these two.
     """
 
-    __slots__ = ()
+    __slots__ = ("between",)
 
-    def __init__(self, size: int, seven_bit: bool = False) -> None:
+    between: bytes
+
+    def __init__(self, size: int, seven_bit: bool = False, between: bytes = b"") -> None:
         bits = size * (7 if seven_bit else 8)
         fields = {"bits": bits, "signed": False, "order": "big", "seven_bit": seven_bit}
-        for name, value in {**fields, "size": size}.items():
+        for name, value in {**fields, "size": size, "between": between}.items():
             object.__setattr__(self, name, value)
+
+    @property
+    def allowed(self) -> str:
+        """The characters that may be, in words."""
+        return f"{self.size} characters from {' to '.join(map(shown_character, self.between))}"
+
+    def holds(self, number: int) -> bool:
+        """True if all characters of a number are between those that may be."""
+        if not self.between:
+            return True
+        first, last = self.between
+        return all(first <= character <= last for character in self.encode(number))
 
     def text(self, number: int) -> str:
         """The characters of a number."""
@@ -110,7 +125,13 @@ class Characters(Number):
         return self.decode(text.encode("latin-1").ljust(self.size, b"\0"))
 
 
-def given_number(number: Number, value: object) -> int:
+def shown_character(code: int) -> str:
+    """A character of ASCII as such if it can be seen, else its number."""
+    seen = chr(code)
+    return seen if seen.isprintable() and seen not in ' "\\' else f"0x{code:02X}"
+
+
+def given_number(number: object, value: object) -> int:
     """The number that a caller gives, which may be a text. Raises EncodeError."""
     return number.number(value) if isinstance(number, Characters) else as_integer(value)
 

@@ -10,7 +10,6 @@ from protogen.schema.syntax.base import (
     BitNumber,
     BitRange,
     BitRangeForm,
-    ByteNumber,
     Character,
     Count,
     Name,
@@ -25,6 +24,7 @@ from protogen.schema.syntax.base import (
     TypeForm,
     pair_of,
 )
+from protogen.schema.syntax.digits import CharacterCode, Digits, Positive
 from protogen.schema.syntax.names import CaseKey, ExpressionText, Kind, Ref, TypeName
 from protogen.schema.syntax.octets import OctetsForm, to_octets
 from protogen.schema.syntax.parts import ByteOrder
@@ -103,45 +103,6 @@ Extent = Annotated[
 
 
 BitOrder = Literal["lsb_first", "msb_first"]
-
-DigitsName = Literal["base10", "base16-upper", "base16-lower"]
-
-Positive = Annotated[Count, Field(ge=1)]
-
-
-class DigitCount(Syntax):
-    """How many digits stand in front of the point."""
-
-    min: Positive | None = Field(
-        None, description="At least so many, with zeros where the number has fewer; 1 if not said."
-    )
-    max: Positive | None = Field(
-        None, description="At most so many; as the `range` needs, or 9 in all, if not said."
-    )
-
-
-def _digits_form(value: Any) -> str:
-    if isinstance(value, str):
-        return "name"
-    return "count" if isinstance(value, int) else "mapping"
-
-
-Digits = Annotated[
-    Annotated[DigitsName, Tag("name")]
-    | Annotated[Positive, Tag("count")]
-    | Annotated[DigitCount, Tag("mapping")],
-    Discriminator(_digits_form),
-]
-"""Kind of digits, or how many there are."""
-
-
-class CharacterCode(Syntax):
-    """How the characters of an integer come of its bits."""
-
-    bits: Annotated[Count, Field(ge=1, le=7)] = Field(
-        description="Bits of the integer in each character."
-    )
-    add: ByteNumber = Field(description="What is added to them, which is the character of zeros.")
 
 
 def _to_constant(value: Any) -> Any:

@@ -25,6 +25,7 @@ from protogen.schema.syntax.base import (
     pair_of,
     written_as,
 )
+from protogen.schema.syntax.digits import CharacterCode, FixedDigitsName, Positive
 from protogen.schema.syntax.names import Kind, PartName, Ref
 from protogen.schema.syntax.octets import Octets, OctetsForm, at_most
 
@@ -170,6 +171,19 @@ class Part(Syntax):
     size: Annotated[Int, Field(ge=1, le=GREATEST_TEXT)] | None = Field(
         None, description="Characters of a part of the type ascii, 1 to 8."
     )
+    digits: FixedDigitsName | None = Field(
+        None,
+        description="The number is written as text, the highest digit first: base10, "
+        "base16-upper or base16-lower.",
+    )
+    chars: Positive | None = Field(
+        None,
+        description="Characters of a number that is written as text; else as many digits as its "
+        "greatest value needs.",
+    )
+    code: CharacterCode | None = Field(
+        None, description="Each character is some bits of the number, the highest ones first."
+    )
     id: OnlyTrue | None = Field(None, description="The part tells which message this is.")
     counts: PartRun | None = Field(
         None, description="The part is the length in bytes of these parts, unstuffed."
@@ -192,7 +206,10 @@ class Part(Syntax):
         None,
         description="The part is present only in frames whose payload is not empty.",
     )
-    range: RawRange | None = Field(None, description="Least and greatest value of the part.")
+    range: RawRange | None = Field(
+        None,
+        description="Least and greatest value of the part; of a text, of each of its characters.",
+    )
     default: PartValue | None = Field(
         None, description="What an encoder writes where the caller gives no value."
     )

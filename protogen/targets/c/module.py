@@ -55,11 +55,11 @@ class Module(msgspec.Struct, frozen=True):
         raise KeyError(name)
 
 
-def view(protocol: Protocol, options: COptions, names: Names) -> Module:
-    """The module of a protocol."""
+def view(protocol: Protocol, options: COptions, names: Names, helpers: Helpers) -> Module:
+    """The module of a protocol; what codecs share becomes one of the helpers."""
     chosen = options.chosen(protocol)
     used = _used(chosen)
-    helpers, sinks = Helpers(names), Helpers(names)
+    sinks = Helpers(names)
     enums = tuple(enum_view(item, names) for item in protocol.enums if item.name in used)
     flags = tuple(flags_view(item, names) for item in protocol.flags if item.name in used)
     structs = [item for item in protocol.structs if item.name in used and item.holds_values]

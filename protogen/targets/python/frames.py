@@ -19,11 +19,12 @@ from protogen.model.frame import (
     PayloadPart,
     Substitution,
     Transparency,
+    TypedPart,
     ValuePart,
 )
 from protogen.model.framing import AfterEnd, Anywhere, End, Start, StartLiteral, StartSet
 from protogen.model.protocol import Sender
-from protogen.model.types import Integer
+from protogen.targets.python.formats import numeral
 from protogen.targets.python.literals import call, mapping, octets, text, tuple_of
 
 
@@ -34,16 +35,16 @@ def part(item: Part) -> str:
         case LiteralPart():
             return call("_rt.LiteralPart", name, octets(item.bytes))
         case IdentityPart():
-            return call("_rt.IdentityPart", name, number(item.type))
+            return call("_rt.IdentityPart", name, number(item))
         case LengthPart():
             counts = f"counts={tuple_of(map(text, item.counts))}"
-            return call("_rt.LengthPart", name, number(item.type), counts, **_bounds(item))
+            return call("_rt.LengthPart", name, number(item), counts, **_bounds(item))
         case CounterPart() | ValuePart():
             kind = "_rt.CounterPart" if isinstance(item, CounterPart) else "_rt.ValuePart"
             default = None if item.default is None else str(item.default)
             values = tuple_of(map(str, item.values)) if isinstance(item, ChoicePart) else None
             given = {**_bounds(item), "default": default, "values": values}
-            return call(kind, name, number(item.type), **given)
+            return call(kind, name, number(item), **given)
         case ChecksumPart():
             return _checksum_part(item)
         case PayloadPart():
@@ -51,11 +52,16 @@ def part(item: Part) -> str:
     raise TypeError(f"{type(item).__name__} is no part that a frame has")
 
 
-def number(type_: Integer) -> str:
+def number(item: TypedPart) -> str:
     """The codec of a part's number."""
+    type_ = item.type
     if type_.is_text:
         seven_bits = "True" if type_.byte_bits == 7 else None
-        return call("_rt.Characters", str(type_.size), seven_bit=seven_bits)
+        bounds = item.between if isinstance(item, NumberPart) else None
+        between = None if bounds is None else octets(bytes(bounds))
+        return call("_rt.Characters", str(type_.size), seven_bit=seven_bits, between=between)
+    if type_.text is not None:
+        return numeral(type_)
     order = text(type_.byte_order) if type_.size > 1 else None
     seven = "True" if type_.byte_bits == 7 else None
     return call("_rt.Number", str(type_.bits), order=order, seven_bit=seven)
@@ -69,7 +75,7 @@ def _checksum_part(item: ChecksumPart) -> str:
     return call(
         "_rt.ChecksumPart",
         text(item.name),
-        number(item.type),
+        number(item),
         f"algorithm={algorithm(item.algorithm)}",
         f"covers={tuple_of(map(text, item.covers))}",
         over_wire="True" if item.over_wire else None,

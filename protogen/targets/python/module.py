@@ -229,6 +229,8 @@ def _allowed(part: CounterPart | ValuePart) -> str:
     if isinstance(part, ChoicePart):
         shown = map(part.shown, part.values)
         return ", ".join(f"`{it}`" if isinstance(it, str) else f"0x{it:02X}" for it in shown)
+    if part.between is not None:
+        return part.allowed
     if part.type.is_text:
         return f"up to {part.type.size} characters"
     return f"{part.least}..{part.greatest}"

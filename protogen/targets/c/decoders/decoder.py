@@ -14,6 +14,7 @@ from protogen.targets.c.decoders.push import PushDecoder
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.decoders.style import DecoderStyle, decoder_style
 from protogen.targets.c.decoders.whole import WholeFrames, whole_frames
+from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.options import Events
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.spelling import Names
@@ -62,7 +63,12 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
 
 
 def decoder_view(
-    names: Names, sender: Sender, views: Mapping[str, MessageView], events: Events
+    names: Names,
+    sender: Sender,
+    views: Mapping[str, MessageView],
+    events: Events,
+    numbers: PartNumbers,
 ) -> DecoderView:
     """The view of a sender's decoder; `views` has the messages that were chosen."""
-    return DecoderView(names, sender.name, sender.plan, groups_of(sender.plan, views), events)
+    groups = groups_of(sender.plan, views)
+    return DecoderView(names, sender.name, sender.plan, groups, events, numbers)

@@ -97,7 +97,7 @@ def _is_among(plan: FramePlan, identities: Identities) -> str:
         shift -= part.type.bits
         value = f"(key >> {shift})" if shift else "key"
         if len(plan.identity) > 1:
-            value = f"({value} & {hexadecimal(part.type.greatest)})"
+            value = f"({value} & {hexadecimal((1 << part.type.bits) - 1)})"
         conditions = [in_run(value, run, part.type) for run in runs]
         if all(conditions):
             joined = " || ".join(f"({item})" if " && " in item else item for item in conditions)

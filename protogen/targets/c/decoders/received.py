@@ -10,6 +10,7 @@ from functools import cached_property
 
 import msgspec
 
+from protogen.model.frame import NumberPart
 from protogen.model.frame_plan import FramePlan, PlacedPart, StartRule, Store
 from protogen.targets.c.decoders.groups import (
     Alternatives,
@@ -29,6 +30,7 @@ from protogen.targets.c.frame.numbers import (
     literals_of,
     numbers_of,
 )
+from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.stuffing import Node, Stuffing, StuffingKind, stuffing_of
 from protogen.targets.c.options import Events
 from protogen.targets.c.spelling import Names
@@ -42,6 +44,7 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     plan: FramePlan
     groups: tuple[GroupView, ...]
     events: Events
+    numbers: PartNumbers
 
     # --- names ------------------------------------------------------------------------------------
 
@@ -236,7 +239,7 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @cached_property
     def head_numbers(self) -> tuple[NumberView, ...]:
         """Numbers in front of the payload that are checked."""
-        return numbers_of(self.plan, self.plan.head)
+        return numbers_of(self.plan, self.plan.head, self.numbers)
 
     @cached_property
     def tail_literals(self) -> tuple[LiteralView, ...]:
@@ -246,7 +249,7 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @cached_property
     def tail_numbers(self) -> tuple[NumberView, ...]:
         """Numbers behind the payload that are checked."""
-        return numbers_of(self.plan, self.plan.tail)
+        return numbers_of(self.plan, self.plan.tail, self.numbers)
 
     @property
     def checks_tail(self) -> bool:
@@ -261,12 +264,13 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @cached_property
     def parts(self) -> tuple[PartView, ...]:
         """The parts that events show."""
-        return tuple(PartView(item, self.names.member(item.name)) for item in self.plan.shown)
+        member = self.names.member
+        return tuple(PartView(item, member(item.name), self.numbers) for item in self.plan.shown)
 
     @cached_property
     def checksums(self) -> tuple[ChecksumView, ...]:
         """The checksums."""
-        return checksums_of(self.plan, self.protocol)
+        return checksums_of(self.plan, self.protocol, self.numbers)
 
     @property
     def announced(self) -> str:
@@ -340,8 +344,10 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def identity_is_start(self) -> bool:
         """True if a start of one byte is the whole identity, and tells the payload's size."""
+        first = self.plan.head[0].part if self.plan.head else None
+        is_raw = isinstance(first, NumberPart) and first.type.text is None
         is_told = any(n.identifies and n.last == 0 for n in self.head_numbers)
-        return self.plan.start is StartRule.SET and is_told
+        return self.plan.start is StartRule.SET and is_told and is_raw
 
     @property
     def gives_up_high_bytes(self) -> bool:

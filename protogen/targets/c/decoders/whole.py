@@ -33,7 +33,7 @@ class WholeFrames(ReceivedFrame, frozen=True, dict=True):
         """True if one byte tells all of a frame but its payload, whose bytes carry seven bits."""
         plan = self.plan
         is_bare = (plan.head_size, plan.tail_size, self.end_size, plan.region) == (1, 0, 0, None)
-        spare = any(item.seven_bit or item.padding for item in self.head_numbers)
+        spare = any(item.seven_bit or item.fault for item in self.head_numbers)
         is_told = plan.seven_bit and self.known_by_identity
         return self.all_events and is_bare and is_told and not spare
 

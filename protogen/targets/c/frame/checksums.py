@@ -6,9 +6,10 @@ import msgspec
 
 from protogen.model.checksums import ChecksumSpec, find_algorithm
 from protogen.model.frame_plan import ChecksumPlan, FramePlan, Run, Side
-from protogen.model.types import NumberType
+from protogen.model.types import Integer
 from protogen.targets.c.frame.algorithms import Algorithm, algorithm_of
-from protogen.targets.c.frame.expressions import Index, differs, wire_bytes
+from protogen.targets.c.frame.expressions import Index, differs
+from protogen.targets.c.frame.part_numbers import PartNumbers
 
 
 class CoveredRun(msgspec.Struct, frozen=True):
@@ -38,7 +39,8 @@ class ChecksumView(msgspec.Struct, frozen=True):
 
     name: str
     checksum: Algorithm
-    type: NumberType
+    type: Integer
+    numbers: PartNumbers
     covers: tuple[CoveredRun | CoveredLiteral, ...]
     at: Index
     """Place of its first byte in the content."""
@@ -54,7 +56,7 @@ class ChecksumView(msgspec.Struct, frozen=True):
 
     def wire_bytes(self, value: str) -> tuple[str, ...]:
         """The bytes of a result in wire order."""
-        return wire_bytes(self.type, value)
+        return self.numbers.bytes_of(self.type, value)
 
     def differs(self, payload: str) -> str:
         """The condition that `content` has other bytes than those of `due`."""
@@ -63,17 +65,20 @@ class ChecksumView(msgspec.Struct, frozen=True):
         return differs(self.wire_bytes("due"), "content", at)
 
 
-def checksums_of(plan: FramePlan, protocol: str) -> tuple[ChecksumView, ...]:
+def checksums_of(plan: FramePlan, protocol: str, numbers: PartNumbers) -> tuple[ChecksumView, ...]:
     """The views of a frame's checksums."""
-    return tuple(_checksum(plan, item, protocol) for item in plan.checksums)
+    return tuple(_checksum(plan, item, protocol, numbers) for item in plan.checksums)
 
 
-def _checksum(plan: FramePlan, item: ChecksumPlan, protocol: str) -> ChecksumView:
+def _checksum(
+    plan: FramePlan, item: ChecksumPlan, protocol: str, numbers: PartNumbers
+) -> ChecksumView:
     part = item.part
     return ChecksumView(
         name=part.name,
         checksum=algorithm_of(part.algorithm, checksum_name(protocol, part.algorithm)),
         type=part.type,
+        numbers=numbers,
         covers=tuple(
             CoveredRun(
                 Index(cover.first, plan.head_size),

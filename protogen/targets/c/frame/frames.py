@@ -28,8 +28,8 @@ from protogen.model.identities import Runs
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.groups import in_run
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
-from protogen.targets.c.frame.expressions import Index, byte, less_absent, wire_bytes
-from protogen.targets.c.frame.numbers import none_of
+from protogen.targets.c.frame.expressions import Index, byte, less_absent
+from protogen.targets.c.frame.numbers import has_others, none_of
 from protogen.targets.c.frame.stuffing import Stuffing
 from protogen.targets.c.spelling import Names, unsigned_type
 
@@ -251,11 +251,13 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
             case LiteralPart():
                 values = tuple(map(byte, part.bytes))
             case LengthPart():
-                values = wire_bytes(part.type, "length")
+                values = self.decoder.numbers.bytes_of(part.type, "length")
             case NumberPart():
-                values = wire_bytes(part.type, argument_name(part.name, self._names))
+                values = self.decoder.numbers.bytes_of(
+                    part.type, argument_name(part.name, self._names)
+                )
             case ChecksumPart():
-                values = wire_bytes(part.type, "due")
+                values = self.decoder.numbers.bytes_of(part.type, "due")
             case _:
                 values = ()
         stores = tuple(
@@ -341,5 +343,7 @@ def _argument(part: IdentityPart | CounterPart | ValuePart, names: Names) -> Arg
         conditions.append(f"{name} > {part.greatest}U")
     if isinstance(part, ChoicePart):
         conditions = [none_of(part, name)]
+    elif part.between is not None:
+        conditions = [has_others(part, part.between, name)]
     type_, refused = unsigned_type(part.type.bits), " || ".join(conditions)
     return Argument(name, part.name, type_, part.about.doc, refused)

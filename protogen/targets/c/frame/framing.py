@@ -12,8 +12,10 @@ from protogen.targets.c.frame.algorithms import Algorithm
 from protogen.targets.c.frame.frames import FrameView
 from protogen.targets.c.frame.handlers import Dispatch, dispatches
 from protogen.targets.c.frame.message_frames import MessageFrame, SenderFrames
+from protogen.targets.c.frame.part_numbers import PartNumbers, claim_functions
 from protogen.targets.c.frame.texts import TextView, texts_of
 from protogen.targets.c.options import COptions
+from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.message_names import claim_frame
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.protocol_names import is_stateless
@@ -49,6 +51,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """Those some of which a decoder might take for an idle line."""
     texts: tuple[TextView, ...]
     """Sizes of the parts that are texts."""
+    helpers: tuple[str, ...]
+    """Functions for the digits of parts, but for those that payloads have as well."""
 
     @property
     def sends(self) -> bool:
@@ -82,11 +86,16 @@ def framing_view(
     sinks: tuple[str, ...],
     options: COptions,
     names: Names,
+    helpers: Helpers,
 ) -> FramingView:
     """The frames and decoders of the senders that were chosen."""
     views = {view.name: view for view in messages}
     senders = [item for item in protocol.senders if _is_chosen(item, views, options)]
-    decoders = tuple(decoder_view(names, sender, views, options.events) for sender in senders)
+    numbers, shared = PartNumbers(helpers), set(helpers.texts)
+    claim_functions([sender.plan for sender in senders], numbers)
+    decoders = tuple(
+        decoder_view(names, sender, views, options.events, numbers) for sender in senders
+    )
     frames = _frames(senders, decoders)
     distinct = tuple({frame.decoder.name: frame for frame in frames.values()}.values())
     message_frames = tuple(_message_frames(protocol, frames, decoders, views, names))
@@ -119,6 +128,7 @@ def framing_view(
         dispatches=dispatches(decoders, messages, names),
         sinks=used,
         texts=texts_of(protocol),
+        helpers=tuple(text for text in helpers.texts if text not in shared),
     )
 
 

@@ -8,8 +8,8 @@ import msgspec
 
 from protogen.model.frame import ChoicePart, IdentityPart, LengthPart, LiteralPart, NumberPart
 from protogen.model.frame_plan import FramePlan, PlacedPart
-from protogen.model.types import storage_bits
-from protogen.targets.c.frame.expressions import byte, less_absent, number_of
+from protogen.targets.c.frame.expressions import byte, less_absent
+from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
@@ -23,8 +23,8 @@ class NumberView(msgspec.Struct, frozen=True):
     """Its value, read from `content`."""
     seven_bit: tuple[int, ...]
     """Offsets of its bytes, where their most significant bit has to be clear."""
-    padding: str
-    """Bits that have to be zero; empty where all belong to the number."""
+    fault: str
+    """The condition that its bytes are no number; empty where each are one."""
     bounds: str
     """The condition that it is out of bounds; empty where nothing bounds it."""
     is_length: bool
@@ -36,7 +36,7 @@ class NumberView(msgspec.Struct, frozen=True):
     @property
     def is_of_use(self) -> bool:
         """True if anything is checked or known when it is there."""
-        checks = self.seven_bit or self.padding or self.bounds
+        checks = self.seven_bit or self.fault or self.bounds
         return bool(checks or self.is_length or self.identifies or self.tells_sizes)
 
     @property
@@ -58,6 +58,7 @@ class PartView(msgspec.Struct, frozen=True):
     placed: PlacedPart
     member: str
     """The member for it."""
+    numbers: PartNumbers
 
     @property
     def part(self) -> NumberPart:
@@ -77,34 +78,32 @@ class PartView(msgspec.Struct, frozen=True):
 
     def value(self, payload: str) -> str:
         """Its value, read from `content` or `tail`; `payload` is the C of the payload's size."""
-        type_ = self.part.type
         at = "content" if self.placed.in_head else "tail"
         less = less_absent(self.placed.place, payload)
-        value = number_of(type_, at, self.placed.offset, less)
-        wide = storage_bits(type_.byte_bits * type_.size)
-        return value if wide <= type_.width else f"({self.type})({value})"
+        return self.numbers.shown(self.part.type, at, self.placed.offset, less)
 
 
-def numbers_of(plan: FramePlan, items: Iterable[PlacedPart]) -> tuple[NumberView, ...]:
+def numbers_of(
+    plan: FramePlan, items: Iterable[PlacedPart], numbers: PartNumbers
+) -> tuple[NumberView, ...]:
     """Those of the parts that are numbers of which something is checked or known early."""
-    views = (_number(plan, item) for item in items if isinstance(item.part, NumberPart))
+    views = (_number(plan, item, numbers) for item in items if isinstance(item.part, NumberPart))
     return tuple(view for view in views if view.is_of_use)
 
 
-def _number(plan: FramePlan, item: PlacedPart) -> NumberView:
+def _number(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberView:
     part = item.part
     assert isinstance(part, NumberPart)
     type_ = part.type
     less = less_absent(item.place, "decoder->payload")
-    value = number_of(type_, "content", item.offset, less)
-    spare = type_.byte_bits * type_.size - type_.bits
+    value = numbers.value(type_, "content", item.offset, less)
     starts = isinstance(part, ChoicePart) and item.in_head and item.end <= plan.start_size
     is_last = isinstance(part, IdentityPart) and part is plan.identity[-1]
     return NumberView(
         last=item.end - 1,
         value=value,
         seven_bit=tuple(range(item.offset, item.end)) if type_.byte_bits == 7 else (),
-        padding=f"{value} >> {type_.bits}" if spare else "",
+        fault=numbers.fault(type_, "content", item.offset, less),
         bounds=_out_of_bounds(part, value) if item in plan.bounded and not starts else "",
         is_length=isinstance(part, LengthPart),
         identifies=is_last and plan.identity_is_early and plan.length is None,
@@ -115,10 +114,22 @@ def _number(plan: FramePlan, item: PlacedPart) -> NumberView:
 def _out_of_bounds(part: NumberPart, value: str) -> str:
     if isinstance(part, ChoicePart):
         return none_of(part, value)
+    if part.between is not None:
+        return has_others(part, part.between, value)
     conditions = [f"{value} < {part.least}U"] if part.least > part.type.least else []
     if part.greatest < part.type.greatest:
         conditions.append(f"{value} > {part.greatest}U")
     return " || ".join(conditions)
+
+
+def has_others(part: NumberPart, between: tuple[int, int], value: str) -> str:
+    """The condition that some character of a text is not between these two."""
+    (first, last), bits, found = between, part.type.byte_bits, []
+    for place in range(part.type.size - 1, -1, -1):
+        character = f"(uint8_t)({value} >> {bits * place} & {hexadecimal((1 << bits) - 1)})"
+        found += [f"{character} < {hexadecimal(first)}"] if first > 0 else []
+        found += [f"{character} > {hexadecimal(last)}"] if last < (1 << bits) - 1 else []
+    return " || ".join(found)
 
 
 def none_of(part: ChoicePart, value: str) -> str:
@@ -194,7 +205,8 @@ def length_of(plan: FramePlan) -> LengthView | None:
     if plan.length is None:
         return None
     part = plan.length.part
-    held = part.type.byte_bits * part.type.size
+    is_digits = part.type.text is not None
+    held = part.type.width if is_digits else part.type.byte_bits * part.type.size
     return LengthView(
         least=part.least,
         greatest=min(part.greatest, (1 << held) - 1),

@@ -85,6 +85,30 @@ class Digits(msgspec.Struct, frozen=True):
             return own
         return f"({self._held})({own} & {hexadecimal((1 << self.type.bits) - 1)})"
 
+    def characters(self, helpers: Helpers, value: str) -> tuple[str, ...]:
+        """The characters of an unsigned value of the type, each by itself, in wire order."""
+        places = range(self.form.size - 1, -1, -1)
+        return tuple(self._character_at(helpers, value, place) for place in places)
+
+    def _character_at(self, helpers: Helpers, value: str, place: int) -> str:
+        """The character of a digit; `place` counts from the lowest one."""
+        bits, base = self._bits, self.form.base
+        unit = base**place
+        if unit > self.type.greatest:
+            return hexadecimal(self.form.alphabet[0])
+        if bits:
+            moved = f"{value} >> {bits * place}" if place else value
+            digit = f"{moved} & {hexadecimal((1 << bits) - 1)}"
+        else:
+            moved = f"{value} / {unsigned(unit)}" if place else value
+            digit = f"{moved} % {unsigned(base)}"
+        if len(self._runs()) == 1:
+            first = hexadecimal(self.form.alphabet[0])
+            return f"(uint8_t)(({digit}) + {first})" if bits else f"(uint8_t)({digit} + {first})"
+        body = f"return (uint8_t)({self._character()});"
+        name = helpers.helper(f"digit_{self._words}", "uint8_t", ("uint8_t digit",), body)
+        return f"{name}((uint8_t)({digit}))"
+
     # --- bodies ---------------------------------------------------------------------------------
 
     @property

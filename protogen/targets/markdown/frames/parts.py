@@ -69,7 +69,10 @@ def part_type(part: Part) -> str:
 def part_value(part: Part) -> str:
     """Return what a part holds in any frame."""
     if isinstance(part, NumberPart) and not isinstance(part, ChoicePart) and part.type.is_text:
-        return plural(part.type.size, "character")
+        count = plural(part.type.size, "character")
+        if part.between is None:
+            return count
+        return f"{count}, {' to '.join(literal_text(bytes((end,))) for end in part.between)}"
     match part:
         case LiteralPart():
             return literal_text(part.bytes)

@@ -6,6 +6,7 @@ from protogen.model.frame import ChoicePart, LiteralPart, NumberPart
 from protogen.model.frame_plan import EndRule, LengthPlan, StartRule
 from protogen.model.framing import are_run
 from protogen.runtime.bulk_cut import MIN_DATA
+from protogen.targets.python import frames as tables
 from protogen.targets.python.engine import identities
 from protogen.targets.python.engine.checksums import ChecksumFunction
 from protogen.targets.python.engine.frames import EngineFrame
@@ -415,7 +416,10 @@ class _Cutter(ChecksumFunction):
             part = item.part
             assert isinstance(part, NumberPart)
             number = self.number(self.content, part)
-            if not isinstance(part, ChoicePart):
+            if part.between is not None:
+                characters = self.lines.constants.named("NUMBER", tables.number(part))
+                self.stop_if(f"not {characters}.holds({number})")
+            elif not isinstance(part, ChoicePart):
                 self.stop_if(f"not {part.least} <= {number} <= {part.greatest}")
             elif item.end > self.plan.start_size:
                 self.stop_if(f"{number} not in {tuple_of(map(str, part.values))}")

@@ -117,7 +117,7 @@ def _identity_of(message: Message, frame: EngineFrame, lines: Lines) -> list[str
         if message.chooses(index):
             given, default, value = f"{part.name}_", value, f"identity{index}"
             if part.type.is_text:
-                number = f"{text_reader(part.type, lines)}({given})"
+                number = f"{text_reader(part, lines)}({given})"
                 lines.add(f"{value} = {default} if {given} is None else {number}")
             else:
                 lines.add(f"{value} = {default} if {given} is None else {given}")
@@ -132,9 +132,9 @@ def _in_run(value: str, first: int, last: int) -> str:
     return f"{value} == {first}" if first == last else f"{first} <= {value} <= {last}"
 
 
-def text_reader(type_: Integer, lines: Lines) -> str:
+def text_reader(part: NumberPart, lines: Lines) -> str:
     """The name of what reads the number of a text that a caller gives."""
-    return lines.constants.named("TEXT", f"_fast.text({tables.number(type_)})")
+    return lines.constants.named("TEXT", f"_fast.text({tables.number(part)})")
 
 
 def _variable(part: CounterPart | ValuePart) -> str:
@@ -248,7 +248,7 @@ class _Framer(FrameFunction):
             self.lines.refuse_if(f"not {least} <= {part.name}_ <= {greatest}")
 
     def _read_text(self, part: ValuePart | CounterPart) -> None:
-        number = f"{text_reader(part.type, self.lines)}({part.name}_)"
+        number = f"{text_reader(part, self.lines)}({part.name}_)"
         if part.default is not None:
             number = f"{part.default} if {part.name}_ is None else {number}"
         self.lines.add(f"{_variable(part)} = {number}")
@@ -395,4 +395,4 @@ def _is_packed(part: Part) -> bool:
 
 
 def _is_plain(type_: Integer) -> bool:
-    return type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64)
+    return type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64) and type_.text is None

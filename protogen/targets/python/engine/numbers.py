@@ -76,5 +76,5 @@ class FrameFunction:
 
     @staticmethod
     def has_padding(type_: Integer) -> bool:
-        """True if some bits of the bytes have to be clear."""
-        return type_.bits % 8 != 0 or type_.byte_bits == 7
+        """True if some bits of the bytes have to be clear, or the bytes be digits."""
+        return type_.bits % 8 != 0 or type_.byte_bits == 7 or type_.text is not None

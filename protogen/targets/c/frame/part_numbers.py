@@ -1,0 +1,66 @@
+"""Numbers of frames as C reads and writes them: bytes of bits, or digits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from protogen.model.frame import NumberPart, TypedPart
+from protogen.model.frame_plan import FramePlan
+from protogen.model.numbers import Numeral
+from protogen.model.types import Integer, storage_bits
+from protogen.targets.c.frame import expressions
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.numerals import Digits
+from protogen.targets.c.spelling import unsigned_type
+
+
+class PartNumbers:
+    """Fragments of C for the numbers of a frame; digits have functions, which payloads share."""
+
+    def __init__(self, helpers: Helpers) -> None:
+        self._helpers = helpers
+
+    def value(self, type_: Integer, at: str, offset: int, less: str = "") -> str:
+        """The value of the bytes from `at[offset]` on, with bits that have to be zero.
+
+        `less` is C that is put behind each index.
+        """
+        if isinstance(type_.text, Numeral):
+            return Digits.of(type_).value(self._helpers, _address(at, offset, less))
+        return expressions.number_of(type_, at, offset, less)
+
+    def shown(self, type_: Integer, at: str, offset: int, less: str) -> str:
+        """The same value, in the type of a member that holds it."""
+        value = self.value(type_, at, offset, less)
+        is_wider = type_.text is None and storage_bits(type_.byte_bits * type_.size) > type_.width
+        return f"({unsigned_type(type_.bits)})({value})" if is_wider else value
+
+    def fault(self, type_: Integer, at: str, offset: int, less: str) -> str:
+        """The condition that no value has these bytes; empty where each has one."""
+        if isinstance(type_.text, Numeral):
+            address = _address(at, offset, less)
+            return " || ".join(Digits.of(type_).faults(self._helpers, address))
+        if type_.byte_bits * type_.size == type_.bits:
+            return ""
+        return f"({expressions.number_of(type_, at, offset, less)} >> {type_.bits}) != 0U"
+
+    def bytes_of(self, type_: Integer, value: str) -> tuple[str, ...]:
+        """The bytes of an unsigned `value`, in wire order."""
+        if isinstance(type_.text, Numeral):
+            return Digits.of(type_).characters(self._helpers, value)
+        return expressions.wire_bytes(type_, value)
+
+
+def claim_functions(plans: Iterable[FramePlan], numbers: PartNumbers) -> None:
+    """Ask for the functions that read and write the digits of frames, so that they are printed."""
+    for plan in plans:
+        for item in plan.placed:
+            if isinstance(item.part, TypedPart):
+                numbers.bytes_of(item.part.type, "value")
+            if isinstance(item.part, NumberPart):
+                numbers.value(item.part.type, "content", 0)
+                numbers.fault(item.part.type, "content", 0, "")
+
+
+def _address(at: str, offset: int, less: str) -> str:
+    return f"&{at}[{offset}{less}]"
