@@ -527,7 +527,7 @@ class TestRuns:
 
 SEPARATED = {("separated_line", "receiver")}
 """Fields that separators end are left to the reference."""
-CUT_BY_THE_REFERENCE = {("checksum_only", "station"), *SEPARATED}
+CUT_BY_THE_REFERENCE = {("checksum_only", "station"), ("terminated_alone", "device"), *SEPARATED}
 """Nothing marks where the others' frames start, so a frame may begin at every byte."""
 
 
