@@ -30,6 +30,7 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    Until,
 )
 from protogen.runtime.errors import ByteError
 from protogen.runtime.payload.number import Number
@@ -160,14 +161,31 @@ class _Reader:
     def _count(self, extent: Extent, scope: Scope, *, constant: bool) -> int | None:
         if isinstance(extent, Fixed):
             return extent.count
-        if isinstance(extent, Fill):
+        if isinstance(extent, Fill | Until):
             return None
         count = worked_out(extent.by, scope)
         if not constant:
             _bounded(extent, count)
         return count
 
+    def _up_to(self, type_: Text | Octets, extent: Until) -> bytes:
+        """Bytes in front of a terminator, behind which it goes on."""
+        left = self._payload[self.at :]
+        if len(left) <= extent.least:
+            raise Wrong("size", self.at + extent.least + 1)
+        size = left.find(extent.byte)
+        if size < 0 and len(left) <= extent.greatest:
+            raise Wrong("size", len(self._payload) + 1)
+        if not extent.least <= size <= extent.greatest:
+            raise Wrong("size")
+        data, _ = self._take(size), self._take(1)
+        if type_.byte_bits == 7 and not data.isascii():
+            raise Wrong("encoding")
+        return data
+
     def _bytes(self, type_: Text | Octets, scope: Scope, *, constant: bool) -> bytes:
+        if isinstance(type_.extent, Until):
+            return self._up_to(type_, type_.extent)
         count = self._count(type_.extent, scope, constant=constant)
         if count is None:
             assert isinstance(type_.extent, Fill)

@@ -225,6 +225,46 @@ class TestSeparators:
         assert all(item.witnesses for item in harmful)
 
 
+class TestTerminators:
+    """What becomes of messages with data up to a terminator."""
+
+    @pytest.mark.parametrize(
+        ("form", "rule"),
+        [
+            ("{type: ascii, until: {byte: 10, max: 4}}", "field-encoding"),
+            ("{type: ascii, size: 4}", "field-encoding"),
+            ("{type: ascii, until: {byte: 0, max: 3}}", "field-count"),
+            ("{type: ascii, until: {byte: 0, min: 1, max: 4}}", "field-count"),
+        ],
+    )
+    def test_frames_show_what_changed(self, form: str, rule: str, tmp_path: Path) -> None:
+        before = "  order: {id: 2, from: host, fields: {mode: mode}}\n"
+        after = "  order: {id: 2, from: host, fields: {name: FORM, x: uint16}}\n"
+        old, new = (
+            compiled(
+                tmp_path / f"{index}.yaml", SCHEMA.replace(before, after.replace("FORM", text))
+            )
+            for index, text in enumerate(("{type: ascii, until: {byte: 0, max: 4}}", form))
+        )
+        found = [item for item in findings(old, new)[1] if item.category.value == "WIRE"]
+        assert rule in {item.rule.name for item in found}
+        assert all(item.witnesses for item in found)
+
+    def test_bytes_that_end_alike_are_shown_as_text(self, tmp_path: Path) -> None:
+        before = "  order: {id: 2, from: host, fields: {mode: mode}}\n"
+        after = (
+            "  order: {id: 2, from: host, fields: {name: {type: KIND, until: {byte: 0, max: 4}}}}\n"
+        )
+        old, new = (
+            compiled(tmp_path / f"{kind}.yaml", SCHEMA.replace(before, after.replace("KIND", kind)))
+            for kind in ("ascii", "bytes")
+        )
+        _, found = findings(old, new)
+        assert {(item.category.value, item.rule.name) for item in found} == {
+            ("SOURCE", "field-kind")
+        }
+
+
 class TestCases:
     def test_each_case_has_a_frame_that_selects_it(self, tmp_path: Path) -> None:
         old = "  order: {id: 2, from: host, fields: {mode: mode}}\n"

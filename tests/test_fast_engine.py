@@ -531,7 +531,11 @@ SENT_BY_THE_REFERENCE = {
     ("digit_lengths", "station"),
 }
 """Behind the payload stands something that is no checksum."""
-CUT_BY_THE_REFERENCE = {("checksum_only", "station"), *SENT_BY_THE_REFERENCE}
+CUT_BY_THE_REFERENCE = {
+    ("checksum_only", "station"),
+    ("terminated_alone", "device"),
+    *SENT_BY_THE_REFERENCE,
+}
 """Nothing marks where the others' frames start, so a frame may begin at every byte."""
 
 

@@ -14,7 +14,7 @@ from protogen.fuzzing.trips import Case
 
 NAMES = {"pseudorange": "P", "carrier_phase": "L", "doppler": "D", "whole": "i", "fraction": "f"}
 """Fields that have other names there."""
-LISTS = ("fwd_payload", "contents")
+LISTS = ("fwd_payload", "contents", "data")
 """Bytes that it has as lists of numbers."""
 PADDED = {"name": 20, "interface_name": 16}
 """Sizes of texts that it doesn't pad itself."""
@@ -42,7 +42,7 @@ class Swift:
         if not case.values:
             empty: bytes = self._msg.SBP(number, sender, 0, b"").pack()
             return empty
-        values = {name: as_theirs(name, value) for name, value in case.values.items()}
+        values = {name: as_theirs(name, value) for name, value in joined(case.values).items()}
         made: bytes = kind(sender=sender, **values).to_binary()
         return made
 
@@ -51,7 +51,9 @@ class Swift:
         packet = self._msg.SBP.unpack(frame)
         assert packet.sender == case.parts["sender"]
         read = kind(packet)
-        return {name: as_ours(getattr(read, name), value) for name, value in case.values.items()}
+        like = as_it_reads(joined(case.values))
+        found = {name: as_ours(getattr(read, name), value) for name, value in like.items()}
+        return case.values if found == like else found
 
     def found(self, endpoint: str, data: bytes) -> Iterator[bytes]:
         """It goes on behind what it took for a frame, whatever that was."""
@@ -66,6 +68,25 @@ class Swift:
 
         for message, _ in self._framer(read, None, dispatcher=lambda packet: packet):
             yield message.pack()
+
+
+def joined(values: Values) -> Values:
+    """Texts with NUL behind each; it has those of a setting as one."""
+    found = dict(values)
+    if "filename" in found:
+        found["filename"] += "\0"
+    if isinstance(found.get("setting"), dict):
+        more = [item["text"] for item in found.pop("more", ())]
+        found["setting"] = "".join(f"{text}\0" for text in (*found["setting"].values(), *more))
+    return found
+
+
+def as_it_reads(values: Values) -> Values:
+    """It takes all that follows for part of a file's name."""
+    if "filename" not in values or "data" not in values:
+        return values
+    name = values["filename"] + bytes.fromhex(values["data"]).decode("latin-1")
+    return {**values, "filename": name, "data": ""}
 
 
 def as_theirs(name: str, value: Any) -> Any:

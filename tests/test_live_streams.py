@@ -117,6 +117,8 @@ AWAITED_BY_THE_REFERENCE = {
     ("slip", "station"),
     ("told_numbers", "station"),
     ("told_presence", "station"),
+    ("terminated", "station"),
+    ("terminated_alone", "device"),  # Nothing marks where these frames start.
 }
 
 

@@ -149,7 +149,7 @@ def _columns(
         if isinstance(step, OptionalStep):
             by = step.condition
             when = by if isinstance(by, int) else _referred(by, outer)
-        if isinstance(held, BytesStep | RepeatStep) and held.fills:
+        if isinstance(held, BytesStep | RepeatStep) and held.count.member:
             yield Column(
                 name=_free(held.count.member, taken),
                 role="count",
@@ -183,7 +183,7 @@ def _column(step: AnyStep, outer: Sequence[str], taken: Sequence[str] = ()) -> C
 def _dimension(count: Count, outer: Sequence[str], taken: Sequence[str]) -> Dimension:
     """C has no empty arrays, so there is room for one element at least."""
     capacity = max(1, count.greatest)
-    if count.fills:
+    if count.member:
         return Dimension(capacity, _free(count.member, taken))
     return Dimension(capacity, None if count.by is None else _referred(count.by, outer))
 

@@ -25,6 +25,7 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    Until,
 )
 
 if TYPE_CHECKING:
@@ -114,8 +115,9 @@ class TypeComparison:
             old = replace(old, by=self.now(old.by))
         if old == new:
             return
-        words = named(_amount(old), _amount(new))
-        yield self._report("field-count", path, words)
+        ends = [extent.byte if isinstance(extent, Until) else None for extent in (old, new)]
+        rule = "field-count" if ends[0] == ends[1] else "field-encoding"
+        yield self._report(rule, path, named(_amount(old), _amount(new)))
 
     def _packing(self, old: Array | Struct, new: Array | Struct, path: str) -> Iterator[Change]:
         if old.packed != new.packed:
@@ -310,5 +312,10 @@ def _amount(extent: Extent) -> str:
         case Counted():
             return f"{extent.least} to {extent.greatest}, as {extent.by.text} says"
         case Fill():
-            amount = f"{extent.least} to" if extent.least else "up to"
-            return f"{amount} {extent.greatest}, to the end"
+            return f"{_bounds(extent)}, to the end"
+        case Until():
+            return f"{_bounds(extent)}, in front of {extent.byte:02X}"
+
+
+def _bounds(extent: Fill | Until) -> str:
+    return f"{extent.least} to {extent.greatest}" if extent.least else f"up to {extent.greatest}"

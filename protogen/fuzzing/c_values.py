@@ -163,8 +163,8 @@ class _Exchange(ABC):
         return [self._value(step.element, item) for item in elements]
 
     def _size(self, count: Count, given: int) -> int:
-        """Number of elements or bytes; where they fill the payload, it stands in front."""
-        if count.fills:
+        """Number of elements or bytes; where a member holds it, it stands in front."""
+        if count.member:
             return self._filled(count, given)
         size = said(count.by, self._records) if count.by is not None else count.known
         if size is None or not 0 <= size <= count.greatest:

@@ -314,33 +314,42 @@ def _any_float(form: str, random: Random) -> float | str:
 def _text_choices(step: BytesStep, lengths: Lengths) -> Choices:
     least, greatest = lengths
     if not isinstance(step.type, Text):
-        return bytes_choices(least, greatest, SEVEN_BITS if step.type.byte_bits == 7 else 0xFF)
+        highest = SEVEN_BITS if step.type.byte_bits == 7 else 0xFF
+        return bytes_choices(least, greatest, highest, step.count.until)
     if isinstance(step.type.extent, Fixed):
         least = 0
-    values = [character * greatest for character in ("A", "\n", chr(_LAST_OF_ASCII))]
+    end = step.count.until
+    ends = (_without(end, character.encode()) for character in ("A", "\n", chr(_LAST_OF_ASCII)))
+    values = [character.decode() * greatest for character in ends]
     return Choices(
-        _distinct(["A" * least, *values]),
-        lambda random: _any_text(random, _any_length(least, greatest, random)),
+        _distinct([values[0][:least], *values]),
+        lambda random: _any_text(random, _any_length(least, greatest, random), end),
     )
 
 
-def _any_text(random: Random, length: int) -> str:
+def _any_text(random: Random, length: int, end: int | None = None) -> str:
     # NUL pads a text of a fixed size, so no text has it.
-    return "".join(chr(random.randint(1, _LAST_OF_ASCII)) for _ in range(length))
+    data = bytes(random.randint(1, _LAST_OF_ASCII) for _ in range(length))
+    return _without(end, data).decode()
 
 
-def bytes_choices(least: int, greatest: int, highest: int) -> Choices:
-    """Bytes of any such length, none of them above `highest`."""
+def _without(end: int | None, data: bytes) -> bytes:
+    """The bytes with others for those that would end them."""
+    return data if end is None else bytes(byte ^ (byte == end) for byte in data)
+
+
+def bytes_choices(least: int, greatest: int, highest: int, end: int | None = None) -> Choices:
+    """Bytes of any such length, none of them above `highest`, and none of them `end`."""
     counting = bytes(index & highest for index in range(greatest))
     values = (bytes(least), bytes(greatest), bytes((highest,)) * greatest, counting)
     return Choices(
-        _distinct(value.hex() for value in values),
-        lambda random: _any_bytes(random, _any_length(least, greatest, random), highest),
+        _distinct(_without(end, value).hex() for value in values),
+        lambda random: _any_bytes(random, _any_length(least, greatest, random), highest, end),
     )
 
 
-def _any_bytes(random: Random, length: int, highest: int) -> str:
-    return bytes(byte & highest for byte in random.randbytes(length)).hex()
+def _any_bytes(random: Random, length: int, highest: int, end: int | None) -> str:
+    return _without(end, bytes(byte & highest for byte in random.randbytes(length))).hex()
 
 
 def count_choices(lengths: Lengths) -> Choices:
@@ -352,7 +361,7 @@ def count_choices(lengths: Lengths) -> Choices:
 
 def lengths_of(count: Count, said: int) -> Lengths:
     """The least and the greatest number of elements or bytes; `said` is what a number says."""
-    if count.fills:
+    if count.fills or count.until is not None:
         return count.least, max(count.least, min(count.greatest, _GREATEST_COUNT))
     found = said if count.known is None else count.known
     return found, found

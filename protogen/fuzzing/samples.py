@@ -231,6 +231,7 @@ class _Sampler:
             self.size += len(codec(bare.type).encode(value))
             return value
         is_text = isinstance(bare, BytesStep) and isinstance(bare.type, Text)
+        self.size += isinstance(bare, BytesStep) and bare.count.until is not None
         fixed = step.sizes.fixed
         self.size += fixed if fixed is not None else len(value) // (1 if is_text else 2)
         return value
@@ -262,6 +263,8 @@ class _Sampler:
             greatest = min(greatest, max(0, self._sizes.greatest - self.size) // size)
             needed = -(min(0, self.size - self._sizes.least) // size)
             least = min(greatest, max(least, needed))
+        if count.until is not None:
+            greatest = min(greatest, max(least, self._sizes.greatest - self.size - 1))
         return least, greatest
 
     def _case(self, step: ChooseStep, chooser: Chooser) -> Any:

@@ -44,6 +44,7 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    Until,
     beyond,
     count_name,
     is_text,
@@ -87,7 +88,7 @@ class _Builder:
         steps: list[AnyStep] = []
         needed = _needed_behind(fields, needed_behind)
         for index, field in enumerate(fields):
-            member = count_name(fields, field) if field.fills else ""
+            member = count_name(fields, field) if field.has_count else ""
             at_end = is_last and index == len(fields) - 1
             self._needed = needed[index]
             step = self._step(field, field.type, field.name, at_end, member)
@@ -251,7 +252,7 @@ class _Builder:
         counts, number = extent.counts, None
         if isinstance(extent, Counted):
             number = self._formula(extent.by)
-        known = None if isinstance(extent, Fill) else counts.fixed
+        known = None if isinstance(extent, Fill | Until) else counts.fixed
         if known is None and isinstance(number, int):
             known = number
         return Count(
@@ -260,6 +261,7 @@ class _Builder:
             by=number if isinstance(number, Formula) else None,
             member=member,
             fills=isinstance(extent, Fill),
+            until=extent.byte if isinstance(extent, Until) else None,
             least=counts.least,
             greatest=counts.greatest,
             stated=extent.stated,

@@ -141,9 +141,11 @@ class Count(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
     by: Formula | None = None
     """The numbers that say it, unless those are constants."""
     member: str = ""
-    """Name for the number in a record, where all that is left of the payload is taken."""
+    """Name for the number in a record, where no earlier field says it."""
     fills: bool = False
     """True if all that is left of the payload is taken."""
+    until: int | None = None
+    """The byte that ends what is taken, and stands behind it."""
     least: int
     greatest: int
     stated: bool
@@ -151,8 +153,8 @@ class Count(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
 
     @property
     def is_fixed(self) -> bool:
-        """True if neither fields nor the payload's end say the number."""
-        return self.expression is None and not self.fills
+        """True if nothing in the payload says the number."""
+        return self.expression is None and not self.fills and self.until is None
 
 
 class Step(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):

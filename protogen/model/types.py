@@ -53,6 +53,7 @@ __all__ = [
     "Switch",
     "Text",
     "Type",
+    "Until",
     "bits_of",
     "characters",
     "codec",
@@ -142,7 +143,31 @@ class Fill:
         return SizeSet.between(self.least, self.greatest)
 
 
-Extent = Fixed | Counted | Fill
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Until:
+    """As many as stand in front of a terminator, `least` to `greatest`."""
+
+    byte: int
+    """The terminator, which is no part of the value."""
+    least: int = 0
+    greatest: int
+    stated: bool = dataclass_field(default=False, compare=False)
+    """True if the schema bounds the number; else `greatest` is what the frame can take, in a
+    declared type wherever it has the most room."""
+    needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def label(self) -> str:
+        """The number in the words of the schema language."""
+        return f"until 0x{self.byte:02X}"
+
+    @property
+    def counts(self) -> SizeSet:
+        """Possible numbers of bytes, without the terminator."""
+        return SizeSet.between(self.least, self.greatest)
+
+
+Extent = Fixed | Counted | Fill | Until
 
 
 class _Bytes(msgspec.Struct, frozen=True, kw_only=True):
@@ -164,9 +189,15 @@ class _Bytes(msgspec.Struct, frozen=True, kw_only=True):
         return f"{self.word}[{self.extent.label}]"
 
     @property
+    def terminator(self) -> bytes:
+        """What ends it on the wire and is no part of the value; empty where its size is told."""
+        return bytes((self.extent.byte,)) if isinstance(self.extent, Until) else b""
+
+    @property
     def sizes(self) -> SizeSet:
-        """Wire bytes."""
-        return self.extent.counts
+        """Wire bytes, with those of the terminator."""
+        counts = self.extent.counts
+        return counts + SizeSet.exactly(1) if isinstance(self.extent, Until) else counts
 
 
 class Text(_Bytes, frozen=True, kw_only=True):
@@ -206,7 +237,7 @@ class Struct:
         return self.name
 
     def __post_init__(self) -> None:
-        stored = any(field.is_stored or field.fills for field in self.fields)
+        stored = any(field.is_stored or field.has_count for field in self.fields)
         packing = packing_of(self)
         sizes = total(self.fields) if packing is None else SizeSet.exactly(packing.size)
         object.__setattr__(self, "sizes", sizes)
@@ -410,9 +441,9 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
         return self.const is None and self.type.holds_values
 
     @property
-    def fills(self) -> bool:
-        """True if the payload's end says how many elements or bytes there are."""
-        return self.const is None and isinstance(self.type.extent, Fill)
+    def has_count(self) -> bool:
+        """True if a record keeps the number of elements or bytes, which no earlier field says."""
+        return self.const is None and isinstance(self.type.extent, Fill | Until)
 
     @property
     def constant_number(self) -> int | None:
@@ -443,6 +474,6 @@ def beyond(needed: frozenset[str], name: str) -> frozenset[str]:
 
 
 def count_name(fields: Sequence[Field], field: Field) -> str:
-    """Name beside those of `fields` for the number of elements or bytes of one that `fills`."""
+    """Name beside those of `fields` for the number of elements or bytes of one that has it."""
     word = "count" if isinstance(field.type, Array) else "size"
     return free_name(f"{field.name}_{word}", {item.name for item in fields})

@@ -22,6 +22,7 @@ _BUILT_IN_PATTERN = (
 _FORMS = ("fields", "switch")
 _NUMERIC = ("scale", "offset", "unit", "special", "range")
 _NAMED = ("values", "flags", "bits")
+_LENGTHS = ("size", "until")
 _WRITTEN = ("digits", "code", "chars")
 _PART_ROLES = ("literal", "id", "counts", "counter", "algorithm")
 
@@ -96,13 +97,18 @@ _FIELD_RULES = (
     _where(
         _any_of(_FORMS),
         "These are for numbers.",
-        _none_of((*_NUMERIC, *_NAMED, *_WRITTEN, "size", "const", "default", "closed")),
+        _none_of((*_NUMERIC, *_NAMED, *_WRITTEN, *_LENGTHS, "const", "default", "closed")),
     ),
     _where(
         _type_like("ascii|bytes"),
         "These are for numbers; the length is the `size`.",
         _none_of((*_NUMERIC, *_NAMED, "count", "closed", "packed")),
     ),
+    {"$comment": "A size is told, or a terminator ends it.", "not": _with(*_LENGTHS)},
+    {
+        "$comment": "The size of what is always the same never changes.",
+        "not": _with("until", "const"),
+    },
     _where(_type_like("bool"), "A bool is no number.", _none_of((*_NUMERIC, *_NAMED, "closed"))),
     _where(
         _type_like("float32|float64"),
@@ -133,8 +139,8 @@ _FIELD_RULES = (
     ),
     _where(
         _type_like(f"{INTEGER_PATTERN}|byte|char|bool|float32|float64"),
-        "Elements are counted by `count`; `size` is for ascii and bytes.",
-        _none_of(("size",)),
+        "Elements are counted by `count`; `size` and `until` are for ascii and bytes.",
+        _none_of(_LENGTHS),
     ),
     _where(
         _type_like(f"{INTEGER_PATTERN}|byte|char"),
@@ -244,7 +250,7 @@ BUILT_IN_FIELD: JsonObject = {
             "fields": _BUILT_IN_FIELDS,
             "cases": _BUILT_IN_FIELDS,
         },
-        **_where(_type_like("ascii|bytes"), "Its length is its `size`.", _with("size")),
+        **_where(_type_like("ascii|bytes"), "It has a `size` or a terminator.", _any_of(_LENGTHS)),
     },
 }
 """A field that names no declared type, and whose text has its size beside it."""

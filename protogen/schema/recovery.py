@@ -35,7 +35,7 @@ _WITHOUT_EFFECT = frozenset(
     | {"doc", "source"}
 )
 """Keys of a field that change neither its size nor its name."""
-_LEFT_OUT = _WITHOUT_EFFECT | {"count", "size", "byte_order"}
+_LEFT_OUT = _WITHOUT_EFFECT | {"count", "size", "until", "byte_order"}
 """Keys that may be dropped and leave a field."""
 _SOME_FIELD = {"type": "uint1"}
 """Stand-in for a field that can't be read: its name is still known, and it fits anywhere."""

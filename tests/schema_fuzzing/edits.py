@@ -23,6 +23,7 @@ JUNK: tuple[Any, ...] = (
     [], [[]], [None], [1, 2], [2, 1], [300], [-1], ["payload"], ["a", "b"], [True], [1.5, "x"], {},
     {"hex": "0"}, {"hex": "ZZ"}, {"hex": "0A 0B"}, {"text": "漢"}, {"text": "ab"}, {"fill": True},
     {"fill": False}, {"fill": True, "max": -1}, {"type": "uint8"}, {"type": "uint8", "count": "x"},
+    {"byte": 0, "max": 2},
     {"fields": {}}, {"fields": {"x": "uint8"}}, {"xor": 999}, {"width": 0, "poly": 1},
     {"width": 8, "poly": 999}, {1: 2}, {True: 1}, {"a": {"b": {"c": [1, {"d": None}]}}},
     {"literal": {"hex": ""}}, {"type": "uint8", "id": True}, {"type": "uint8", "counts": "payload"},
@@ -33,7 +34,7 @@ JUNK: tuple[Any, ...] = (
 NEW_KEYS: tuple[Any, ...] = (
     "type", "fields", "count", "size", "values", "closed", "flags", "bits", "const", "default",
     "packed", "range", "scale", "offset", "unit", "special", "switch", "cases", "byte_order",
-    "unknown", "digits", "code", "chars", "fraction", "case", "empty", "separator",
+    "unknown", "digits", "code", "chars", "fraction", "case", "empty", "separator", "until",
     "in_front", "byte", "id",
     "from", "min_size", "max_size", "literal", "unprotected", "counts", "counter", "algorithm",
     "covers", "over", "when", "escape", "substitute", "encoding", "preset", "lenient", "examples",

@@ -188,6 +188,8 @@ def _kinds(setting: Setting) -> list[str]:
     kinds = ["number"] * 6 + ["string", "string", "array", "array", "counted", "counted", "switch"]
     if setting.depth < GREATEST_DEPTH:
         kinds += ["struct", "struct"]
+    if setting.budget > 1:
+        kinds += ["until", "until"]
     if can_pack(setting):
         kinds += ["packed array", "packed struct"]
     if setting.may_fill:
@@ -274,6 +276,27 @@ def _string(draw: st.DrawFn, setting: Setting) -> Built:
         content = st.lists(st.integers(0, highest), min_size=size, max_size=size)
         data[key] = {"hex": bytes(draw(content)).hex()}
     return Built(data, Size(size, size))
+
+
+@st.composite
+def _until(draw: st.DrawFn, setting: Setting) -> Built:
+    """A text or bytes in front of a terminator."""
+    kind = draw(st.sampled_from(["ascii", "bytes"]))
+    highest = (1 << setting.byte_bits) - 1
+    end = draw(st.sampled_from([0, 0, 0x0A, 0x3B, highest]) | st.integers(0, highest))
+    data: dict[str, Any] = {"type": kind, **draw(forms.about())}
+    if setting.may_fill and setting.exact and (setting.room or 0) > 2 and draw(st.booleans()):
+        least, most = 0, (setting.room or 0) - 1
+        data["until"] = draw(st.sampled_from([end, {"byte": end}]))
+    else:
+        most = draw(st.integers(1, min(_USUAL_BYTES, setting.budget - 1)))
+        least = draw(st.integers(0, most - 1)) if draw(forms.one_in(3)) else 0
+        data["until"] = {"byte": end, "max": most, **({"min": least} if least else {})}
+    if draw(forms.one_in(5)):
+        byte = next(byte for byte in b"aB" if byte != end)
+        content = bytes([byte]) * draw(st.integers(least, min(most, least + 4)))
+        data["default"] = content.decode() if kind == "ascii" else {"hex": content.hex()}
+    return Built(data, Size(least + 1, most + 1))
 
 
 @st.composite
@@ -389,6 +412,7 @@ def _case(draw: st.DrawFn, setting: Setting) -> Built:
 _ITEMS: Mapping[str, Callable[[Setting], st.SearchStrategy[Built]]] = {
     "number": number,
     "string": _string,
+    "until": _until,
     "array": _fixed_array,
     "struct": _struct,
     "declared": _declared,

@@ -31,6 +31,7 @@ from protogen.model.frame import (
 from protogen.model.messages import Message
 from protogen.model.types import (
     Array,
+    Extent,
     Field,
     Fixed,
     Float,
@@ -40,6 +41,7 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    Until,
 )
 
 Scope = Mapping[str, Any]
@@ -63,12 +65,9 @@ def _value(type_: Type, value: Any, scope: Scope) -> bytes:
         case Float():
             return _float_bytes(type_, value)
         case Text():
-            data: bytes = value.encode("latin-1")
-            return (
-                data.ljust(type_.extent.count, b"\0") if isinstance(type_.extent, Fixed) else data
-            )
+            return _ended(type_.extent, value.encode("latin-1"))
         case Octets():
-            return bytes.fromhex(value)
+            return _ended(type_.extent, bytes.fromhex(value))
         case Struct(packed=str(order)) | Array(packed=str(order)):
             return bytes_of(_bits(type_, value, order), order)
         case Struct():
@@ -76,6 +75,16 @@ def _value(type_: Type, value: Any, scope: Scope) -> bytes:
         case Array():
             return b"".join(_value(type_.element, element, scope) for element in value)
     return _switch_bytes(type_, value, scope)
+
+
+def _ended(extent: Extent, data: bytes) -> bytes:
+    """Bytes with what fills them up, or ends them."""
+    match extent:
+        case Fixed():
+            return data.ljust(extent.count, b"\0")
+        case Until():
+            return data + bytes([extent.byte])
+    return data
 
 
 def _bits(type_: Type, value: Any, order: str) -> list[int]:

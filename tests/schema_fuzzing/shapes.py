@@ -10,7 +10,7 @@ from schema_fuzzing.frames import FramePlan
 _FIELD_KEYS = (
     "values", "closed", "flags", "bits", "const", "default", "range", "scale", "offset", "unit",
     "special", "byte_order", "unknown", "switch", "packed", "digits",
-    "code", "chars", "when", "fraction", "case", "empty",
+    "code", "chars", "when", "fraction", "case", "empty", "until",
 )  # fmt: skip
 
 _CODES = (

@@ -28,6 +28,7 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    Until,
 )
 
 _USUAL_COUNT = 5
@@ -252,10 +253,18 @@ def _rounded(value: Fraction, bits: int) -> float:
 def _string(draw: st.DrawFn, type_: Text | Octets, scope: Scope) -> str:
     size = draw(_size(type_.extent, scope))
     if isinstance(type_, Octets):
-        return draw(_octets(size, type_.byte_bits)).hex()
+        return _without_end(type_.extent, draw(_octets(size, type_.byte_bits))).hex()
     if not isinstance(type_.extent, Fixed):
-        return draw(_text(size, size))
+        return _without_end(type_.extent, draw(_text(size, size)).encode()).decode()
     return draw(_text(0, size)).rstrip("\0")
+
+
+def _without_end(extent: Extent, data: bytes) -> bytes:
+    """The bytes with another one in the place of each that would end them."""
+    if not isinstance(extent, Until):
+        return data
+    other = 0x41 if extent.byte != 0x41 else 0x42
+    return bytes(other if byte == extent.byte else byte for byte in data)
 
 
 def _text(least: int, greatest: int) -> st.SearchStrategy[str]:

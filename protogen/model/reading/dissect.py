@@ -222,7 +222,7 @@ class _Reader:
             self.rows.append(_bits(item, run, base, row.offset))
 
     def _scalar(self, step: ScalarStep, path: str, scope: Scope) -> None:
-        size = _count(step.count, scope) if isinstance(step, BytesStep) else self._size(step.type)
+        size = self._size_of(step, scope)
         size = self._cursor.left if size is None else size
         label = step.type.label
         row = self._cursor.take(size, path, label, subject=step.field, value_type=step.type)
@@ -232,6 +232,14 @@ class _Reader:
         if isinstance(row.value, int):
             scope[step.field.name] = row.value
         self.rows.append(row)
+
+    def _size_of(self, step: ScalarStep, scope: Scope) -> int | None:
+        """Bytes of a value, with a terminator; None: as many as there are."""
+        if not isinstance(step, BytesStep):
+            return self._size(step.type)
+        if step.count.until is not None:
+            return self._cursor.size_to(step.count.until, 0) + 1
+        return _count(step.count, scope)
 
     def _size(self, type_: NumberType) -> int | None:
         """Bytes of a number; None: as many as there are."""
@@ -290,6 +298,7 @@ def _read(step: ScalarStep, row: Row) -> Row:
     if Check.SEVEN_BIT in step.checks and not row.bytes.isascii():
         return replace(row, fault="has a byte of more than 7 bits")
     if isinstance(step, BytesStep):
+        row = row if step.count.until is None else replace(row, fault=_bounds_fault(step, row))
         return _text(step, row) if isinstance(step.type, Text) else _octets(step.field, row)
     try:
         value = codec(step.type).decode(row.bytes)
@@ -313,8 +322,20 @@ def _octets(field: Field, row: Row) -> Row:
     return row
 
 
+def _bounds_fault(step: BytesStep, row: Row) -> str:
+    """The reason that there are too many bytes in front of a terminator, or too few."""
+    size = len(row.bytes) - 1
+    if size > step.count.greatest:
+        return f"has {size} bytes in front of the terminator, at most {step.count.greatest}"
+    if size < step.count.least:
+        return f"has {size} bytes in front of the terminator, at least {step.count.least}"
+    return ""
+
+
 def _text(step: BytesStep, row: Row) -> Row:
     text = row.bytes.decode("latin-1")
+    if step.count.until is not None:
+        text = text[:-1]
     if isinstance(step.type.extent, Fixed):
         text = text.rstrip("\0")
     due = step.field.const

@@ -206,7 +206,7 @@ class _Resolution:
         greatest = max(self._fields, key=lambda field: field.sizes.greatest).name
         loc = (*self._loc, "fields", greatest)
         written = self._syntax.fields[greatest].model_fields_set
-        return next(((*loc, key) for key in ("count", "size") if key in written), loc)
+        return next(((*loc, key) for key in ("count", "size", "until") if key in written), loc)
 
     def _stated_sizes(self) -> SizeSet:
         sizes = total(self._fields)

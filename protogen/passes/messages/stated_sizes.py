@@ -1,7 +1,7 @@
 """Sizes that a schema insists on.
 
-A count without a `range` and a fill without `max` take what the frame has room for. Everything else
-states how large it can be, and the frame has to do.
+A count without a `range`, and a fill or data up to a terminator without `max`, take what the
+frame has room for. Everything else states how large it can be, and the frame has to do.
 """
 
 from __future__ import annotations
@@ -9,7 +9,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from protogen.model.nesting import inner_types
-from protogen.model.types import Array, Extent, Field, Fill, Integer, Octets, Struct, Text, Type
+from protogen.model.types import (
+    Array,
+    Extent,
+    Field,
+    Fill,
+    Integer,
+    Octets,
+    Struct,
+    Text,
+    Type,
+    Until,
+)
 
 _Count = Callable[[Extent], int]
 _Choose = Callable[[Iterable[int]], int]
@@ -33,7 +44,7 @@ def _most(extent: Extent) -> int:
 
 
 def _fewest(extent: Extent) -> int:
-    stated = extent.stated and not isinstance(extent, Fill)
+    stated = extent.stated and not isinstance(extent, Fill | Until)
     return extent.counts.least if stated else extent.counts.greatest
 
 
@@ -50,7 +61,7 @@ def _size(type_: Type, count: _Count, choose: _Choose) -> int:
         case Integer():
             return choose((type_.sizes.least, type_.sizes.greatest))
         case Text() | Octets():
-            return count(type_.extent)
+            return count(type_.extent) + len(type_.terminator)
         case Array():
             return count(type_.extent) * _size(type_.element, count, choose)
         case Struct():

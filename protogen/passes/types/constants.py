@@ -153,6 +153,7 @@ class _Reader:
         if padded and written.endswith("\0"):
             raise _UnfitError(f"`{self._key}` ends with NUL, which is padding here")
         self._has_size(len(written), type_, padded=padded)
+        self._goes_on(written.encode("ascii"), type_)
         return written
 
     def _octets(self, written: bytes | tuple[int, ...], type_: Octets) -> bytes:
@@ -160,7 +161,14 @@ class _Reader:
         if any(not 0 <= item <= greatest for item in written):
             raise _UnfitError(f"bytes are numbers from 0 to {greatest} here")
         self._has_size(len(written), type_, padded=False)
+        self._goes_on(bytes(written), type_)
         return bytes(written)
+
+    def _goes_on(self, written: bytes, type_: Text | Octets) -> None:
+        """Check that nothing ends in front of its last byte."""
+        end = type_.terminator
+        if end and end in written:
+            raise _UnfitError(f"`{self._key}` has a byte {end.hex().upper()}, which would end it")
 
     def _has_size(self, size: int, type_: Text | Octets, *, padded: bool) -> None:
         counts = type_.extent.counts

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.declared import VALUE_NAMES, Effective
+from protogen.passes.types.terminators import check_until
 from protogen.schema.syntax.fields import FieldSyntax
 
 _FORMS = ("type", "fields", "switch")
@@ -39,6 +40,7 @@ def check_keys(context: Context, name: str, item: Effective) -> None:
         text = f"`size` is for ascii and bytes; `{name}` is neither"
         hint = "elements are counted by `count`; bytes are `type: bytes` with this `size`"
         context.error_at_key("PG110", item.at("size"), text, hint)
+    check_until(context, name, item)
     if syntax.count is not None:
         _count_fits(context, item)
     if syntax.when is not None and syntax.default is not None:

@@ -45,6 +45,7 @@ from protogen.passes.types.packing import (
 )
 from protogen.passes.types.separators import character, check_separated, with_absent
 from protogen.passes.types.setting import Setting
+from protogen.passes.types.terminators import until_of
 from protogen.passes.types.text_numbers import says_text, text_number, with_text
 from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
 from protogen.passes.types.value_names import with_names
@@ -208,15 +209,22 @@ class FieldBuilder:
         )
 
     def _string(self, item: Effective) -> Text | Octets:
-        kind, size = item.syntax.type, item.syntax.size
-        if size is None:
-            text = f"{kind} needs a `size`: a number, an earlier field, or fill"
-            self._context.error_at_key("PG110", item.chain[0][1], text)
-        extent = self._extent(size, item.at("size"), 1, item.setting)
-        byte_bits = item.setting.layout.byte_bits
-        if kind == "ascii":
+        extent, byte_bits = self._length(item), item.setting.layout.byte_bits
+        if item.syntax.type == "ascii":
             return Text(extent=extent, byte_bits=byte_bits)
         return Octets(extent=extent, byte_bits=byte_bits)
+
+    def _length(self, item: Effective) -> Extent:
+        """The number of bytes of a text, or of bytes."""
+        syntax = item.syntax
+        if syntax.until is not None and syntax.size is None:
+            self._expansion.vary()
+            return until_of(self._context, syntax.until, item.at("until"), item.setting)
+        if syntax.size is None:
+            text = f"{syntax.type} needs a `size`: a number, an earlier field, or fill"
+            hint = "or a terminator that ends it: `until: 0`"
+            self._context.error_at_key("PG110", item.chain[0][1], text, hint)
+        return self._extent(syntax.size, item.at("size"), 1, item.setting)
 
     def _extent(self, written: Written, loc: Loc, element: int, setting: Setting) -> Extent:
         extent = extent_of(self._context, written, loc, element, setting)

@@ -26,6 +26,7 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    Until,
 )
 from protogen.passes.context import Context, Loc
 
@@ -185,6 +186,8 @@ def _extent(one: Extent, other: Extent) -> Extent | None:
                 stated=one.stated and other.stated,
             )
         case Fill(), Fill() if one.stated == other.stated:
+            return replace(one, greatest=max(one.greatest, other.greatest))
+        case Until(), Until() if (one.byte, one.stated) == (other.byte, other.stated):
             return replace(one, greatest=max(one.greatest, other.greatest))
     return one if one == other else None
 

@@ -34,7 +34,14 @@ from protogen.runtime.constructs.numbers import (
     Written,
 )
 from protogen.runtime.constructs.pieces import Count, PayloadError, Piece
-from protogen.runtime.constructs.strings import Latin1, Latin1Fill, Octets, OctetsFill
+from protogen.runtime.constructs.strings import (
+    Latin1,
+    Latin1Fill,
+    Latin1Until,
+    Octets,
+    OctetsFill,
+    OctetsUntil,
+)
 from protogen.runtime.constructs.structs import (
     Cases,
     Counted,
@@ -62,8 +69,10 @@ __all__ = [
     "Int",
     "Latin1",
     "Latin1Fill",
+    "Latin1Until",
     "Octets",
     "OctetsFill",
+    "OctetsUntil",
     "Packed",
     "Pass",
     "PayloadError",

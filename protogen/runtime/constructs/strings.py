@@ -85,6 +85,50 @@ class OctetsFill(Piece):
             _check_seven_bits(data, path, offset)
 
 
+class OctetsUntil(Piece):
+    """Bytes in front of a terminator, `least` to `greatest` of them; it stands behind them."""
+
+    def __init__(self, byte: int, greatest: int, seven_bit: bool = False, least: int = 0) -> None:
+        super().__init__()
+        self._end = bytes((byte,))
+        self._least = least
+        self._greatest = greatest
+        self._seven_bit = seven_bit
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> bytes:
+        offset = stream.tell()
+        # More bytes are looked at than there may be, so that too many are told from a bad end.
+        found = stream.read(self._greatest + 1)
+        size = found.find(self._end)
+        if len(found) <= self._least or (size < 0 and len(found) <= self._greatest):
+            missing = max(1, self._least + 1 - len(found))
+            problem = f"ends with {self._end.hex().upper()}, which is missing"
+            raise PayloadError("size", path, offset, problem, missing)
+        data = found if size < 0 else found[:size]
+        stream.seek(offset + len(data) + 1)
+        self._check(data, path, offset)
+        return data
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> bytes:
+        data = _as_bytes(obj, path, stream)
+        self._check(data, path, stream.tell())
+        if self._end in data:
+            problem = f"has a byte {self._end.hex().upper()}, which would end it"
+            raise PayloadError("value", path, stream.tell() + data.index(self._end), problem)
+        stream.write(data + self._end)
+        return data
+
+    def _check(self, data: bytes, path: str, offset: int) -> None:
+        if len(data) > self._greatest:
+            problem = f"has more than {self._greatest} bytes in front of {self._end.hex().upper()}"
+            raise PayloadError("size", path, offset + self._greatest, problem)
+        if len(data) < self._least:
+            problem = f"has {len(data)} bytes, at least {self._least} are needed"
+            raise PayloadError("size", path, offset + len(data), problem)
+        if self._seven_bit:
+            _check_seven_bits(data, path, offset)
+
+
 def _as_bytes(obj: Any, path: str, stream: BinaryIO) -> bytes:
     if isinstance(obj, bytes | bytearray | memoryview):
         return bytes(obj)
@@ -150,3 +194,10 @@ def Latin1Fill(  # noqa: N802
 ) -> Piece:
     """Text that takes all bytes that are left, `least` to `greatest` of them."""
     return _Text(OctetsFill(greatest, seven_bit, least))
+
+
+def Latin1Until(  # noqa: N802
+    byte: int, greatest: int, seven_bit: bool = False, least: int = 0
+) -> Piece:
+    """Text in front of a terminator, `least` to `greatest` characters; it stands behind them."""
+    return _Text(OctetsUntil(byte, greatest, seven_bit, least))

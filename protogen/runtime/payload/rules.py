@@ -394,7 +394,7 @@ def _is_bit(value: Any) -> bool:
 class SeveralRule(Rule, Generic[ConstT]):
     """Base of rules for values of which there may be several: `size`, or as earlier fields say.
 
-    None: to the end of the payload, `least` to `greatest`.
+    None: to the end of the payload, or in front of the byte `until`, `least` to `greatest`.
     """
 
     def __init__(
@@ -403,8 +403,10 @@ class SeveralRule(Rule, Generic[ConstT]):
         greatest: int | None = None,
         const: ConstT | None = None,
         least: int = 0,
+        until: int | None = None,
     ) -> None:
         self.size = size
+        self.until = until
         self.least = least
         self.greatest = greatest
         self.const = const
@@ -419,6 +421,12 @@ class SeveralRule(Rule, Generic[ConstT]):
         if count < self.least:
             raise EncodeError("", f"has {count} {what}, at least {self.least} are needed")
 
+    def _check_end(self, data: bytes) -> None:
+        """Refuse bytes of which one would end them."""
+        if self.until is not None and self.until in data:
+            place = f"byte {data.index(self.until) + 1} of {len(data)}"
+            raise EncodeError("", f"has {self.until:02X}, which would end it, as {place}")
+
 
 def _check_most(count: int, greatest: int | None, what: str) -> None:
     if greatest is not None and count > greatest:
@@ -426,7 +434,10 @@ def _check_most(count: int, greatest: int | None, what: str) -> None:
 
 
 class OctetsRule(SeveralRule[bytes]):
-    """Bytes: `size` of them, or as many as earlier fields say; None: `least` to `greatest`."""
+    """Bytes: `size` of them, or as many as earlier fields say; None: `least` to `greatest`.
+
+    With `until` none of them is that byte, which ends them.
+    """
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> bytes:
         """The bytes."""
@@ -434,6 +445,7 @@ class OctetsRule(SeveralRule[bytes]):
             raise EncodeError("", f"must be bytes, not {value!r}")
         data = bytes(value)  # What a view counts may have several bytes.
         self._check_count(len(data), scope, "bytes")
+        self._check_end(data)
         if self.const is not None and data != self.const:
             raise EncodeError("", f"must be {self.const.hex(' ')}")
         return data
@@ -454,7 +466,8 @@ class TextRule(SeveralRule[str]):
     """Text of one byte a character, which is ASCII; a decoder keeps whatever byte there is.
 
     `size` is a number: the text has at most so many characters, and NUL pads it. It is what earlier
-    fields say: exactly as many. None: `least` to `greatest`.
+    fields say: exactly as many. None: `least` to `greatest`. With `until` none of the characters
+    is that byte, which ends the text.
     """
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> str:
@@ -469,6 +482,7 @@ class TextRule(SeveralRule[str]):
             text = text.rstrip("\0")  # The padding is the same bytes.
         else:
             self._check_count(len(text), scope, "characters")
+            self._check_end(text.encode("latin-1"))
         if self.const is not None and text != self.const:
             raise EncodeError("", f"must be {self.const!r}")
         return text

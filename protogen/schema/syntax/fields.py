@@ -10,6 +10,8 @@ from protogen.schema.syntax.base import (
     BitNumber,
     BitRange,
     BitRangeForm,
+    ByteForm,
+    ByteNumber,
     Character,
     Count,
     Name,
@@ -102,6 +104,28 @@ Extent = Annotated[
 """Number of elements or bytes: a number, an expression over earlier fields, or `fill`."""
 
 
+class Until(Syntax):
+    """As many bytes as stand in front of a terminator."""
+
+    byte: ByteNumber = Field(
+        description="The terminator, which is on the wire and no part of the value."
+    )
+    min: Count = Field(0, description="The least number of bytes, without the terminator.")
+    max: Count | None = Field(
+        None, description="The greatest number of bytes, without the terminator."
+    )
+
+
+def _to_until(value: Any) -> Any:
+    return {"byte": value} if isinstance(value, int | str) else value
+
+
+UntilRef = Annotated[
+    Until, BeforeValidator(_to_until, json_schema_input_type=ByteForm | Character | Until)
+]
+"""A byte or character, or a mapping."""
+
+
 BitOrder = Literal["lsb_first", "msb_first"]
 
 
@@ -173,6 +197,11 @@ class FieldSyntax(Syntax):
         None,
         description="Bytes of an ascii or bytes field: a number, the earlier field or expression "
         "that gives it, or fill (to the end of the payload).",
+    )
+    until: UntilRef | None = Field(
+        None,
+        description="In place of a size: an ascii or bytes field ends in front of this byte, "
+        "which is on the wire and no part of the value.",
     )
     packed: BitOrder | None = Field(
         None,

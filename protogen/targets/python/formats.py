@@ -23,6 +23,7 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    Until,
 )
 from protogen.targets.python.formulas import formula
 from protogen.targets.python.literals import call, mapping, octets_in_class, text
@@ -154,6 +155,9 @@ def _string(type_: Text | Octets) -> str:
         return call(
             f"{kind}Fill", str(type_.extent.greatest), seven_bit=seven, least=_least(type_.extent)
         )
+    if isinstance(type_.extent, Until):
+        byte, greatest = f"0x{type_.extent.byte:02X}", str(type_.extent.greatest)
+        return call(f"{kind}Until", byte, greatest, seven_bit=seven, least=_least(type_.extent))
     return call(kind, extent(type_.extent), seven_bit=seven)
 
 
@@ -166,12 +170,12 @@ def extent(of: Extent) -> str:
             return call("_c.Count", formula(of.by), str(of.least), str(of.greatest))
         case Counted():
             return formula(of.by)
-        case Fill():
+        case Fill() | Until():
             return str(of.greatest)
 
 
-def _least(fill: Fill) -> str | None:
-    return str(fill.least) if fill.least else None
+def _least(of: Fill | Until) -> str | None:
+    return str(of.least) if of.least else None
 
 
 def _array(type_: Array, names: Names) -> str:

@@ -20,6 +20,7 @@ from protogen.model.types import (
     Switch,
     Text,
     Type,
+    Until,
 )
 from protogen.targets.python.formats import constant, is_empty
 from protogen.targets.python.formulas import formula
@@ -122,6 +123,10 @@ def _extent(key: str, extent: Extent) -> dict[str, str | None]:
         case Fill():
             least = str(extent.least) if extent.least else None
             return {"greatest": str(extent.greatest), "least": least}
+        case Until():
+            least = str(extent.least) if extent.least else None
+            greatest, byte = str(extent.greatest), f"0x{extent.byte:02X}"
+            return {"greatest": greatest, "least": least, "until": byte}
 
 
 def _array(type_: Array, field: Field | None, names: Names) -> str:

@@ -33,8 +33,8 @@ def exchange_function(name: str, struct: str, plan: PayloadPlan, names: Names) -
 
 class _Exchange(Walk):
     def step(self, step: AnyStep, place: str) -> None:
-        """A step of any kind; in front of what fills the payload goes the number of it."""
-        if isinstance(step, BytesStep | RepeatStep) and step.fills:
+        """A step of any kind; in front of what has a member for its number goes that number."""
+        if isinstance(step, BytesStep | RepeatStep) and step.count.member:
             self._scalar(self.filled(step.count))
         if step.holds_values:
             super().step(step, place)

@@ -320,6 +320,9 @@ class Checker(CheckedWalk):
         if step.fills:
             self._filled(step.count, seven=seven)
             return
+        if step.count is not None and step.count.until is not None:
+            self._up_to(step.count, step.count.until, seven=seven)
+            return
         self._begin(7 if seven else 8)
         if isinstance(count, int):
             if seven:
@@ -346,6 +349,25 @@ class Checker(CheckedWalk):
             self._refuse(check, "ENCODING")
         if count.greatest:
             self._end()
+
+    def _up_to(self, count: Count, byte: int, *, seven: bool) -> None:
+        """Bytes in front of a terminator, which has to be among those that are left."""
+        self._settle()
+        self._require(count.least + 1)
+        size, left, address = self.variable("length"), self._left(), self._address()
+        found = f"{self.helpers.text_size()}({address}, {left}, {hexadecimal(byte)})"
+        self.lines.add(f"const size_t {size} = {found};")
+        self._refuse(f"{size} > {unsigned(count.greatest)}", "SIZE")
+        with self.lines.block(f"if ({size} == {left})"):
+            if self._needs:
+                self.lines.add(f"return {self.helpers.missing()}(need, size + 1U);")
+            else:
+                self.lines.add(f"{self._error}SIZE;")
+        if count.least:
+            self._refuse(f"{size} < {unsigned(count.least)}", "SIZE")
+        if seven:
+            self._refuse(f"!{self.helpers.seven_bit()}({address}, {size})", "ENCODING")
+        self._move(f"{size} + 1U")
 
     def _end(self) -> None:
         """Nothing is left."""

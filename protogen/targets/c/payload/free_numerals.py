@@ -10,13 +10,6 @@ from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.spelling import constant, hexadecimal, integer_type, unsigned
 
 _TEXT = ("const uint8_t *at", "size_t size")
-_TEXT_SIZE = """\
-size_t length = 0U;
-while (length < size && at[length] != separator) {
-    length++;
-}
-return length;
-"""
 _ROOM = 21
 """Bytes of the longest number of all: 18 digits, a sign and a point, and some to spare."""
 
@@ -201,9 +194,7 @@ class FreeDigits(msgspec.Struct, frozen=True):
     def text_size(self, helpers: Helpers, address: str, left: str) -> str:
         """The bytes in front of the next separator, of so many that are left."""
         separator = hexadecimal(self.form.separator or 0)
-        parameters = (*_TEXT, "uint8_t separator")
-        name = helpers.helper("text_size", "size_t", parameters, _TEXT_SIZE)
-        return f"{name}({address}, {left}, {separator})"
+        return f"{helpers.text_size()}({address}, {left}, {separator})"
 
     def misfit(self, size: str) -> str:
         """The condition that a text has too many bytes or too few."""

@@ -83,6 +83,14 @@ for (size_t i = 0; i < size; i++) {
 }
 return all <= 0x7FU;
 """
+_TEXT_SIZE = """\
+const uint8_t *bytes = (const uint8_t *)at;
+size_t length = 0U;
+while (length < size && bytes[length] != end) {
+    length++;
+}
+return length;
+"""
 _ALL_BITS = """\
 {kind} all = 0U;
 for (size_t i = 0; i < count; i++) {{
@@ -300,6 +308,11 @@ class Helpers:
         """The function that says whether no byte has its most significant bit set."""
         arguments = ("const void *at", "size_t size")
         return self.helper("is_seven_bit", "bool", arguments, _IS_SEVEN_BIT)
+
+    def text_size(self) -> str:
+        """The function that counts the bytes in front of one that ends them, or all."""
+        arguments = ("const void *at", "size_t size", "uint8_t end")
+        return self.helper("text_size", "size_t", arguments, _TEXT_SIZE)
 
     def all_bits(self, type_: NumberType) -> str:
         """The function that says which bits are set in some number of an array."""

@@ -8,6 +8,7 @@ from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     BytesStep,
     ConstantStep,
+    Count,
     IntegerStep,
     NumberStep,
     PayloadPlan,
@@ -24,7 +25,7 @@ from protogen.targets.c.payload.packing import Placed, members_of, number_in
 from protogen.targets.c.payload.placed import PlacedWalk
 from protogen.targets.c.payload.storing import is_bytes
 from protogen.targets.c.payload.walk import amount, times
-from protogen.targets.c.spelling import counting_type, integer_type
+from protogen.targets.c.spelling import counting_type, hexadecimal, integer_type
 
 
 def loaded(helpers: Helpers, type_: NumberType, byte: str, address: str) -> str:
@@ -115,6 +116,8 @@ class Load(PlacedWalk):
         """A text, or bytes."""
         if step.fills:
             self._rest(place, str(count), step.count.greatest)
+        elif step.count.until is not None:
+            self._up_to(place, str(count), step.count, step.count.until)
         else:
             self._copy(place, count)
 
@@ -126,6 +129,14 @@ class Load(PlacedWalk):
         self.catch_up()
         self.lines.add(f"{count} = ({counting_type(greatest)})({self._left()});")
         self._copy(place, count)
+
+    def _up_to(self, place: str, member: str, count: Count, byte: int) -> None:
+        """Take the bytes in front of a terminator."""
+        self.catch_up()
+        found = f"{self.helpers.text_size()}({self.address()}, {self._left()}, {hexadecimal(byte)})"
+        self.lines.add(f"{member} = ({counting_type(count.greatest)}){found};")
+        self.lines.add(f"{self.helpers.copy()}({place}, {self.address()}, {member});")
+        self.skip(f"{member} + 1U")
 
     def _left(self) -> str:
         """The number of bytes that are left."""

@@ -66,8 +66,10 @@ class Measure(Walk):
         self._add(len(step.data))
 
     def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
-        """A text, or bytes."""
+        """A text, or bytes, and the terminator behind them."""
         self._add(count)
+        if step.count.until is not None:
+            self._add(1)
 
     def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Elements."""

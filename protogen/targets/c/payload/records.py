@@ -83,7 +83,7 @@ class Records:
 
     def _field(self, lines: Lines, step: AnyStep) -> None:
         held = held_step(step)
-        if isinstance(held, BytesStep | RepeatStep) and held.fills:
+        if isinstance(held, BytesStep | RepeatStep) and held.count.member:
             what = "elements" if isinstance(held, RepeatStep) else "bytes"
             lines.add(*comments.comment([f"Number of {what} of {step.name}."], INDENT))
             lines.add(f"{counting_type(held.count.greatest)} {held.count.member};")

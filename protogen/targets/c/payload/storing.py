@@ -114,8 +114,10 @@ class _Output(Walk):
             self._byte(byte)
 
     def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
-        """A text, or bytes."""
+        """A text, or bytes, and the terminator behind them."""
         self._bytes(place, count)
+        if step.count.until is not None:
+            self._byte(hexadecimal(step.count.until))
 
     def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Elements."""

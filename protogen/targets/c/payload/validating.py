@@ -21,7 +21,7 @@ from protogen.model.types import Text, counting_bits
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.walk import Walk, amount, is_unfit, out_of_bounds
-from protogen.targets.c.spelling import constant
+from protogen.targets.c.spelling import constant, hexadecimal
 
 
 def can_be_refused(plan: PayloadPlan, sizes: SizeSet) -> bool:
@@ -99,10 +99,14 @@ class Validate(Walk):
         """A text, or bytes."""
         if isinstance(step.type, Text) or Check.SEVEN_BIT in step.checks:
             self._refuse(f"!{self.helpers.seven_bit()}({place}, {amount(count)})")
+        if step.count.until is not None:
+            end = hexadecimal(step.count.until)
+            size = f"{self.helpers.text_size()}({place}, {amount(count)}, {end})"
+            self._refuse(f"{size} != {amount(count)}")
 
     def count(self, count: Count) -> int | str:
         """Number of elements or bytes, which a struct has to have room for."""
-        if count.fills:
+        if count.fills or count.until is not None:
             self._bounded(self.filled(count), count, counting_bits(count.greatest))
         elif count.by is not None and count.by.plain is not None:
             assert count.by.plain.type is not None

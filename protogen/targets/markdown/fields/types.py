@@ -102,6 +102,10 @@ def _extended(element: str, count: Count, noun: str) -> str:
         amount = plural(count.greatest, noun)
         amount = f"{count.least} to {amount}" if count.least else f"at most {amount}"
         return f"{element} to the end, {amount}"
+    if count.until is not None:
+        amount = plural(count.greatest, noun)
+        amount = f"{count.least} to {amount}" if count.least else f"at most {amount}"
+        return f"{element} up to {code(f'{count.until:02X}')}, {amount}"
     if count.expression is not None:
         return f"{element} x {code(count.expression.text)}"
     return element if noun == "byte" else f"{element} x {count.known}"

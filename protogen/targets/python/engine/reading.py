@@ -45,7 +45,7 @@ from protogen.targets.python.engine.place import Place
 from protogen.targets.python.engine.raw import Raw
 from protogen.targets.python.formats import constant
 from protogen.targets.python.formulas import in_python
-from protogen.targets.python.literals import tuple_of
+from protogen.targets.python.literals import octets_in_class, tuple_of
 
 
 def message_reader(
@@ -288,6 +288,8 @@ class _Reader(Converter, Raw):
             self.lines.add(f"{value} = data[{start}:]" if start != "0" else f"{value} = data")
             self.lines.refuse_if(outside_of(step.count, f"len({value})"))
             self._move_to_end("len(data)")
+        elif step.count.until is not None:
+            self._up_to(value, step.count, step.count.until)
         else:
             count = self._count(step.count)
             end = self.lines.local("end")
@@ -296,6 +298,16 @@ class _Reader(Converter, Raw):
             self.lines.add(f"{value} = data[{start}:{end}]")
             self._move_to(end)
         return self.string(value, step)
+
+    def _up_to(self, value: str, count: Count, byte: int) -> None:
+        """Take the bytes in front of a terminator, and go on behind it."""
+        start, end = self.place.text, self.lines.local("end")
+        stop = Place(self.place.variable, self.place.offset + count.greatest + 1).text
+        found = f"data.find({octets_in_class(bytes((byte,)))}, {start}, {stop})"
+        self.lines.add(f"{end} = {found}")
+        self.lines.refuse_if(f"{end} < {f'{start} + {count.least}' if count.least else '0'}")
+        self.lines.add(f"{value} = data[{start}:{end}]")
+        self._move_to(f"{end} + 1")
 
     def _written(self, step: IntegerStep) -> str:
         """Take a number out of the characters up to the next separator, or of all."""

@@ -43,7 +43,7 @@ from protogen.targets.python.engine.packing import Record, packed, packed_record
 from protogen.targets.python.engine.raw import Raw
 from protogen.targets.python.formats import constant
 from protogen.targets.python.formulas import in_python
-from protogen.targets.python.literals import number, tuple_of
+from protogen.targets.python.literals import number, octets_in_class, tuple_of
 
 _GREATEST_FLOAT32 = "3.4028234663852886e38"
 
@@ -349,6 +349,7 @@ class _Writer(Raw):
         else:
             self._counted(data, step.count)
             self._bytes.piece(data)
+            self._end(data, step.count)
 
     def _octets(self, value: str, step: BytesStep) -> None:
         self.lines.refuse_if(f"type({value}) is not bytes")
@@ -359,6 +360,14 @@ class _Writer(Raw):
             self._put(step, value)
         else:
             self._bytes.piece(value)
+            self._end(value, step.count)
+
+    def _end(self, value: str, count: Count) -> None:
+        """Put the terminator, where one ends these bytes, which none of them may be."""
+        if count.until is not None:
+            end = octets_in_class(bytes((count.until,)))
+            self.lines.refuse_if(f"{end} in {value}")
+            self._bytes.piece(end)
 
     def _rest(self, value: str, rest: RestStep) -> None:
         self.lines.refuse_if(f"type({value}) is not bytes")
@@ -370,7 +379,7 @@ class _Writer(Raw):
         """Check a number of bytes or elements."""
         if count.is_fixed:
             self.lines.refuse_if(f"len({value}) != {count.known}")
-        elif count.fills:
+        elif count.fills or count.until is not None:
             self.lines.refuse_if(outside_of(count, f"len({value})"))
         else:
             assert count.expression is not None
