@@ -191,17 +191,27 @@ def _of_column(layout: Layout, table: Table, column: Column) -> _Draft:
     item = None
     if table.message is not None and column in table.columns:
         item = field_at(table.message.fields, column.path)
-    kind = of_any_count(column.type) if column.nullable else column.type
+    may_be_missing = _may_be_missing(table, column)
+    kind = of_any_count(column.type) if may_be_missing else column.type
     way = f"{table.name}.{column.name}"
     type = layout.type_of(kind, None if item is None else item.type, way)
     # A NaN says that a physical value is missing.
-    is_flagged = column.nullable and not (
+    is_flagged = may_be_missing and not (
         isinstance(column.derived, Physical) and isinstance(type, Number) and type.is_float
     )
     role, *rest = column.path
     name = f"frame_{rest[0]}" if role == "@" else column.name
     values = _values(item) if column.derived is None else ()
     return _Draft(name, type, column.name, is_flagged, column, values, _comment(column.facts))
+
+
+def _may_be_missing(table: Table, column: Column) -> bool:
+    """True if a row may have no value for a column."""
+    if isinstance(column.type, Listed) and column.derived is not None:
+        # Elements may have no physical value, but the list is there where the raw one is.
+        raw = next(it for it in table.columns if it.path == column.path and it.derived is None)
+        return raw.nullable
+    return column.nullable
 
 
 def _record_members(

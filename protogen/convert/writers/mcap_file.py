@@ -10,6 +10,7 @@ import struct
 import zlib
 from collections import Counter
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, BinaryIO
 
 from protogen.convert.columns.batches import Messages
@@ -42,8 +43,7 @@ def _zstd() -> Callable[[bytes], bytes]:
 
 
 def _lz4() -> Callable[[bytes], bytes]:
-    compress: Callable[[bytes], bytes] = needed("lz4.frame", _PURPOSE).compress
-    return compress
+    return partial(needed("lz4.frame", _PURPOSE).compress, block_checksum=True)
 
 
 _COMPRESSORS = {"zstd": _zstd, "lz4": _lz4}

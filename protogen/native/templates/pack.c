@@ -127,19 +127,65 @@ static uint8_t *put_messages(const struct job *job, uint64_t first, size_t size,
     return put_literals(out, anchor, (size_t)(end - anchor));
 }
 
+/* --- checksums of blocks (XXH32) --- */
+
+#define PRIME_1 UINT32_C(2654435761)
+#define PRIME_2 UINT32_C(2246822519)
+#define PRIME_3 UINT32_C(3266489917)
+#define PRIME_4 UINT32_C(668265263)
+#define PRIME_5 UINT32_C(374761393)
+
+static inline uint32_t turned(uint32_t value, unsigned bits) {
+    return value << bits | value >> (32U - bits);
+}
+
+static inline uint32_t le4_at(const uint8_t *at) {
+    uint32_t value;
+    COPY((uint8_t *)&value, at, 4);
+    return value;
+}
+
+static uint32_t checksum(const uint8_t *at, size_t size) {
+    const uint8_t *const end = at + size;
+    uint32_t sum = PRIME_5;
+    if (size >= 16U) {
+        uint32_t lanes[4] = {PRIME_1 + PRIME_2, PRIME_2, 0, 0U - PRIME_1};
+        for (; end - at >= 16; at += 16) {
+            unsigned lane;
+            for (lane = 0; lane < 4U; lane++) {
+                lanes[lane] = turned(lanes[lane] + le4_at(at + 4U * lane) * PRIME_2, 13) * PRIME_1;
+            }
+        }
+        sum = turned(lanes[0], 1) + turned(lanes[1], 7) + turned(lanes[2], 12) + turned(lanes[3], 18);
+    }
+    sum += (uint32_t)size;
+    for (; end - at >= 4; at += 4) {
+        sum = turned(sum + le4_at(at) * PRIME_3, 17) * PRIME_4;
+    }
+    for (; at < end; at++) {
+        sum = turned(sum + *at * PRIME_5, 11) * PRIME_1;
+    }
+    sum = (sum ^ sum >> 15) * PRIME_2;
+    sum = (sum ^ sum >> 13) * PRIME_3;
+    return sum ^ sum >> 16;
+}
+
+/* --- blocks --- */
+
 /* A block of the messages in the room, or several, not compressed, where they are too many. */
 static uint8_t *put_block(const struct job *job, uint64_t first, size_t size, uint8_t *out) {
     const uint8_t *from = job->room;
     uint8_t *end = size > MOST ? NULL : put_messages(job, first, size, out + 4);
     if (end != NULL && (size_t)(end - out) < size) {
-        (void)put_le4(out, (uint32_t)(end - out) - 4U);
-        return end;
+        const uint32_t packed = (uint32_t)(end - out) - 4U;
+        (void)put_le4(out, packed);
+        return put_le4(end, checksum(out + 4, packed));
     }
     while (size != 0) {
         const uint32_t some = size < MOST ? (uint32_t)size : MOST;
         out = put_le4(out, some | STORED);
         memcpy(out, from, some);
-        out += some;
+        out = put_le4(out + some, checksum(out, some));
         from += some;
         size -= some;
     }
@@ -153,12 +199,12 @@ static uint8_t *put_block(const struct job *job, uint64_t first, size_t size, ui
 PROTOGEN_EXPORT size_t protogen_pack(struct job *job, struct rows *tables, size_t count, uint8_t *room, size_t size,
                                      uint8_t *packed, uint64_t enough) {
     /* Blocks of up to 64 KB, 256 KB, 1 MB or 4 MB: the descriptor, and its checksum. */
-    static const uint8_t KINDS[4][2] = {{0x40, 0x82}, {0x50, 0xFB}, {0x60, 0x51}, {0x70, 0x73}};
+    static const uint8_t KINDS[4][2] = {{0x40, 0xAD}, {0x50, 0x84}, {0x60, 0x33}, {0x70, 0x72}};
     const unsigned kind = (unsigned)(size > 1U << 16) + (unsigned)(size > 1U << 18) + (unsigned)(size > 1U << 20);
     uint8_t *out = packed;
     job->before = 0;
     out = put_le4(out, UINT32_C(0x184D2204));
-    *out++ = 0x60; /* Its first version, blocks that need no others, and no checksums. */
+    *out++ = 0x70; /* Its first version, blocks that need no others and have checksums. */
     *out++ = KINDS[kind][0];
     *out++ = KINDS[kind][1];
     do {
