@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import struct
 from pathlib import Path
 from random import Random
@@ -20,10 +21,9 @@ from protogen.convert.columns.python_values import as_list
 from protogen.convert.columns.tables import Tables, tables_of
 from protogen.convert.formats import OutputFormat
 from protogen.convert.ros2.layout import Layout, ListOf, Message, Number, RosType, String
-from protogen.convert.ros2.names import field_name, field_names, message_name, unlike
 from protogen.convert.writers.format_writers import open_writer, write_all
+from protogen.convert.writers.mcap_ros2 import Ros2Messages
 from protogen.convert.writers.pending_files import Pending
-from protogen.native.cdr_steps import Alignment
 from protogen.runtime.framing.assembly import encode_frame
 
 reading = pytest.importorskip("mcap.reader")
@@ -223,6 +223,28 @@ def test_lists_may_be_empty_and_values_missing(tmp_path: Path, engine: str | Non
 
 
 # --- independent readers --------------------------------------------------------------------------
+
+FIELD = re.compile(
+    r"(?P<type>[a-z0-9]+|[a-z0-9_]+/[A-Z][A-Za-z0-9]*)(\[\d*\])? [a-z]+(_?[a-z0-9]+)*"
+)
+CONSTANT = re.compile(r"u?int(8|16|32|64) [A-Z]+(_?[A-Z0-9]+)*=-?\d+")
+
+
+@pytest.mark.parametrize(("path", "sender"), [*senders(), *SAMPLED], ids=name_of)
+def test_definitions_are_those_of_ros(path: Path, sender: str) -> None:
+    tables = the_tables(path, sender)
+    encoding = Ros2Messages(tables)
+    known: set[str] = set()
+    for table in tables.all_tables:
+        name, data = encoding.schema(table)
+        types = typesys.get_types_from_msg(data.decode(), name)
+        assert not known & types.keys()  # Each is defined once, for one table.
+        known |= types.keys()
+        for line in data.decode().splitlines():
+            if line.startswith(("#", "MSG: ", "=====")):
+                continue
+            bare = line.partition("  #")[0]
+            assert FIELD.fullmatch(bare) or CONSTANT.fullmatch(bare), line
 
 
 @pytest.mark.parametrize(("path", "sender"), [*senders(), *SAMPLED], ids=name_of)
@@ -476,45 +498,3 @@ def test_floats_are_kept(tmp_path: Path) -> None:
     found = messages_of(written(tmp_path / "c", path, "one", frames, None))
     assert messages_of(written(tmp_path / "python", path, "one", frames, "events")) == found
     assert_rows(the_tables(path, "one"), found, expected_rows(path, "one", frames, False))
-
-
-# --- names ----------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("name", "expected"),
-    [
-        ("heading_deg", "heading_deg"),
-        ("turn.angle", "turn_angle"),
-        ("_size", "size"),
-        ("a__b_", "a_b"),
-        ("3d", "field_3d"),
-        ("class", "class_value"),
-        ("import", "import_value"),
-        ("RPM", "rpm"),
-    ],
-)
-def test_fields_have_names_that_ros_takes(name: str, expected: str) -> None:
-    assert field_name(name) == expected
-
-
-def test_no_two_fields_have_one_name() -> None:
-    names = ["_size", "a.b", "size", "a_b", "__size"]
-    expected = {"size": "size", "a_b": "a_b", "_size": "size_2", "a.b": "a_b_2", "__size": "size_3"}
-    assert field_names(names) == expected
-
-
-def test_messages_have_names_that_ros_takes() -> None:
-    assert message_name("read_motor") == "ReadMotor"
-    assert message_name("lidar.points", "list") == "LidarPointsList"
-    assert unlike("Points", ["Points", "Points2"]) == "Points3"
-
-
-def test_what_is_known_of_a_place() -> None:
-    start = Alignment()
-    assert [start.after(9).padding(size) for size in (1, 2, 4, 8)] == [0, 1, 3, 7]
-    assert start.after(4).joined(start) == Alignment(4, 0)
-    assert start.after(2).joined(start.after(6)) == Alignment(4, 2)
-    assert Alignment(4, 2).padding(8) is None
-    assert Alignment(4, 2).aligned(8) == Alignment(8, 0)
-    assert Alignment(4, 2).aligned(4) == Alignment(4, 0)

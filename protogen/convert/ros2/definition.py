@@ -27,12 +27,20 @@ def _lines(message: Message, package: str) -> Iterator[str]:
         if member.flag is not None:
             yield f"bool {member.flag}"
         for constant in member.constants:
-            yield f"{word.partition('[')[0]} {constant.name}={constant.value}"
+            yield f"{_number(member.type)} {constant.name}={constant.value}"
         yield f"{word} {member.name}{_remark(member)}"
 
 
 def _remark(member: Member) -> str:
     return f"  # {member.comment}" if member.comment else ""
+
+
+def _number(type: RosType) -> str:
+    """The type of the numbers that constants name, also where they are in lists."""
+    while not isinstance(type, Number):
+        assert not isinstance(type, String)
+        type = type.element if isinstance(type, ListOf) else type.members[0].type
+    return type.word
 
 
 def _word(type: RosType, package: str) -> str:

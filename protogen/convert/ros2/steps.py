@@ -5,7 +5,7 @@ What they print is what `cdr.py` makes of the same rows.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from math import prod
 from typing import Any
 
@@ -15,7 +15,8 @@ from protogen.convert.columns import tables
 from protogen.convert.columns.event_values import constant_of
 from protogen.convert.columns.held_columns import cases_of, dimensions_of, members_of, rest_of
 from protogen.convert.columns.tables import Path, Physical, Tables
-from protogen.convert.ros2.cdr import HEADER, CdrWriter, missing
+from protogen.convert.ros2.cdr import HEADER, missing
+from protogen.convert.ros2.cdr_printer import CdrPrinter, Make, constant_bytes
 from protogen.convert.ros2.layout import (
     Layout,
     ListOf,
@@ -32,9 +33,6 @@ from protogen.native import cdr_steps as cdr
 from protogen.native.cdr_steps import Alignment
 from protogen.native.print_steps import Count, Place, Source, Step, Steps, enveloped
 
-Make = Callable[[], list[Step]]
-"""Makes steps, from the place that the message has come to."""
-
 
 def message_steps(schema: CaptureSchema, shown: Tables) -> list[Steps]:
     """Steps for the rows of each message, then those of invalid bytes and unknown frames."""
@@ -49,121 +47,7 @@ def message_steps(schema: CaptureSchema, shown: Tables) -> list[Steps]:
     return found
 
 
-class _Printer:
-    """Prints values, and keeps in mind what is known of the place that comes next."""
-
-    def __init__(self) -> None:
-        self._at = Alignment()
-
-    def align(self, size: int) -> list[Step]:
-        """Zeros up to a multiple of a size."""
-        padding = self._at.padding(size)
-        self._at = self._at.aligned(size)
-        if padding is None:
-            return [cdr.pad(size)]
-        return [cdr.fixed(bytes(padding))] if padding else []
-
-    def aligned(self, size: int, step: Step) -> list[Step]:
-        """A number of that size, at a multiple of it."""
-        front = self.align(size)
-        self._at = self._at.after(size)
-        return [*front, step]
-
-    def flag(self, holds: bool) -> list[Step]:
-        """A bool."""
-        return self.aligned(1, cdr.fixed(bytes((holds,))))
-
-    def constant(self, type: RosType, value: Any) -> list[Step]:
-        """A value that is always the same; None: what stands where there is none."""
-        match type:
-            case Number(size=size):
-                return self.aligned(size, cdr.fixed(_bytes(type, value)))
-            case String():
-                found = self.align(4)
-                self._at = Alignment(1)
-                return [*found, cdr.fixed(_bytes(type, value))]
-            case ListOf(element=element, count=count):
-                values = value if value is not None else ()
-                found = self.count(len(values)) if count is None else []
-                for item in values:
-                    found += self.constant(element, missing(element) if item is None else item)
-                return found
-            case Message(is_list=True):
-                return self.constant(type.members[0].type, value)
-        return self._constant_members(type, value or {})
-
-    def _constant_members(self, type: Message, values: Mapping[str, Any]) -> list[Step]:
-        found = []
-        for member in type.members:
-            value = values.get(member.source)
-            if member.flag is not None:
-                found += self.flag(value is not None)
-            found += self.constant(member.type, value)
-        return found
-
-    def count(self, count: Count) -> list[Step]:
-        """A number of elements."""
-        return self.aligned(4, cdr.count(count))
-
-    def octets(self, step: Step) -> list[Step]:
-        """A number of bytes that depends."""
-        self._at = Alignment(1)
-        return [step]
-
-    # --- choices ----------------------------------------------------------------------------------
-
-    def fork(self, makers: Sequence[Make]) -> list[list[Step]]:
-        """Steps of which one or the other are taken."""
-        start, found = self._at, []
-        ends = []
-        for make in makers:
-            self._at = start
-            found.append(make())
-            ends.append(self._at)
-        for end in ends:
-            self._at = self._at.joined(end)
-        return found
-
-    def either(self, condition: str, body: Make, other: Make) -> list[Step]:
-        """Steps by a condition of C."""
-        return [cdr.either(condition, *self.fork([body, other]))]
-
-    def loop(self, body: Make) -> list[Step]:
-        """Steps that are taken several times, or not at all."""
-        start = self._at
-        while True:
-            self._at = start
-            found = body()
-            again = start.joined(self._at)
-            if again == start:
-                self._at = start
-                return found
-            start = again
-
-    def if_there(self, item: Field, at: Spot, body: Make, other: Make) -> list[Step]:
-        """Steps of a field where it is there, and others where it is not."""
-        if item.when is None:
-            return body()
-        condition = said(item.when, at)
-        if isinstance(condition, int):
-            return body() if condition else other()
-        return [cdr.where(condition, *self.fork([body, other]))]
-
-    def chosen(self, selector: Count, bodies: Mapping[int, Make], rest: Make) -> list[Step]:
-        """Steps of the case that a number chooses."""
-        if isinstance(selector, int):
-            return bodies.get(selector, rest)()
-        *found, last = self.fork([*bodies.values(), rest])
-        return [cdr.choose(selector, dict(zip(bodies, found, strict=True)), last)]
-
-
-def _bytes(type: RosType, value: Any) -> bytes:
-    writer = CdrWriter()
-    writer.value(type, value)
-    return bytes(writer.data)
-
-
-class _Values(_Printer):
+class _Values(CdrPrinter):
     """Prints values of fields, whatever they hold."""
 
     def value(
@@ -397,7 +281,9 @@ class _Row(_Values):
             case ("reason",):
                 front = self.align(4)
                 self._at = Alignment(1)
-                words = {it.value: [cdr.fixed(_bytes(String(), it.word))] for it in InvalidReason}
+                words = {
+                    it.value: [cdr.fixed(constant_bytes(String(), it.word))] for it in InvalidReason
+                }
                 return [*front, cdr.choose(self.places["reason"], words, ())]
             case ("payload",):
                 source, start = Source.PAYLOADS, self.places["payload_offset"]
