@@ -34,10 +34,11 @@ FORMATS = (
     OutputFormat.JSONL,
     OutputFormat.CSV,
     OutputFormat.MCAP,
+    OutputFormat.MCAP_ROS2,
 )
 MEMORY = "/dev/shm"
 """A folder in memory, so that what the disk does meanwhile is not in the figures."""
-LEAST = {OutputFormat.PARQUET: 100, OutputFormat.JSONL: 20, OutputFormat.MCAP: 50}
+LEAST = {OutputFormat.PARQUET: 100, OutputFormat.JSONL: 20, OutputFormat.MCAP_ROS2: 50}
 """MB/s that the project wants."""
 DIFFERENT = 20_000
 """Frames that are repeated: so many that Snappy, which looks back 64 KB, does not see it."""

@@ -18,7 +18,9 @@ from protogen.convert import errors
 from protogen.convert.columns.python_values import json_of_each
 from protogen.convert.columns.tables import tables_of
 from protogen.convert.errors import ConvertError, needed
-from protogen.convert.writers.mcap_writer import McapWriter, json_schema
+from protogen.convert.formats import OutputFormat
+from protogen.convert.writers.format_writers import open_writer
+from protogen.convert.writers.mcap_json import json_schema
 from protogen.convert.writers.pending_files import Pending
 
 pytest.importorskip("pyarrow")
@@ -26,7 +28,7 @@ mcap_reader = pytest.importorskip("mcap.reader")
 parquet = pytest.importorskip("pyarrow.parquet")
 ipc = pytest.importorskip("pyarrow.ipc")
 
-FORMATS = ("jsonl", "csv", "parquet", "arrow", "mcap")
+FORMATS = ("jsonl", "csv", "parquet", "arrow", "mcap", "mcap-ros2")
 DOCUMENT_SENDERS = [
     (path, sender.name) for path in DOCUMENTS for sender in protocol_of(path).senders
 ]
@@ -502,7 +504,8 @@ class TestErrors:
             raise OSError(errno.ENOSPC, "No space left on device")
 
         protocol = protocol_of(sink)
-        writer = McapWriter("x", Pending(tmp_path), tables_of(protocol, protocol.sender("pc")))
+        tables = tables_of(protocol, protocol.sender("pc"))
+        writer: Any = open_writer(OutputFormat.MCAP, "x", Pending(tmp_path), tables)
         monkeypatch.setattr(writer._mcap, "close", fail)
         with pytest.raises(OSError, match="No space"):
             writer.close()

@@ -192,18 +192,19 @@ class TestNames:
         with pytest.raises(ConvertError, match=r"a/run\.bin and /a/run\.bin would both be called"):
             names_of(["a/run.bin", "/a/run.bin"])
 
-    @pytest.mark.parametrize("to", ["parquet", "arrow", "csv", "jsonl", "mcap"])
+    @pytest.mark.parametrize("to", ["parquet", "arrow", "csv", "jsonl", "mcap", "mcap-ros2"])
     def test_that_are_no_text(self, tmp_path: Path, to: str) -> None:
         if sys.platform != "linux":
             pytest.skip("elsewhere, names of files are text")
-        pytest.importorskip("mcap" if to == "mcap" else "pyarrow")
+        pytest.importorskip("mcap" if to.startswith("mcap") else "pyarrow")
         (tmp_path / "sink.yaml").write_text(SINK)
         capture = tmp_path / "bad\udcff.bin"
         capture.write_bytes(FRAME)
         options = ["--sender", "pc", "--to", to, "-o", str(tmp_path / "out"), "--quiet"]
         done = run("convert", str(tmp_path / "sink.yaml"), str(capture), *options)
         assert done.exit_code == 0, done.output
-        assert any(path.name == f"bad%xff.{to}" for path in (tmp_path / "out").rglob("*"))
+        suffix = "ros2.mcap" if to == "mcap-ros2" else to
+        assert any(path.name == f"bad%xff.{suffix}" for path in (tmp_path / "out").rglob("*"))
 
 
 class TestLogs:

@@ -59,7 +59,7 @@ def visible(folder: Path) -> dict[str, bytes]:
     }
 
 
-@pytest.mark.parametrize("to", ["parquet", "jsonl", "mcap"])
+@pytest.mark.parametrize("to", ["parquet", "jsonl", "mcap", "mcap-ros2"])
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGINT], ids=["killed", "interrupted"])
 def test_a_killed_run_is_gone_on_with(
     workspace: Path, tmp_path: Path, to: str, end: signal.Signals

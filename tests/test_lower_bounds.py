@@ -116,7 +116,8 @@ def test_the_oldest_pre_commit_runs_the_hooks(tmp_path):
 def test_the_oldest_versions_of_the_extras_do_the_work(converting, tmp_path):
     (tmp_path / "run.bin").write_bytes(bytes.fromhex("55 02 01 41 BC") * 3)
     arguments = ["convert", "schemas/matty.yaml", "--sender", "esp", str(tmp_path / "run.bin")]
-    for number, to in enumerate(["csv", "arrow", "mcap", "parquet", "parquet --dask --workers 1"]):
+    formats = ["csv", "arrow", "mcap", "mcap-ros2", "parquet", "parquet --dask --workers 1"]
+    for number, to in enumerate(formats):
         output = str(tmp_path / str(number))
         result = run(converting, *arguments, "-o", output, "--to", *to.split())
         assert result.returncode == 0, result.stdout + result.stderr

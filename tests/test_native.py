@@ -744,11 +744,11 @@ def test_the_command_builds_ahead_finds_and_removes(
     assert run("native", "path").output.strip() == str(folder)
     assert "rn1 brain: compiled" in run("native", "build", "schemas/rn1.yaml").output
     again = run("native", "build", "schemas/rn1.yaml")
-    kinds = ("", " to jsonl", " to csv", " to mcap")
+    kinds = ("", " to jsonl", " to csv", " to mcap", " to mcap-ros2")
     names = [f"rn1 {sender}{kind}" for sender in ("host", "brain") for kind in kinds]
     assert again.output.splitlines() == [f"{name}: is there" for name in names]
     assert not build().is_new
-    assert run("native", "clean").output.strip() == "removed 8 libraries"
+    assert run("native", "clean").output.strip() == "removed 10 libraries"
     assert run("native", "clean").output.strip() == "removed 0 libraries"
 
 

@@ -26,8 +26,7 @@ from protogen.convert.columns.decoders import _PRINTERS  # noqa: E402
 from protogen.convert.columns.tables import tables_of  # noqa: E402
 from protogen.convert.formats import OutputFormat  # noqa: E402
 from protogen.convert.writers.csv_writer import CsvWriter  # noqa: E402
-from protogen.convert.writers.format_writers import write_all  # noqa: E402
-from protogen.convert.writers.mcap_writer import McapWriter  # noqa: E402
+from protogen.convert.writers.format_writers import open_writer, write_all  # noqa: E402
 from protogen.convert.writers.pending_files import Pending  # noqa: E402
 from protogen.native.print_steps import (  # noqa: E402
     IN_CELLS,
@@ -282,7 +281,7 @@ def mcap_messages(
     reading = pytest.importorskip("mcap.reader")
     protocol = protocol_of(path)
     tables = tables_of(protocol, protocol.sender(sender))
-    writer = McapWriter("run", pending := Pending(folder), tables)
+    writer = open_writer(OutputFormat.MCAP, "run", pending := Pending(folder), tables)
     batches = batches_of(path, sender, data, engine, *how, to=OutputFormat.MCAP)
     write_all(writer, batches, Tally())
     pending.commit()

@@ -57,7 +57,7 @@ def _build_printers(name: str, tables: Tables) -> None:
     from protogen.convert.writers.printer_library import built_printer
     from protogen.native.print_steps import UnprintableError
 
-    for format in (OutputFormat.JSONL, OutputFormat.CSV, OutputFormat.MCAP):
+    for format in filter(lambda it: it.is_printed, OutputFormat):
         with suppress(UnprintableError):
             built = built_printer(tables, format)
             _say(f"{name} to {format.value}", is_new=built.is_new)

@@ -11,6 +11,7 @@ _EXTRAS = {
     "numpy": "capture",
     "pyarrow": "parquet",
     "mcap": "mcap",
+    "lz4": "mcap",
     "zstandard": "capture",
     "fsspec": "dask",
     "dask": "dask",

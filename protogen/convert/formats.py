@@ -25,3 +25,9 @@ class OutputFormat(StrEnum):
     PARQUET = "parquet"
     ARROW = "arrow"
     MCAP = "mcap"
+    MCAP_ROS2 = "mcap-ros2"
+
+    @property
+    def is_printed(self) -> bool:
+        """True if rows are printed as text or bytes one by one, not made of columns."""
+        return self not in (OutputFormat.PARQUET, OutputFormat.ARROW)

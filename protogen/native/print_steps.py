@@ -167,7 +167,7 @@ def named(place: Place, texts: Mapping[int, str]) -> Step:
     """Print the text of a number; nothing for a number that has none."""
     cases = [(value, [_put(text)]) for value, text in texts.items()]
     size = max((len(text.encode()) for text in texts.values()), default=0)
-    return Step([*_switch(place, cases, [])], size)
+    return Step([*switch_lines(place, cases, [])], size)
 
 
 def characters(place: Place, room: int, count: Count | None, spelling: Spelling) -> Step:
@@ -176,18 +176,18 @@ def characters(place: Place, room: int, count: Count | None, spelling: Spelling)
     `count`: its characters; None: up to the last one that is not NUL.
     """
     stored = f"text_size({place.pointer}, {room})"
-    size = stored if count is None else f"(int64_t){_count(count)}"
-    return _fallible(f"{spelling.value}(out, end, {place.pointer}, {stored}, {size})")
+    size = stored if count is None else f"(int64_t){count_text(count)}"
+    return fallible(f"{spelling.value}(out, end, {place.pointer}, {stored}, {size})")
 
 
 def hex_digits(place: Place, count: Count) -> Step:
     """Print two digits for each of some bytes that lie in the row."""
-    return _fallible(f"put_hex(out, end, {place.pointer}, (uint64_t){_count(count)})")
+    return fallible(f"put_hex(out, end, {place.pointer}, (uint64_t){count_text(count)})")
 
 
 def hex_of(source: Source, start: Place, size: Place) -> Step:
     """Print two digits for each of some bytes that lie elsewhere."""
-    return _fallible(f"put_hex(out, end, {source.value.format(start.value)}, {size.value})")
+    return fallible(f"put_hex(out, end, {source.value.format(start.value)}, {size.value})")
 
 
 def quoted(body: Iterable[Step]) -> Step:
@@ -209,16 +209,18 @@ def _put(text: str) -> str:
 
 def _string(text: str) -> str:
     """A string of C."""
-    return '"' + "".join(map(_character, text.encode())) + '"'
+    return '"' + "".join(map(octal_character, text.encode())) + '"'
 
 
-def _character(byte: int) -> str:
+def octal_character(byte: int) -> str:
+    """A character of a string of C."""
     # Question marks could make trigraphs.
     is_plain = 0x20 <= byte < 0x7F and chr(byte) not in '"\\?'
     return chr(byte) if is_plain else f"\\{byte:03o}"
 
 
-def _fallible(put: str, size: int | None = None) -> Step:
+def fallible(put: str, size: int | None = None) -> Step:
+    """Call what prints something unless there is no room."""
     return Step([f"OR_FAIL({put});"], size)
 
 
@@ -233,7 +235,7 @@ def repeat(first: Place, stride: int, count: Count, body: Iterable[Step]) -> Ste
         [
             "{",
             f"    const uint8_t *{at} = {first.pointer};",
-            f"    int64_t {left} = (int64_t){_count(count)};",
+            f"    int64_t {left} = (int64_t){count_text(count)};",
             f"    for (; {left} > 0; {left}--, {at} += {stride}) {{",
             *indented(indented(block(body))),
             f"        if ({left} > 1) {{",
@@ -251,20 +253,21 @@ def choose(
 ) -> Step:
     """Take the steps of the case whose value a number has, else those of `rest`."""
     blocks = [(value, list(block(body))) for value, body in cases.items()]
-    return Step([*_switch(place, blocks, block(rest))])
+    return Step([*switch_lines(place, blocks, block(rest))])
 
 
 def where(holds: Place | Worked, body: Iterable[Step], other: Iterable[Step]) -> Step:
     """Take steps where a number is not 0, and others where it is."""
-    return Step([*_either(f"{_count(holds)} != 0", block(body), [*block(other)])])
+    return Step([*either_lines(f"{count_text(holds)} != 0", block(body), [*block(other)])])
 
 
 def when(condition: Condition, body: Iterable[Step]) -> Step:
     """Take steps where a condition holds."""
-    return Step([*_either(condition.value, block(body))])
+    return Step([*either_lines(condition.value, block(body))])
 
 
-def _either(condition: str, body: Iterable[str], other: Iterable[str] = ()) -> Iterator[str]:
+def either_lines(condition: str, body: Iterable[str], other: Iterable[str] = ()) -> Iterator[str]:
+    """C of a choice of two."""
     yield f"if ({condition}) {{"
     yield from indented(body)
     if other:
@@ -273,19 +276,21 @@ def _either(condition: str, body: Iterable[str], other: Iterable[str] = ()) -> I
     yield "}"
 
 
-def _switch(
+def switch_lines(
     place: Place | Worked, cases: Iterable[tuple[int, Sequence[str]]], rest: Iterable[str]
 ) -> Iterator[str]:
+    """C of a choice by a number."""
     yield f"switch ({place.value}) {{"
     for value, lines in cases:
-        yield f"case {_constant(value, place)}:"
+        yield f"case {constant_text(value, place)}:"
         yield from indented([*lines, "break;"])
     yield "default:"
     yield from indented([*rest, "break;"])
     yield "}"
 
 
-def _count(count: Count) -> str:
+def count_text(count: Count) -> str:
+    """C of a number that counts."""
     if isinstance(count, int):
         return str(count)
     return count.value if isinstance(count, Place) else f"({count.value})"
@@ -293,14 +298,14 @@ def _count(count: Count) -> str:
 
 def unless(place: Place, special: Iterable[int], body: Iterable[Step]) -> Step:
     """Take steps unless a number is one of these."""
-    equal = " || ".join(f"{place.value} == {_constant(it, place)}" for it in sorted(special))
-    return Step([*_either(f"!({equal})", block(body))])
+    equal = " || ".join(f"{place.value} == {constant_text(it, place)}" for it in sorted(special))
+    return Step([*either_lines(f"!({equal})", block(body))])
 
 
 def finite(place: Place, scaled: tuple[Fraction, Fraction] | None, body: Iterable[Step]) -> Step:
     """Take steps where a float, or what it is by scale and offset, is a finite number."""
-    value = place.value if scaled is None else _scaled_float(place, *scaled)
-    return Step([*_either(f"{value} - {value} == 0.0", block(body))])
+    value = place.value if scaled is None else scaled_float_text(place, *scaled)
+    return Step([*either_lines(f"{value} - {value} == 0.0", block(body))])
 
 
 def without_comma() -> Step:
@@ -333,7 +338,7 @@ TIME = Step(["out = put_integer(out, rows->times[rows->next]);"], _MAX_INTEGER)
 def number(place: Place, others: Others) -> Step:
     """Print a number of any type: a float as the shortest decimal that is read as the same one."""
     if place.code == "?":
-        lines = _either(place.value, [_put("true")], [_put("false")])
+        lines = either_lines(place.value, [_put("true")], [_put("false")])
         return Step([*lines], len("false"))
     if not place.is_float:
         put = "put_integer" if place.is_signed else "put_natural"
@@ -357,22 +362,23 @@ def physical(
     if scale == 1 and offset == 0:
         found = number(place, others).lines
     else:
-        scaled = _scaled_float if place.is_float else _scaled_integer
+        scaled = scaled_float_text if place.is_float else scaled_integer_text
         found = _put_float(scaled(place, scale, offset), others).lines
-    equal = " || ".join(f"{place.value} == {_constant(it, place)}" for it in sorted(special))
-    return Step([*_either(equal, [_put(missing)], found)] if equal else found, _MAX_FLOAT)
+    equal = " || ".join(f"{place.value} == {constant_text(it, place)}" for it in sorted(special))
+    return Step([*either_lines(equal, [_put(missing)], found)] if equal else found, _MAX_FLOAT)
 
 
 def _put_float(value: str, others: Others) -> Step:
-    return _fallible(f"put_double(job, out, {value}, {', '.join(map(_string, others))})")
+    return fallible(f"put_double(job, out, {value}, {', '.join(map(_string, others))})")
 
 
-def _scaled_float(place: Place, scale: Fraction, offset: Fraction) -> str:
+def scaled_float_text(place: Place, scale: Fraction, offset: Fraction) -> str:
+    """C of a float x scale + offset, both rounded."""
     return f"scaled_float({place.value}, {float(scale).hex()}, {float(offset).hex()})"
 
 
-def _scaled_integer(place: Place, scale: Fraction, offset: Fraction) -> str:
-    """The quotient of two integers, rounded once."""
+def scaled_integer_text(place: Place, scale: Fraction, offset: Fraction) -> str:
+    """C of an integer x scale + offset, rounded once. Raises UnprintableError."""
     over = lcm(scale.denominator, offset.denominator)
     times, plus = int(scale * over), int(offset * over)
     greatest = 1 << 8 * int(place.code[1:] or 1)
@@ -384,8 +390,8 @@ def _scaled_integer(place: Place, scale: Fraction, offset: Fraction) -> str:
     return f"scaled_integer({place.value}, {_signed(times)}, {_signed(plus)}, UINT64_C({over}))"
 
 
-def _constant(value: int, place: Place | Worked) -> str:
-    """A number of the same type."""
+def constant_text(value: int, place: Place | Worked) -> str:
+    """C of a constant of the same type as a number."""
     if place.is_float:
         return float(value).hex()
     return _signed(value) if place.is_signed else f"UINT64_C({value})"

@@ -33,7 +33,7 @@ def open_decoder(
     """
     if engine == EVENTS or (engine is None and find_spec("numpy") is None):
         return EventDecoder(tables, spec)
-    if format not in (OutputFormat.JSONL, OutputFormat.CSV, OutputFormat.MCAP):
+    if not format.is_printed:
         return column_decoders(tables, engine)(0)
     from protogen.capture.engines import makers
     from protogen.convert.columns.column_batches import ColumnDecoder

@@ -297,10 +297,10 @@ def _with_fields(
     raw: Iterable[Column], fields: Sequence[Field]
 ) -> Iterator[tuple[Column, Field | None]]:
     for column in raw:
-        yield column, _field_at(fields, column.path)
+        yield column, field_at(fields, column.path)
 
 
-def _field_at(fields: Sequence[Field], path: Path) -> Field | None:
+def field_at(fields: Sequence[Field], path: Path) -> Field | None:
     """The field whose values a column holds; of a switch, which has none of its own, None."""
     found = next(item for item in fields if item.name == path[0])
     type, steps = found.type, path[1:]
@@ -312,7 +312,7 @@ def _field_at(fields: Sequence[Field], path: Path) -> Field | None:
             type, steps = case.type, steps[1:]
             continue
         assert isinstance(type, Struct)
-        return _field_at(type.fields, steps)
+        return field_at(type.fields, steps)
     return replace(found, type=type)
 
 
@@ -333,7 +333,7 @@ def _value_columns(item: Field, type: Type, path: Path, *, nullable: bool) -> It
             if rest is not None:
                 yield Column(".".join((*path, rest_name(type))), BYTES, (*path, ""), nullable=True)
         case _:
-            facts = _facts(item, type)
+            facts = facts_of(item, type)
             yield Column(".".join(path), column_type(type), path, nullable=nullable, facts=facts)
 
 
@@ -366,7 +366,7 @@ def column_type(type: Type) -> ColumnType:
             return Record(tuple((item.name, _member_type(item)) for item in fields), gaps)
         case Switch(cases=cases, rest=rest):
             members = [
-                (case.name, _of_any_count(column_type(case.type)))
+                (case.name, of_any_count(column_type(case.type)))
                 for case in cases
                 if not _is_empty(case)
             ]
@@ -377,10 +377,10 @@ def column_type(type: Type) -> ColumnType:
 def _member_type(item: Field) -> ColumnType:
     """Type of a member of a record."""
     found = column_type(item.type)
-    return found if item.when is None else _of_any_count(found)
+    return found if item.when is None else of_any_count(found)
 
 
-def _of_any_count(type: ColumnType) -> ColumnType:
+def of_any_count(type: ColumnType) -> ColumnType:
     """Type of what may be missing: its lists have no elements then.
 
     Arrow does not read from Parquet what it has written there of lists of a fixed size in a struct
@@ -388,9 +388,9 @@ def _of_any_count(type: ColumnType) -> ColumnType:
     """
     match type:
         case Listed(element=element):
-            return replace(type, element=_of_any_count(element), count=None)
+            return replace(type, element=of_any_count(element), count=None)
         case Record(members=members):
-            return replace(type, members=tuple((it, _of_any_count(of)) for it, of in members))
+            return replace(type, members=tuple((it, of_any_count(of)) for it, of in members))
         case _:
             return type
 
@@ -441,7 +441,8 @@ def _names(item: Field, leaf: Integer | Float) -> dict[int, str]:
     return {entry.value: entry.name for entry in (*named, *item.special)}
 
 
-def _facts(item: Field, type: Type) -> dict[str, str]:
+def facts_of(item: Field, type: Type) -> dict[str, str]:
+    """Facts for readers about a field's values, or about those of what it holds."""
     leaf = type.element if isinstance(type, Array) else type
     facts = {"unit": item.unit or "", "doc": item.about.doc}
     if item.scaled:

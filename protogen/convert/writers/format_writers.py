@@ -16,6 +16,7 @@ _NEEDS = {
     OutputFormat.PARQUET: (("pyarrow", "numpy"), "writing Parquet"),
     OutputFormat.ARROW: (("pyarrow", "numpy"), "writing Arrow"),
     OutputFormat.MCAP: (("mcap",), "writing MCAP"),
+    OutputFormat.MCAP_ROS2: (("mcap", "lz4"), "writing MCAP"),
 }
 """The packages that a format needs, and for what. PyArrow comes without NumPy."""
 
@@ -57,22 +58,34 @@ def open_writer(format: OutputFormat, name: str, pending: Pending, tables: Table
 
             return ArrowWriter(name, pending)
         case OutputFormat.MCAP:
+            from protogen.convert.writers.mcap_json import JsonMessages
             from protogen.convert.writers.mcap_writer import McapWriter
 
-            return McapWriter(name, pending, tables)
+            return McapWriter(name, _only_file(format, name), pending, tables, JsonMessages())
+        case OutputFormat.MCAP_ROS2:
+            from protogen.convert.writers.mcap_ros2 import Ros2Messages
+            from protogen.convert.writers.mcap_writer import McapWriter
+
+            ros = Ros2Messages(tables)
+            return McapWriter(name, _only_file(format, name), pending, tables, ros)
 
 
 def first_files(format: OutputFormat, name: str, tables: Tables) -> list[str]:
     """The files, relative to the output folder, that a writer of a capture may begin with."""
     match format:
-        case OutputFormat.JSONL | OutputFormat.MCAP:
-            return [f"{name}.{format}"]
+        case OutputFormat.JSONL | OutputFormat.MCAP | OutputFormat.MCAP_ROS2:
+            return [_only_file(format, name)]
         case OutputFormat.CSV:
             suffixes = ["csv", "columns.json"]
         case _:
             suffixes = [format]
     tables_of_all = (table.name for table in tables.all_tables)
     return [f"{table}/{name}.{suffix}" for table in tables_of_all for suffix in suffixes]
+
+
+def _only_file(format: OutputFormat, name: str) -> str:
+    # Both kinds of MCAP may stand beside each other.
+    return f"{name}.{'ros2.mcap' if format is OutputFormat.MCAP_ROS2 else format}"
 
 
 def write_all(writer: Writer, batches: Iterable[Batch], tally: Tally) -> None:

@@ -9,32 +9,54 @@ from __future__ import annotations
 import struct
 import zlib
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, BinaryIO
 
 from protogen.convert.columns.batches import Messages
 from protogen.convert.errors import needed
+from protogen.convert.writers.mcap_encodings import Encoding
 
 _MAGIC = b"\x89MCAP0\r\n"
+_PURPOSE = "writing MCAP"
 _LEVEL = 1
 """Level of the compression. Negative ones are faster, but files become up to twice as large."""
 _LOGS = {"window_log": 17, "hash_log": 12}
 """Powers of two: a hash table of 16 KB and a window of 128 KB stay in the processor's caches, which
 saves a seventh of compressing and more. Messages repeat what is near, so files hardly grow."""
+_RECORD = struct.Struct("<BQ")
+_CHUNK = struct.Struct("<QQQI")
+"""Times, size and checksum of a chunk. Behind them stand the compression, then the data."""
+_TEXT_SIZE = struct.Struct("<I")
+_DATA_SIZE = struct.Struct("<Q")
 _INDEX = struct.Struct("<BQHI")
 _FOOTER = struct.Struct("<BQQQ")
+
+
+def _zstd() -> Callable[[bytes], bytes]:
+    zstandard: Any = needed("zstandard", _PURPOSE)
+    chosen = zstandard.ZstdCompressionParameters.from_level(_LEVEL, **_LOGS)
+    compress: Callable[[bytes], bytes] = zstandard.ZstdCompressor(
+        compression_params=chosen
+    ).compress
+    return compress
+
+
+def _lz4() -> Callable[[bytes], bytes]:
+    return partial(needed("lz4.frame", _PURPOSE).compress, block_checksum=True)
+
+
+_COMPRESSORS = {"zstd": _zstd, "lz4": _lz4}
 
 
 class McapFile:
     """Writes one file; `close` writes its end."""
 
-    def __init__(self, file: BinaryIO, library: str) -> None:
-        purpose = "writing MCAP"
-        self._records: Any = needed("mcap.records", purpose)
-        self._builder: Any = needed("mcap.data_stream", purpose).RecordBuilder
-        zstandard: Any = needed("zstandard", purpose)
-        chosen = zstandard.ZstdCompressionParameters.from_level(_LEVEL, **_LOGS)
-        self._compress = zstandard.ZstdCompressor(compression_params=chosen).compress
+    def __init__(self, file: BinaryIO, library: str, encoding: Encoding) -> None:
+        self._records: Any = needed("mcap.records", _PURPOSE)
+        self._builder: Any = needed("mcap.data_stream", _PURPOSE).RecordBuilder
+        self._encoding = encoding
+        self._compress = _COMPRESSORS[encoding.compression]()
         self._file = file
         self._schemas: list[Any] = []
         self._channels: dict[int, Any] = {}
@@ -43,7 +65,7 @@ class McapFile:
         self._counts: Counter[int] = Counter()
         self._least, self._greatest = 1 << 64, 0
         file.write(_MAGIC)
-        self._put(self._records.Header(profile="", library=library))
+        self._put(self._records.Header(profile=encoding.profile, library=library))
 
     @property
     def channels(self) -> frozenset[int]:
@@ -56,30 +78,39 @@ class McapFile:
         length = self._put(self._records.Metadata(name=name, metadata=dict(facts)))
         self._metadata.append(self._records.MetadataIndex(offset=offset, length=length, name=name))
 
-    def add_channel(self, number: int, topic: str, name: str, schema: bytes, facts: Any) -> None:
-        """Write a channel of messages in JSON, with the schema of that name."""
-        shape = self._records.Schema(id=number, name=name, encoding="jsonschema", data=schema)
-        channel = self._records.Channel(
-            id=number, schema_id=number, topic=topic, message_encoding="json", metadata=dict(facts)
-        )
+    def add_schema(self, number: int, name: str, data: bytes) -> None:
+        """Write the schema of a channel."""
+        encoding = self._encoding.schema_encoding
+        shape = self._records.Schema(id=number, name=name, encoding=encoding, data=data)
         self._put(shape)
-        self._put(channel)
         self._schemas.append(shape)
+
+    def add_channel(self, number: int, topic: str, facts: Mapping[str, str]) -> None:
+        """Write a channel, whose schema is there."""
+        channel = self._records.Channel(
+            id=number,
+            schema_id=number,
+            topic=topic,
+            message_encoding=self._encoding.message_encoding,
+            metadata=dict(facts),
+        )
+        self._put(channel)
         self._channels[number] = channel
 
     def add(self, messages: Messages) -> None:
         """Write a chunk of messages, whose channels are there."""
-        start, data = self._file.tell(), messages.data
-        packed = self._compress(data)
-        chunk = self._records.Chunk(
-            compression="zstd",
-            data=packed,
-            message_start_time=messages.least,
-            message_end_time=messages.greatest,
-            uncompressed_crc=zlib.crc32(data),
-            uncompressed_size=len(data),
+        start, compression = self._file.tell(), self._encoding.compression
+        checksum = zlib.crc32(messages.data) if self._encoding.has_checksums else 0
+        packed = messages.data if messages.is_packed else self._compress(messages.data)
+        head = b"".join(
+            (
+                _CHUNK.pack(messages.least, messages.greatest, messages.size, checksum),
+                _TEXT_SIZE.pack(len(compression)) + compression.encode(),
+                _DATA_SIZE.pack(len(packed)),
+            )
         )
-        length = self._put(chunk)
+        self._file.write(_RECORD.pack(6, len(head) + len(packed)) + head)
+        self._file.write(packed)
         indices = self._file.tell()
         offsets = {}
         for channel, places in messages.places.items():
@@ -87,15 +118,15 @@ class McapFile:
             self._file.write(_INDEX.pack(7, 6 + len(places), channel, len(places)) + places)
             self._counts[channel] += len(places) // 16
         index = self._records.ChunkIndex(
-            chunk_length=length,
+            chunk_length=indices - start,
             chunk_start_offset=start,
-            compression="zstd",
+            compression=compression,
             compressed_size=len(packed),
             message_end_time=messages.greatest,
             message_index_length=self._file.tell() - indices,
             message_index_offsets=offsets,
             message_start_time=messages.least,
-            uncompressed_size=len(data),
+            uncompressed_size=messages.size,
         )
         self._chunks.append(index)
         self._least = min(self._least, messages.least)

@@ -7,6 +7,7 @@ from protogen.capture.schema import CaptureSchema
 from protogen.convert.columns.csv_text import quoted_characters
 from protogen.convert.columns.tables import Tables
 from protogen.convert.formats import OutputFormat
+from protogen.convert.ros2.steps import message_steps as ros2_steps
 from protogen.convert.writers.csv_steps import cell_steps
 from protogen.convert.writers.jsonl_steps import line_steps
 from protogen.convert.writers.mcap_steps import message_steps
@@ -22,10 +23,13 @@ def built_printer(
     Raises NativeError, and UnprintableError where numbers of a scale are too great for C.
     """
     schema = schema or capture_schema(tables.protocol, tables.sender)
-    name = f"{tables.protocol.name}_{tables.sender.name}_{format.value}"
+    name = f"{tables.protocol.name}_{tables.sender.name}_{format.name.lower()}"
     if format is OutputFormat.CSV:
         return build_printer(name, cell_steps(schema, tables), quoted_characters())
     if format is OutputFormat.MCAP:
         steps = message_steps(schema, tables)
         return build_printer(name, steps, byte_time=tables.byte_time)
+    if format is OutputFormat.MCAP_ROS2:
+        steps = ros2_steps(schema, tables)
+        return build_printer(name, steps, byte_time=tables.byte_time, parts=("cdr.c", "pack.c"))
     return build_printer(name, line_steps(schema))

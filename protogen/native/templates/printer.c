@@ -36,6 +36,7 @@ struct job {
     struct entry *entries; /* Of the messages of MCAP, */
     uint32_t *tables;      /* their tables, */
     uint64_t entered;      /* and how many there are. */
+    uint64_t before;       /* Bytes of messages in front of the room. */
 };
 
 /* The rows of a table. Every row begins with the offset of its event. */
@@ -360,8 +361,10 @@ static uint8_t *put_quotes(uint8_t *mark, uint8_t *out, const uint8_t *end) {
 /* --- numbers in little-endian order -------------------------------------------------------------- */
 
 #if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+#define IS_LITTLE 1
 #define COPY(to, from, size) memcpy(to, from, size)
 #else
+#define IS_LITTLE 0
 #define COPY(to, from, size) copy_reversed(to, from, size)
 
 static inline void copy_reversed(uint8_t *to, const void *from, size_t size) {
@@ -406,52 +409,10 @@ static inline void put_envelope(struct job *job, const struct rows *rows, uint8_
     const uint64_t offset = offset_of(rows), time = log_time(rows, offset + size);
     struct entry *const entry = &job->entries[job->entered];
     entry->time = time;
-    entry->place = (uint64_t)(at - job->room);
+    entry->place = job->before + (uint64_t)(at - job->room);
     job->tables[job->entered++] = (uint32_t)rows->table;
     *at = 5;
     at = put_le8(at + 1, (uint64_t)(out - at) - 9U);
     at = put_le4(put_le2(at, (uint16_t)channel), (uint32_t)offset);
     (void)put_le8(put_le8(at, time), time);
-}
-
-/* --- rows ---------------------------------------------------------------------------------------- */
-
-/* Print the next row. */
-static uint8_t *put_row(struct job *job, const struct rows *rows, uint8_t *out, const uint8_t *end);
-
-/* Print rows of all tables by their offsets, as many as there is room for. Returns the bytes. */
-PROTOGEN_EXPORT size_t protogen_print(struct job *job, struct rows *tables, size_t count, uint8_t *room,
-                                      size_t size) {
-    const uint8_t *const end = size < SLACK ? room : room + (size - SLACK);
-    uint8_t *out = room;
-    job->room = room;
-    for (;;) {
-        struct rows *first = NULL;
-        uint64_t least = UINT64_MAX, limit = UINT64_MAX;
-        size_t number;
-        for (number = 0; number < count; number++) {
-            struct rows *const table = &tables[number];
-            if (table->next < table->count) {
-                const uint64_t offset = offset_of(table);
-                if (first == NULL || offset < least) {
-                    limit = least;
-                    least = offset;
-                    first = table;
-                } else if (offset < limit) {
-                    limit = offset;
-                }
-            }
-        }
-        if (first == NULL) {
-            return (size_t)(out - room);
-        }
-        do {
-            uint8_t *const behind = put_row(job, first, out, end);
-            if (behind == NULL) {
-                return (size_t)(out - room);
-            }
-            out = behind;
-            first->next++;
-        } while (first->next < first->count && offset_of(first) < limit);
-    }
 }

@@ -1,0 +1,1 @@
+"""Tables as ROS 2 messages: their definitions, and their bytes (CDR)."""
