@@ -28,6 +28,7 @@ _FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _EXCERPT = re.compile(r"<!-- from (\S+) -->\n(.*?)<!-- end -->", re.DOTALL)
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
 _SCHEMA = re.compile(r"# (\w+\.yaml)\n")
+_DEFINITIONS = re.compile(r"# (definitions/\w+\.yaml)\n")
 _FRAGMENT = re.compile(r"# frame: (.+)\n")
 _MODELINE = re.compile(r"# yaml-language-server: \$schema=(\S+)\n")
 _WORKFLOW = re.compile(r"# (?:\.github/workflows/\w+\.yaml|\.pre-commit-config\.yaml|hooks: .*)\n")
@@ -114,6 +115,12 @@ def named_schemas() -> dict[str, str]:
     return found
 
 
+def definitions() -> dict[str, str]:
+    """Definitions that pages import, by the path of their file."""
+    texts = [block.text for block in blocks("yaml")]
+    return {match[1]: text for text in texts if (match := _DEFINITIONS.match(text))}
+
+
 def fragments() -> dict[str, str]:
     """Frames that can stand in the place of the one in `rover.yaml`."""
     texts = [block.text for block in blocks("yaml")]
@@ -127,7 +134,7 @@ def modelines() -> list[str]:
 
 def says_what_it_is(block: Block) -> bool:
     """True if the first line of a block of YAML tells what the block is."""
-    patterns = (_SCHEMA, _FRAGMENT, _MODELINE, _WORKFLOW)
+    patterns = (_SCHEMA, _DEFINITIONS, _FRAGMENT, _MODELINE, _WORKFLOW)
     return any(pattern.match(block.text) for pattern in patterns)
 
 

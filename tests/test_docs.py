@@ -16,6 +16,7 @@ from doc_pages import (
     Block,
     Page,
     blocks,
+    definitions,
     fragments,
     modelines,
     named_schemas,
@@ -39,7 +40,8 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the schemas of the project and of all pages, and some generated code."""
     folder = tmp_path_factory.mktemp("documents")
     shutil.copytree(ROOT / "schemas", folder / "schemas")
-    for name, text in named_schemas().items():
+    for name, text in {**named_schemas(), **definitions()}.items():
+        (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
     program = folder / "bin" / "protogen"
     program.parent.mkdir()

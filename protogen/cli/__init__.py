@@ -21,6 +21,7 @@ from protogen.cli.exits import guarded
 
 _MODULES = {
     "init": "init",
+    "import": "importing",
     "check": "check",
     "generate": "generation.generate",
     "fmt": "fmt",
