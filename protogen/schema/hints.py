@@ -22,6 +22,7 @@ _KEYS: Mapping[str, Sequence[tuple[str, str]]] = {
     "len": [("counts", "write `counts: payload`"), ("count", "write `count: NUMBER`")],
     "array": [("count", "write `count: NUMBER`")],
     "repeat": [("count", "write `count: NUMBER`")],
+    "terminator": [("until", "write `until: BYTE`, such as `until: 0`")],
     "enum": [("values", "write `values: {NAME: NUMBER}`")],
     "factor": [("scale", "write `scale: FACTOR`, such as 1/10")],
     "resolution": [("scale", "write `scale: FACTOR`, such as 1/10")],

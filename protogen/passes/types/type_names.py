@@ -67,6 +67,8 @@ def has_width(name: str) -> bool:
 _ARRAY = re.compile(r"(\w+)\[(\w+)\]")
 _OTHER_FORMS = {
     "enum": "write the integer's type, such as `uint8`, and `values: {NAME: NUMBER}` beside it",
+    "strz": "write `type: ascii`, and `until: 0` beside it",
+    "cstring": "write `type: ascii`, and `until: 0` beside it",
     "flags": "write the integer's type, such as `uint8`, and `flags: {NAME: BIT}` beside it",
     "struct": "leave out `type`, and write `fields:`",
     "union": "leave out `type`, and write `switch:` and `cases:`",

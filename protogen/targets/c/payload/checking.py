@@ -90,6 +90,9 @@ class Checker(CheckedWalk):
             return super().count(count)
         if count.by.plain is not None:
             self._bounded(count, count.by.plain)
+        elif count.known is not None and is_unfit("", count, count.by):
+            self._flush()
+            self._refuse(is_unfit(self.declared(count.by), count, count.by), "SIZE")
         return super().count(count)
 
     def worked_out(self, count: Count, by: Formula) -> str:
@@ -355,7 +358,9 @@ class Checker(CheckedWalk):
         self._settle()
         self._require(count.least + 1)
         size, left, address = self.variable("length"), self._left(), self._address()
-        found = f"{self.helpers.text_size()}({address}, {left}, {hexadecimal(byte)})"
+        most = unsigned(count.greatest + 1)
+        looked_at = f"{left} < {most} ? {left} : {most}"
+        found = f"{self.helpers.text_size()}({address}, {looked_at}, {hexadecimal(byte)})"
         self.lines.add(f"const size_t {size} = {found};")
         self._refuse(f"{size} > {unsigned(count.greatest)}", "SIZE")
         with self.lines.block(f"if ({size} == {left})"):

@@ -111,6 +111,8 @@ class Validate(Walk):
         elif count.by is not None and count.by.plain is not None:
             assert count.by.plain.type is not None
             self._bounded(self.referred(count.by.plain), count, count.by.plain.type.width)
+        elif count.by is not None and count.known is not None and is_unfit("", count, count.by):
+            self._refuse(is_unfit(self.declared(count.by), count, count.by))
         return super().count(count)
 
     def worked_out(self, count: Count, by: Formula) -> str:
