@@ -117,8 +117,7 @@ class _Several:
             for _ in range(self._draw(st.sampled_from([0, 1, 1, 2]))):
                 first = self._draw(identity_values(part))
                 more = 0 if is_text(part) else self._draw(st.sampled_from([0, 0, 1, 5, 3000]))
-                most = min(part.bounds[1], first + more)
-                run = (first, most)
+                run = (first, min(part.bounds[1], first + more) if more else first)
                 found = [*runs]
                 found[index] = (*runs[index], run)
                 if self._is_free(tuple(found), own) and not _meets(runs[index], (run,)):

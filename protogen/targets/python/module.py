@@ -221,14 +221,20 @@ def _arguments_doc(protocol: Protocol) -> str:
 
 def _default(part: CounterPart | ValuePart) -> str:
     if part.default is not None and part.type.is_text:
-        return f"`{part.shown(part.default)}`"
+        return _readable(part.shown(part.default))
     return f"0x{part.default:02X}" if isinstance(part, ChoicePart) else str(part.default)
+
+
+def _readable(value: int | str) -> str:
+    """A value for readers: in hex, or a text of which each character can be seen."""
+    if isinstance(value, int):
+        return f"0x{value:02X}"
+    return f"`{value.encode('unicode_escape').decode('ascii')}`"
 
 
 def _allowed(part: CounterPart | ValuePart) -> str:
     if isinstance(part, ChoicePart):
-        shown = map(part.shown, part.values)
-        return ", ".join(f"`{it}`" if isinstance(it, str) else f"0x{it:02X}" for it in shown)
+        return ", ".join(_readable(part.shown(value)) for value in part.values)
     if part.between is not None:
         return part.allowed
     if part.type.is_text:
