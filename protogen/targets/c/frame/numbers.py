@@ -8,7 +8,7 @@ import msgspec
 
 from protogen.model.frame import ChoicePart, IdentityPart, LengthPart, LiteralPart, NumberPart
 from protogen.model.frame_plan import FramePlan, PlacedPart
-from protogen.targets.c.frame.expressions import byte, less_absent
+from protogen.targets.c.frame.expressions import byte, less_absent, wire_bytes
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
@@ -125,8 +125,7 @@ def _out_of_bounds(part: NumberPart, value: str) -> str:
 def has_others(part: NumberPart, between: tuple[int, int], value: str) -> str:
     """The condition that some character of a text is not between these two."""
     (first, last), bits, found = between, part.type.byte_bits, []
-    for place in range(part.type.size - 1, -1, -1):
-        character = f"(uint8_t)({value} >> {bits * place} & {hexadecimal((1 << bits) - 1)})"
+    for character in wire_bytes(part.type, value):
         found += [f"{character} < {hexadecimal(first)}"] if first > 0 else []
         found += [f"{character} > {hexadecimal(last)}"] if last < (1 << bits) - 1 else []
     return " || ".join(found)
