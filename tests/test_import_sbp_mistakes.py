@@ -40,6 +40,10 @@ MISTAKES = {
         FIELD.replace("u8", "float") + "        - x: {type: array, fill: u8, size_fn: n}\n",
         "`n` counts, and is no integer",
     ),
+    "a_definition_twice": (
+        HEAD + "  - MSG_A: {id: 1}\n  - MSG_A: {id: 2}\n",
+        ":4:5: there is a definition `MSG_A` already",
+    ),
     "a_field_twice": (FIELD + "        - n: {type: u16}\n", "there is a field `n` already"),
     "a_struct_in_itself": (
         HEAD + "  - A: {fields: [b: {type: B}]}\n  - B: {fields: [a: {type: A}]}\n",

@@ -10,8 +10,8 @@ from protogen.schema.dialects.directives import DIRECTIVES
 LONGEST_NAME = 64
 LONGEST_LABEL = 40
 """Characters of a name that is made of a description."""
-_LONGEST_BASE = LONGEST_NAME - 12
-"""Characters of a name that a number may stand behind, of up to 11 digits."""
+_LONGEST_BASE = LONGEST_NAME - 21
+"""Characters of a name that a number may stand behind, of up to 20 digits."""
 
 _SIGNED = re.compile(r"[-+/<>=] ?\d")
 """Number that is another one without what stands in front of it."""
@@ -49,7 +49,7 @@ def _joined(words: list[str], longest: int) -> str:
     return name
 
 
-def unique(name: str, taken: Collection[str], suffix: object = None) -> str:
+def unique(name: str, taken: Collection[str], suffix: str | None = None) -> str:
     """Return the name, with a number or `suffix` behind it where it is taken already.
 
     A word that a dialect has a meaning for becomes a `_value`.
@@ -58,9 +58,10 @@ def unique(name: str, taken: Collection[str], suffix: object = None) -> str:
         name = f"{name}_value"
     if name not in taken:
         return name
+    base = name[:_LONGEST_BASE].rstrip("_")
     number = 2
-    tried = f"{name[:_LONGEST_BASE]}_{number if suffix is None else suffix}"
+    tried = f"{base}_{number if suffix is None else suffix}"
     while tried in taken:
         number += 1
-        tried = f"{name[:_LONGEST_BASE]}_{number}"
+        tried = f"{base}_{number}"
     return tried

@@ -8,11 +8,17 @@ from protogen.importing.names import snake_case, unique
 from protogen.importing.remarks import DefinitionError, Kind, Remark
 from protogen.importing.sbp.bits import meaning
 from protogen.importing.sbp.spec import Definition, FieldSpec
-from protogen.importing.sbp.structs import NUMBERS, SERIES, Structs, element_type, width
+from protogen.importing.sbp.structs import (
+    NUMBERS,
+    OPEN_ELEMENTS,
+    SERIES,
+    Structs,
+    element_type,
+    width,
+)
 from protogen.importing.sbp.texts import end_of_text, is_known_encoding, text_data
 from protogen.importing.schema_text import Number, joined, paragraphs
 from protogen.importing.units import read_unit
-from protogen.problems import hint_for
 from protogen.problems.span import Span
 
 REST = "rest"
@@ -60,8 +66,10 @@ class _Fields:
 
     def _name(self, spec: FieldSpec) -> str:
         name = snake_case(spec.name)
-        counts = any(other.size_fn == spec.name for other in self._specs)
-        return f"{name}_count" if counts and name in _WORDS else name
+        return f"{name}_count" if self._counts(spec) and name in _WORDS else name
+
+    def _counts(self, spec: FieldSpec) -> bool:
+        return any(other.size_fn == spec.name for other in self._specs)
 
     def _remark(self, spec: FieldSpec, kind: Kind, reason: str, span: Span) -> None:
         name = f"{self._definition.name}.{spec.name}"
@@ -75,33 +83,14 @@ class _Fields:
         is_last = index == len(self._specs) - 1
         extent = self._structs.extent_of(self._file, spec)
         if spec.size_fn is not None:
-            return self._uncountable(index)
-        if spec.type in SERIES and self._has_open_elements(spec):
-            return "an array whose elements take all that is left"
+            return self._structs.uncountable(self._file, self._definition, spec)
+        if self._structs.has_open_elements(self._file, spec):
+            return OPEN_ELEMENTS
         if not extent.is_open or is_last:
             return None
         if spec.type == "string" and text_data(spec, is_last=False) is not None:
             return None
         return "no size tells where it ends, and it is not the last field"
-
-    def _has_open_elements(self, spec: FieldSpec) -> bool:
-        return self._structs.extent_of_type(self._file, element_type(spec), spec).is_open
-
-    def _uncountable(self, index: int) -> str | None:
-        """Return why a field can't be counted by another one, or None."""
-        spec = self._specs[index]
-        places = {other.name: place for place, other in enumerate(self._specs)}
-        if spec.size_fn not in places:
-            message = f"there is no field `{spec.size_fn}` that counts `{spec.name}`"
-            raise DefinitionError(spec.span, message, hint_for(str(spec.size_fn), places))
-        counter = self._specs[places[spec.size_fn]]
-        if counter.type not in NUMBERS or counter.type in ("float", "double"):
-            raise DefinitionError(counter.span, f"`{counter.name}` counts, and is no integer")
-        if places[spec.size_fn] >= index:
-            return f"`{counter.name}` counts it and stands behind it"
-        if self._has_open_elements(spec):
-            return "an array whose elements take all that is left"
-        return None
 
     def _rest(self, index: int) -> dict[str, Any]:
         """Return the field that takes the bytes of all fields from one on."""
@@ -161,7 +150,11 @@ class _Fields:
         def report(kind: Kind, reason: str, span: Span) -> None:
             self._remark(spec, kind, reason, span)
 
-        data = meaning(spec.bits, width(element), report)
+        is_signed = element.startswith("s")
+        data = meaning(spec.bits, width(element), report, is_signed=is_signed)
+        if self._counts(spec) and not data.keys() <= {"values"}:
+            self._remark(spec, Kind.LEFT_OUT, "bits of a number that counts", spec.span)
+            return {}
         if "bits" not in data and "flags" not in data:
             whole = [paragraphs(item.desc) for item in spec.bits if item.low == 0]
             docs += [text for text in whole if not docs[0]]

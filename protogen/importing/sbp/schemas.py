@@ -54,12 +54,10 @@ class _Import:
     def __init__(self, packages: Packages, remarks: list[Remark]) -> None:
         self._packages = packages
         self._remarks = remarks
-        self._names = _type_names(packages.by_file.values())
+        self._names = _names(packages.by_file.values())
         self._structs = Structs(packages, self._names)
         self._types: dict[str, dict[str, Any]] = {}
         """Types of the schema by name."""
-        self._used: dict[str, set[str]] = {}
-        """Names of types that each type and each message needs itself."""
         self._messages: dict[str, dict[str, Any]] = {}
         """Messages by file."""
 
@@ -81,7 +79,6 @@ class _Import:
     # --- definitions --------------------------------------------------------------------------
 
     def _read(self) -> None:
-        taken: dict[str, Any] = {}
         identities: dict[int, str] = {}
         for file, package in self._packages.by_file.items():
             self._messages[file] = {}
@@ -90,8 +87,7 @@ class _Import:
                     self._read_type(file, definition)
                 elif self._fits(file, definition, identities):
                     identities[definition.id] = definition.name
-                    name = unique(_message_name(definition), taken)
-                    taken[name] = True
+                    name = self._names[file, definition.name]
                     self._messages[file][name] = self._message(file, definition)
 
     def _read_type(self, file: str, struct: Definition) -> None:
@@ -197,38 +193,34 @@ class _Import:
         return "\n".join([title, *(["", "Left out:", *missing] if missing else [])])
 
 
-def _type_names(packages: Collection[Package]) -> dict[Place, str]:
-    """Return a name for every struct, which no message and no other struct has."""
-    messages = {
-        _message_name(definition)
-        for package in packages
-        for definition in package.definitions
-        if definition.id is not None
-    }
+def _names(packages: Collection[Package]) -> dict[Place, str]:
+    """Return a name of its own for every message and every struct; messages come first."""
     names: dict[Place, str] = {}
-    for package in packages:
-        for definition in package.definitions:
-            if package.is_rendered and definition.id is None and not definition.is_basic:
-                taken = {*COMMON_NAMES, *messages, *names.values()}
-                name = unique(snake_case(definition.name), taken, "type")
-                names[package.file, definition.name] = name
+    taken: set[str] = set()
+    found = [(package.file, item) for package in packages for item in _of_protocol(package)]
+    for file, definition in sorted(found, key=lambda pair: pair[1].id is None):
+        is_message = definition.id is not None
+        base = definition.name.removeprefix(_PREFIX) if is_message else definition.name
+        others = taken if is_message else {*taken, *COMMON_NAMES}
+        name = unique(snake_case(base), others, None if is_message else "type")
+        taken.add(name)
+        names[file, definition.name] = name
     return names
 
 
-def _message_name(message: Definition) -> str:
-    return snake_case(message.name.removeprefix(_PREFIX))
+def _of_protocol(package: Package) -> Iterator[Definition]:
+    """Yield what a package adds to the protocol."""
+    if package.is_rendered:
+        yield from (item for item in package.definitions if not item.is_basic)
 
 
 def _rendered(package: Package, remarks: list[Remark]) -> Iterator[Definition]:
-    """Yield the definitions that are part of the protocol."""
-    for definition in package.definitions:
-        if definition.is_basic:
-            continue
-        if package.is_rendered:
-            yield definition
-        else:
-            reason = f"{Path(package.file).name} is only for readers (render_source: false)"
-            remarks.append(Remark(Kind.LEFT_OUT, definition.name, reason, definition.span))
+    """Yield what a package adds to the protocol, and remark on what it shows besides."""
+    yield from _of_protocol(package)
+    if not package.is_rendered:
+        reason = f"{Path(package.file).name} is only for readers (render_source: false)"
+        shown = (item for item in package.definitions if not item.is_basic)
+        remarks += [Remark(Kind.LEFT_OUT, item.name, reason, item.span) for item in shown]
 
 
 def _types_in(value: Any) -> Iterator[str]:

@@ -21,6 +21,7 @@ from protogen.schema.text.nodes import (
     items_of,
     keys_of,
 )
+from protogen.schema.text.scalars import resolve
 
 _GREATEST_BIT = 63
 _RANGE = re.compile(r"\s*(\d{1,3})(?:\s*[-:]\s*(\d{1,3}))?\s*")
@@ -113,9 +114,18 @@ def read_package(root: Node, file: str) -> Package:
         name,
         _text_of(root, "description"),
         tuple(Include(_text(item), item.span) for item in entries),
-        tuple(_definition(key, value) for key, value in _named(root.child("definitions"))),
+        tuple(_definitions(root)),
         _text_of(root, "render_source").lower() != "false",
     )
+
+
+def _definitions(root: Node) -> Iterator[Definition]:
+    seen: set[str] = set()
+    for key, body in _named(root.child("definitions")):
+        if key.text in seen:
+            raise DefinitionError(key.span, f"there is a definition `{key.text}` already")
+        seen.add(key.text)
+        yield _definition(key, body)
 
 
 def _definition(key: ScalarNode, body: Node) -> Definition:
@@ -203,7 +213,8 @@ def _text(node: Node) -> str:
 
 
 def _integer(node: Node, hint: str) -> int:
-    value = node.value if isinstance(node, ScalarNode) else None
+    # Keys of JSON, which is YAML, stand between quotes.
+    value = resolve(node.text) if isinstance(node, ScalarNode) else None
     if not isinstance(value, int) or isinstance(value, bool):
         raise DefinitionError(node.span, "this is no whole number", hint)
     return value

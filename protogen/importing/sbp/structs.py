@@ -9,6 +9,7 @@ import msgspec
 from protogen.importing.remarks import DefinitionError
 from protogen.importing.sbp.packages import Packages
 from protogen.importing.sbp.spec import Definition, FieldSpec
+from protogen.problems import hint_for
 
 Place = tuple[str, str]
 """File and name of a struct."""
@@ -21,6 +22,7 @@ NUMBERS = {
 }
 """Names of numbers, and those that a schema has for them."""
 
+OPEN_ELEMENTS = "an array whose elements take all that is left"
 SERIES = ("array", "string", "bytes")
 """Types of several elements or characters."""
 
@@ -72,7 +74,12 @@ class Structs:
     def extent(self, file: str, definition: Definition) -> Extent:
         """Return the bytes of a message or struct."""
         extents = [self.extent_of(file, field) for field in definition.fields]
-        return Extent(sum(item.least for item in extents), any(item.is_open for item in extents))
+        is_open = any(item.is_open for item in extents) or any(
+            self.uncountable(file, definition, field) is not None
+            for field in definition.fields
+            if field.size_fn is not None
+        )
+        return Extent(sum(item.least for item in extents), is_open)
 
     def extent_of(self, file: str, field: FieldSpec) -> Extent:
         """Return the bytes of a field."""
@@ -84,6 +91,29 @@ class Structs:
             return Extent(0, is_open=True)
         element = self.extent_of_type(file, element_type(field), field)
         return Extent(field.size * element.least, element.is_open)
+
+    def has_open_elements(self, file: str, field: FieldSpec) -> bool:
+        """True if a field has elements of which each takes all bytes that are left."""
+        is_series = field.type in SERIES
+        return is_series and self.extent_of_type(file, element_type(field), field).is_open
+
+    def uncountable(self, file: str, definition: Definition, field: FieldSpec) -> str | None:
+        """Return why another field of a definition can't count a field, or None if it can.
+
+        Raises DefinitionError if there is no such field, or it is no integer.
+        """
+        fields = {other.name: other for other in definition.fields}
+        counter = fields.get(field.size_fn or "")
+        if counter is None:
+            message = f"there is no field `{field.size_fn}` that counts `{field.name}`"
+            raise DefinitionError(field.span, message, hint_for(str(field.size_fn), fields))
+        if counter.type not in NUMBERS or counter.type in ("float", "double"):
+            raise DefinitionError(counter.span, f"`{counter.name}` counts, and is no integer")
+        if definition.fields.index(counter) >= definition.fields.index(field):
+            return f"`{counter.name}` counts it and stands behind it"
+        if counter.type.startswith("s"):
+            return f"`{counter.name}` counts it and is signed"
+        return OPEN_ELEMENTS if self.has_open_elements(file, field) else None
 
 
 def element_type(field: FieldSpec) -> str:
