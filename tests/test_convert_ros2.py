@@ -380,7 +380,7 @@ LONG = (
 ).replace("{long}", "long")
 
 
-def test_what_is_packed_is_unpacked(tmp_path: Path) -> None:
+def test_thousands_of_messages_are_those_of_the_line(tmp_path: Path) -> None:
     path = tmp_path / "gaps.yaml"
     path.write_text(LONG)
     dice = Random(3)
@@ -392,12 +392,12 @@ def test_what_is_packed_is_unpacked(tmp_path: Path) -> None:
         assert message.data[-3:] == frame[2:5]
 
 
-def test_messages_may_be_longer_than_blocks(tmp_path: Path) -> None:
+def test_messages_may_be_longer_than_what_is_printed_at_once(tmp_path: Path) -> None:
     path = tmp_path / "gaps.yaml"
     path.write_text(LONG)
     dice = Random(3)
     short = b"".join(frame_of(4, dice.randbytes(3)) for _ in range(12))
-    # A block of 64 KB has room for 7,273 of the longest values, one of 4 MB for 466,000.
+    # At once 512 KB are printed, which is room for some 58,000 of these values.
     values = [dice.randbytes(n) for n in (3, 9_000, 5, 7_200, 7_300, 60_000, 0, 530_000, 1, 7_270)]
     data = b"".join(frame_of(3, struct.pack("<I", len(it)) + it) + short for it in values)
     found = messages_of(written(tmp_path, path, "board", data, None))
@@ -409,19 +409,6 @@ def test_messages_may_be_longer_than_blocks(tmp_path: Path) -> None:
         assert message[36 : 36 + len(raw)] == raw
         physical = struct.unpack(f"<{len(raw)}d", message[len(message) - 8 * len(raw) :])
         assert physical == tuple(value / 3 for value in raw)
-
-
-def test_damage_of_a_chunk_is_seen(tmp_path: Path) -> None:
-    path = tmp_path / "gaps.yaml"
-    path.write_text(LONG)
-    dice = Random(4)
-    frames = b"".join(frame_of(4, dice.randbytes(3)) for _ in range(1_000))
-    file = written(tmp_path, path, "board", frames, None)
-    data = bytearray(file.read_bytes())
-    data[data.index(bytes.fromhex("04 22 4d 18")) + 30] ^= 1  # in the first block
-    file.write_bytes(data)
-    with pytest.raises(RuntimeError, match="blockChecksum_invalid"):
-        messages_of(file)
 
 
 def test_without_a_compiler_messages_are_the_same(

@@ -11,7 +11,6 @@ _EXTRAS = {
     "numpy": "capture",
     "pyarrow": "parquet",
     "mcap": "mcap",
-    "lz4": "mcap",
     "zstandard": "capture",
     "fsspec": "dask",
     "dask": "dask",

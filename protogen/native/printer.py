@@ -17,10 +17,6 @@ from protogen.native.print_steps import Steps, block, indented
 
 _ROOM = 1 << 19
 """Bytes of text that are printed at once: the processor's cache holds them."""
-_BLOCK = 1 << 16
-"""Bytes of messages that are packed at once: the processor's first cache holds most of them."""
-_CHUNK = 1 << 20
-"""Bytes of messages of a chunk, or some more."""
 _LEAST = 32
 """Bytes that every message of MCAP has at least."""
 _PARAMETERS = "struct job *job, const struct rows *rows, uint8_t *out, const uint8_t *end"
@@ -46,10 +42,8 @@ class PrintedRows(msgspec.Struct):
 class Piece(msgspec.Struct, frozen=True):
     """Rows that were printed together."""
 
-    data: Any
-    """Text, or packed messages of MCAP: bytes, or an array of them that is used again."""
-    size: int
-    """Bytes before they were packed."""
+    text: Any
+    """Bytes of an array that is used again."""
     present: Sequence[int]
     """Tables of which some rows are among them."""
     entries: Any
@@ -68,7 +62,6 @@ class _Job(ctypes.Structure):
         ("entries", ctypes.c_void_p),
         ("tables", ctypes.c_void_p),
         ("entered", ctypes.c_uint64),
-        ("before", ctypes.c_uint64),
     )
 
 
@@ -113,7 +106,6 @@ def _source(
     lines = [
         f"#define NEEDS_QUOTES(character) ({tests or 0})",
         f"#define LINE_TIME(bytes) ({_line_time(byte_time)})",
-        f"#define TABLES {len(tables)}",
         helpers,
         *(line for number, steps in enumerate(tables) for line in _function(number, steps)),
         "static uint8_t *put_row(" + _PARAMETERS + ") {",
@@ -162,9 +154,6 @@ class Printer:
 
     def _make_room(self, size: int) -> None:
         self._room = numpy().empty(size, "u1")
-        self._make_index(size)
-
-    def _make_index(self, size: int) -> None:
         self._entries = numpy().empty((size // _LEAST, 2), "u8")
         self._tables = numpy().empty(size // _LEAST, "u4")
 
@@ -173,7 +162,7 @@ class Printer:
 
         `line` has the bytes of the capture from offset `base` on.
         """
-        return (piece.data for piece in self.pieces(tables, line, base))
+        return (piece.text.tobytes() for piece in self.pieces(tables, line, base))
 
     def pieces(self, tables: Sequence[PrintedRows], line: bytes, base: int = 0) -> Iterator[Piece]:
         """The same, each with what an index of its messages has. Until the next one is taken."""
@@ -183,48 +172,17 @@ class Printer:
         pairs = zip(tables, payloads, strict=True)
         lent = (_Rows * len(tables))(*(_lent(table, held) for table, held in pairs))
         while any(table.next < table.count for table in lent):
-            before = [table.next for table in lent]
+            room, before = self._room, [table.next for table in lent]
             job.entries, job.tables = self._entries.ctypes.data, self._tables.ctypes.data
             job.entered = 0
-            data, size = self._print_some(job, lent)
-            if size:
+            count = self._print(ctypes.byref(job), lent, len(lent), room.ctypes.data, len(room))
+            if count:
                 each = zip(lent, before, strict=True)
                 present = [table.table for table, first in each if table.next > first]
                 entries, numbers = self._entries[: job.entered], self._tables[: job.entered]
-                yield Piece(data, size, present, entries, numbers)
+                yield Piece(room[:count], present, entries, numbers)
             else:  # Not even one row has room.
-                self._make_room(2 * len(self._room))
-
-    def _print_some(self, job: _Job, lent: Any) -> tuple[Any, int]:
-        """What is printed at once, and its size; 0: nothing is."""
-        room = self._room
-        count = self._print(ctypes.byref(job), lent, len(lent), room.ctypes.data, len(room))
-        return room[:count].tobytes(), count
-
-
-class PackingPrinter(Printer):
-    """Prints rows as messages of MCAP that are packed, in the frame format of LZ4."""
-
-    def __init__(self, built: Built) -> None:
-        super().__init__(built)
-        size, pointer = ctypes.c_size_t, ctypes.c_void_p
-        self._pack = ctypes.PyDLL(str(built.path)).protogen_pack
-        self._pack.restype = size
-        self._pack.argtypes = (pointer, pointer, size, pointer, size, pointer, size)
-        self._make_room(_BLOCK)
-
-    def _make_room(self, size: int) -> None:
-        self._room = numpy().empty(size, "u1")
-        most = _CHUNK + size
-        # LZ4 makes 256 bytes of 255 at worst, which is when a block is not packed; 11 frame all.
-        self._packed = numpy().empty(most + most // 255 + 1024, "u1")
-        self._make_index(most)
-
-    def _print_some(self, job: _Job, lent: Any) -> tuple[Any, int]:
-        room, packed = self._room, self._packed
-        places = (room.ctypes.data, len(room), packed.ctypes.data, _CHUNK)
-        count = self._pack(ctypes.byref(job), lent, len(lent), *places)
-        return packed[:count], job.before
+                self._make_room(2 * len(room))
 
 
 def _bytes(data: bytes) -> Any:

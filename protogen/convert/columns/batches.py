@@ -24,16 +24,13 @@ _ORDER = ("offset", "size", "event", "message", "sender", "form", "parts", "fiel
 class Messages(msgspec.Struct, frozen=True):
     """Message records of MCAP one behind the other, and where they are."""
 
-    data: bytes
-    size: int
-    """Bytes of the records."""
+    data: Any
+    """Bytes, or an array of them that is used again."""
     places: Mapping[int, bytes]
     """For each channel the pairs of time and place in `data`, as an index has them."""
     least: int
     """The least time of all messages."""
     greatest: int
-    is_packed: bool = False
-    """True if `data` is compressed as the format has it."""
 
 
 class Tally(msgspec.Struct):

@@ -16,7 +16,7 @@ _NEEDS = {
     OutputFormat.PARQUET: (("pyarrow", "numpy"), "writing Parquet"),
     OutputFormat.ARROW: (("pyarrow", "numpy"), "writing Arrow"),
     OutputFormat.MCAP: (("mcap",), "writing MCAP"),
-    OutputFormat.MCAP_ROS2: (("mcap", "lz4"), "writing MCAP"),
+    OutputFormat.MCAP_ROS2: (("mcap",), "writing MCAP"),
 }
 """The packages that a format needs, and for what. PyArrow comes without NumPy."""
 

@@ -13,7 +13,7 @@ class Encoding(Protocol):
 
     profile: str
     compression: str
-    """Of chunks: `lz4` or `zstd`."""
+    """Of chunks: `zstd`, or empty where they are stored as they are."""
     has_checksums: bool
     """True if chunks have a CRC of what is in them before it is compressed."""
     schema_encoding: str

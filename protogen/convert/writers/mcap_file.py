@@ -10,7 +10,6 @@ import struct
 import zlib
 from collections import Counter
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import Any, BinaryIO
 
 from protogen.convert.columns.batches import Messages
@@ -33,20 +32,13 @@ _INDEX = struct.Struct("<BQHI")
 _FOOTER = struct.Struct("<BQQQ")
 
 
-def _zstd() -> Callable[[bytes], bytes]:
+def _compressor(name: str) -> Callable[[Any], Any]:
+    if not name:
+        return lambda data: data
     zstandard: Any = needed("zstandard", _PURPOSE)
     chosen = zstandard.ZstdCompressionParameters.from_level(_LEVEL, **_LOGS)
-    compress: Callable[[bytes], bytes] = zstandard.ZstdCompressor(
-        compression_params=chosen
-    ).compress
+    compress: Callable[[Any], Any] = zstandard.ZstdCompressor(compression_params=chosen).compress
     return compress
-
-
-def _lz4() -> Callable[[bytes], bytes]:
-    return partial(needed("lz4.frame", _PURPOSE).compress, block_checksum=True)
-
-
-_COMPRESSORS = {"zstd": _zstd, "lz4": _lz4}
 
 
 class McapFile:
@@ -56,7 +48,7 @@ class McapFile:
         self._records: Any = needed("mcap.records", _PURPOSE)
         self._builder: Any = needed("mcap.data_stream", _PURPOSE).RecordBuilder
         self._encoding = encoding
-        self._compress = _COMPRESSORS[encoding.compression]()
+        self._compress = _compressor(encoding.compression)
         self._file = file
         self._schemas: list[Any] = []
         self._channels: dict[int, Any] = {}
@@ -101,10 +93,10 @@ class McapFile:
         """Write a chunk of messages, whose channels are there."""
         start, compression = self._file.tell(), self._encoding.compression
         checksum = zlib.crc32(messages.data) if self._encoding.has_checksums else 0
-        packed = messages.data if messages.is_packed else self._compress(messages.data)
+        packed = self._compress(messages.data)
         head = b"".join(
             (
-                _CHUNK.pack(messages.least, messages.greatest, messages.size, checksum),
+                _CHUNK.pack(messages.least, messages.greatest, len(messages.data), checksum),
                 _TEXT_SIZE.pack(len(compression)) + compression.encode(),
                 _DATA_SIZE.pack(len(packed)),
             )
@@ -126,7 +118,7 @@ class McapFile:
             message_index_length=self._file.tell() - indices,
             message_index_offsets=offsets,
             message_start_time=messages.least,
-            uncompressed_size=messages.size,
+            uncompressed_size=len(messages.data),
         )
         self._chunks.append(index)
         self._least = min(self._least, messages.least)

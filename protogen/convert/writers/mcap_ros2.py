@@ -15,7 +15,7 @@ class Ros2Messages:
     """The encoding of messages as ROS 2 transports them."""
 
     profile = "ros2"
-    compression = "lz4"
+    compression = ""
     has_checksums = False
     schema_encoding = "ros2msg"
     message_encoding = "cdr"

@@ -69,7 +69,6 @@ class McapWriter:
             times = [time for _, time, _, _ in records]
             yield Messages(
                 b"".join(data for *_, data in records),
-                place,
                 {channel: b"".join(found) for channel, found in places.items()},
                 min(times),
                 max(times),

@@ -31,5 +31,5 @@ def built_printer(
         return build_printer(name, steps, byte_time=tables.byte_time)
     if format is OutputFormat.MCAP_ROS2:
         steps = ros2_steps(schema, tables)
-        return build_printer(name, steps, byte_time=tables.byte_time, parts=("cdr.c", "pack.c"))
+        return build_printer(name, steps, byte_time=tables.byte_time, parts=("cdr.c",))
     return build_printer(name, line_steps(schema))

@@ -15,7 +15,7 @@ from protogen.convert.columns.tables import Table
 from protogen.convert.formats import OutputFormat
 from protogen.convert.writers.printer_library import built_printer
 from protogen.native.library import Library
-from protogen.native.printer import PackingPrinter, Piece, PrintedRows, Printer
+from protogen.native.printer import Piece, PrintedRows, Printer
 
 
 class RowPrinter:
@@ -26,8 +26,7 @@ class RowPrinter:
         tables = readings.tables
         self.readings = readings
         built = built_printer(tables, format, readings.schema)
-        self._packs = format is OutputFormat.MCAP_ROS2
-        self._printer = PackingPrinter(built) if self._packs else Printer(built)
+        self._printer = Printer(built)
         self._numbers = {name: number for number, name in enumerate(readings.messages)}
         others = (tables.invalid.name, tables.unknown.name)
         self._channels = [tables.channels[name] for name in (*readings.messages, *others)]
@@ -55,7 +54,7 @@ class RowPrinter:
             }
             times = piece.entries[:, 0]
             least, greatest = int(times.min()), int(times.max())
-            yield Messages(piece.data, piece.size, places, least, greatest, self._packs)
+            yield Messages(piece.text, places, least, greatest)
 
     def _texts(self, batch: ColumnBatch, each: list[PrintedRows]) -> Iterator[bytes]:
         return self._printer.texts(each, batch.data, batch.filled.offset)

@@ -36,7 +36,6 @@ struct job {
     struct entry *entries; /* Of the messages of MCAP, */
     uint32_t *tables;      /* their tables, */
     uint64_t entered;      /* and how many there are. */
-    uint64_t before;       /* Bytes of messages in front of the room. */
 };
 
 /* The rows of a table. Every row begins with the offset of its event. */
@@ -409,7 +408,7 @@ static inline void put_envelope(struct job *job, const struct rows *rows, uint8_
     const uint64_t offset = offset_of(rows), time = log_time(rows, offset + size);
     struct entry *const entry = &job->entries[job->entered];
     entry->time = time;
-    entry->place = job->before + (uint64_t)(at - job->room);
+    entry->place = (uint64_t)(at - job->room);
     job->tables[job->entered++] = (uint32_t)rows->table;
     *at = 5;
     at = put_le8(at + 1, (uint64_t)(out - at) - 9U);
