@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from protogen.model.expressions import Expression
@@ -23,7 +23,8 @@ def worked_out(expression: Expression, scope: Mapping[str, Any]) -> int:
     if text in scope:
         return int(scope[text])
     python = _WORD.sub(_unreserved, _RUN.sub(_shifted, text))
-    found = eval(python, {"__builtins__": {}}, _Members(scope))
+    members: Any = _Members(scope)
+    found = eval(python, {"__builtins__": {}}, members)
     return int(bool(found) if expression.is_condition else found)
 
 
@@ -38,8 +39,8 @@ def _shifted(run: re.Match[str]) -> str:
     return f"(({run['name']} >> {run['low']}) & {2**width - 1})"
 
 
-class _Members(Mapping[str, Any]):
-    """Values by name, whose members are attributes."""
+class _Members:
+    """Values by name, whose members are attributes; no method has the name of one."""
 
     def __init__(self, values: Mapping[str, Any]) -> None:
         self._values = values
@@ -50,9 +51,3 @@ class _Members(Mapping[str, Any]):
 
     def __getattr__(self, name: str) -> Any:
         return self[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._values)
-
-    def __len__(self) -> int:
-        return len(self._values)

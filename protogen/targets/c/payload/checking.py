@@ -358,9 +358,7 @@ class Checker(CheckedWalk):
         self._settle()
         self._require(count.least + 1)
         size, left, address = self.variable("length"), self._left(), self._address()
-        most = unsigned(count.greatest + 1)
-        looked_at = f"{left} < {most} ? {left} : {most}"
-        found = f"{self.helpers.text_size()}({address}, {looked_at}, {hexadecimal(byte)})"
+        found = f"{self.helpers.text_size()}({address}, {left}, {hexadecimal(byte)})"
         self.lines.add(f"const size_t {size} = {found};")
         self._refuse(f"{size} > {unsigned(count.greatest)}", "SIZE")
         with self.lines.block(f"if ({size} == {left})"):
