@@ -27,6 +27,8 @@ CONSTRUCTS = [
     for name in ("packed_bits", "digits_line", "written_line")
 ]
 """Schemas of what no document has, and C has to parse."""
+DIGITS = ROOT / "tests" / "framings" / "digit_words.yaml"
+"""Digits around a payload, which a decoder reads and compares."""
 DECODES = [
     (path, machine)
     for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS)
@@ -37,7 +39,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
     [(path, events, machine) for path in SCHEMAS for events in EVENTS for machine in MACHINES]
     if ALL
     else [
-        *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS)),
+        *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS, DIGITS)),
         *((path, events, NARROW) for path in DOCUMENTS for events in EVENTS),
     ]
 )
