@@ -185,6 +185,11 @@ class FreeDigits(msgspec.Struct, frozen=True):
         return self.form.base == 256 and not self.form.empty
 
     @property
+    def is_digit(self) -> bool:
+        """True if the text is always one digit."""
+        return self.longest == 1 and not self.form.empty
+
+    @property
     def absent(self) -> str:
         """What having no text stands for; empty where there always is some."""
         return constant(self.form.absent, self.type) if self.form.empty else ""

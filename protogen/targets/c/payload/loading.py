@@ -88,10 +88,7 @@ class Load(PlacedWalk):
             self.lines.add(f"{place} = {self.byte()};")
             self.skip(1)
             return
-        self._lengths += 1
-        size = f"length_{self._lengths}" if self._lengths > 1 else "length"
-        found = digits.text_size(self.helpers, self.address(), self._left())
-        self.lines.add(f"const size_t {size} = {found};")
+        size = "1U" if digits.is_digit else self._text_size(digits)
         present = f"{place} = {digits.present(self.helpers, self.address(), size)};"
         if digits.absent:
             self.lines.add(f"{place} = {digits.absent};")
@@ -100,6 +97,14 @@ class Load(PlacedWalk):
         else:
             self.lines.add(present)
         self.skip(size)
+
+    def _text_size(self, digits: FreeDigits) -> str:
+        """The name of the number of bytes in front of the next separator."""
+        self._lengths += 1
+        size = f"length_{self._lengths}" if self._lengths > 1 else "length"
+        found = digits.text_size(self.helpers, self.address(), self._left())
+        self.lines.add(f"const size_t {size} = {found};")
+        return size
 
     def packed(self, step: RecordStep | RepeatStep, place: str) -> None:
         """Numbers that are packed."""
