@@ -62,8 +62,17 @@ class TestSchema:
                 "55 03 01 42 00 12 41 64 61 00 00 00 00 00 FF 00 01 02 01 02 05 00 03 00 05 32",
             ),
             (
-                "letter",  # A subject that NUL ends, a plant of six bytes, a picture of one.
-                {"number": 7, "rest": "68 69 00 01 02 64 00 FF FF AA"},
+                "letter",  # A subject that NUL ends, a plant of six bytes, and a picture of one.
+                {
+                    "number": 7,
+                    "subject": "hi",
+                    "growth": {
+                        "plant": {"bed": 1, "row_number": 2},
+                        "height": 100,
+                        "leaves": -1,
+                    },
+                    "rest": "AA",
+                },
                 "55 06 01 42 00 0B 07 68 69 00 01 02 64 00 FF FF AA D2 C4",
             ),
         ],
@@ -87,19 +96,19 @@ class TestSummary:
             "wrote sbp.yaml: 7 messages, 3 types",
             "left out: Envelope (basics.yaml:10:5): "
             "basics.yaml is only for readers (render_source: false)",
-            "changed: MSG_LETTER.subject (watering.yaml:117:11): "
+            "changed: MSG_LETTER.words (watering.yaml:122:11): "
             "no size tells where it ends, and it is not the last field; bytes from here on",
-            "left out: MSG_TANK_AGAIN (watering.yaml:125:5): MSG_TANK has the id 0x0101, too",
-            "left out: MSG_ALL_PLANTS (watering.yaml:127:5): "
+            "left out: MSG_TANK_AGAIN (watering.yaml:128:5): MSG_TANK has the id 0x0101, too",
+            "left out: MSG_ALL_PLANTS (watering.yaml:130:5): "
             "it has 256 bytes, and a payload has 255 at most",
-            "left out: MSG_FAR (watering.yaml:134:5): the id 65536 does not fit in two bytes",
-            "changed: MSG_ORDER.urgency (watering.yaml:143:17): "
+            "left out: MSG_FAR (watering.yaml:137:5): the id 65536 does not fit in two bytes",
+            "changed: MSG_ORDER.urgency (watering.yaml:146:17): "
             "bits 0 to 1 can't hold 5, so the values are those of the whole integer",
-            "changed: MSG_ORDER.before (watering.yaml:151:17): "
+            "changed: MSG_ORDER.before (watering.yaml:154:17): "
             "bits 0 to 3 can't hold 16, so the values are those of the whole integer",
-            "left out: MSG_ORDER.before (watering.yaml:155:17): "
+            "left out: MSG_ORDER.before (watering.yaml:158:17): "
             "bits 2 to 5, as others lie there too",
-            "left out: MSG_ORDER.before (watering.yaml:157:17): bit 8 of an integer of 8",
+            "left out: MSG_ORDER.before (watering.yaml:160:17): bit 8 of an integer of 8",
             "3 files of definitions read",
             f"next: protogen check {tmp_path}",
         ]

@@ -120,7 +120,6 @@ class TestDefinitions:
         lines = [line for line in imported()[1].splitlines() if line[:7] in ("left ou", "changed")]
         assert [line.partition(" (")[0] for line in lines] == [
             "left out: SBP",
-            "changed: MSG_FILEIO_WRITE_REQ.filename",
             "changed: observation.yaml",
             "changed: observation.yaml",
             "changed: MSG_SETTINGS_WRITE_RESP.status",

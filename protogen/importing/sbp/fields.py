@@ -81,14 +81,12 @@ class _Fields:
         """Return why a field can't be said in a schema, or None."""
         spec = self._specs[index]
         is_last = index == len(self._specs) - 1
-        extent = self._structs.extent_of(self._file, spec)
+        extent = self._structs.extent_of(self._file, spec, is_last=is_last)
         if spec.size_fn is not None:
             return self._structs.uncountable(self._file, self._definition, spec)
         if self._structs.has_open_elements(self._file, spec):
             return OPEN_ELEMENTS
         if not extent.is_open or is_last:
-            return None
-        if spec.type == "string" and text_data(spec, is_last=False) is not None:
             return None
         return "no size tells where it ends, and it is not the last field"
 
@@ -108,7 +106,7 @@ class _Fields:
         docs = [paragraphs(spec.desc)]
         element = element_type(spec)
         if spec.type == "string":
-            docs.append(end_of_text(spec))
+            docs.append(end_of_text(spec, is_last=is_last))
             self._check_encoding(spec)
         elif element in NUMBERS and spec.type != "bytes":
             data |= self._meaning(spec, element, docs)

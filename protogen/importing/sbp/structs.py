@@ -9,6 +9,7 @@ import msgspec
 from protogen.importing.remarks import DefinitionError
 from protogen.importing.sbp.packages import Packages
 from protogen.importing.sbp.spec import Definition, FieldSpec
+from protogen.importing.sbp.texts import ends_inside
 from protogen.problems import hint_for
 
 Place = tuple[str, str]
@@ -73,7 +74,10 @@ class Structs:
 
     def extent(self, file: str, definition: Definition) -> Extent:
         """Return the bytes of a message or struct."""
-        extents = [self.extent_of(file, field) for field in definition.fields]
+        extents = [
+            self.extent_of(file, field, is_last=field is definition.fields[-1])
+            for field in definition.fields
+        ]
         is_open = any(item.is_open for item in extents) or any(
             self.uncountable(file, definition, field) is not None
             for field in definition.fields
@@ -81,12 +85,14 @@ class Structs:
         )
         return Extent(sum(item.least for item in extents), is_open)
 
-    def extent_of(self, file: str, field: FieldSpec) -> Extent:
+    def extent_of(self, file: str, field: FieldSpec, *, is_last: bool) -> Extent:
         """Return the bytes of a field."""
         if field.type not in SERIES:
             return self.extent_of_type(file, field.type, field)
         if field.size_fn is not None:
             return Extent(0)
+        if field.type == "string" and ends_inside(field, is_last=is_last):
+            return Extent(1)
         if field.size is None:
             return Extent(0, is_open=True)
         element = self.extent_of_type(file, element_type(field), field)

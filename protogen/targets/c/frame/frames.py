@@ -28,7 +28,7 @@ from protogen.model.identities import Runs
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.groups import in_run
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
-from protogen.targets.c.frame.expressions import Index, byte, less_absent
+from protogen.targets.c.frame.expressions import Index, byte, less_absent, wire_bytes
 from protogen.targets.c.frame.numbers import has_others, none_of
 from protogen.targets.c.frame.stuffing import Stuffing
 from protogen.targets.c.spelling import Names, unsigned_type
@@ -344,6 +344,6 @@ def _argument(part: IdentityPart | CounterPart | ValuePart, names: Names) -> Arg
     if isinstance(part, ChoicePart):
         conditions = [none_of(part, name)]
     elif part.between is not None:
-        conditions = [has_others(part, part.between, name)]
+        conditions = [has_others(part, part.between, wire_bytes(part.type, name))]
     type_, refused = unsigned_type(part.type.bits), " || ".join(conditions)
     return Argument(name, part.name, type_, part.about.doc, refused)

@@ -8,7 +8,7 @@ import msgspec
 
 from protogen.model.frame import ChoicePart, IdentityPart, LengthPart, LiteralPart, NumberPart
 from protogen.model.frame_plan import FramePlan, PlacedPart
-from protogen.targets.c.frame.expressions import byte, less_absent, wire_bytes
+from protogen.targets.c.frame.expressions import byte, less_absent
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
@@ -104,28 +104,31 @@ def _number(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberVi
         value=value,
         seven_bit=tuple(range(item.offset, item.end)) if type_.byte_bits == 7 else (),
         fault=numbers.fault(type_, "content", item.offset, less),
-        bounds=_out_of_bounds(part, value) if item in plan.bounded and not starts else "",
+        bounds=_out_of_bounds(item, value, less) if item in plan.bounded and not starts else "",
         is_length=isinstance(part, LengthPart),
         identifies=is_last and plan.identity_is_early and plan.length is None,
         tells_sizes=item.in_head and item.end == plan.sizes_told_at,
     )
 
 
-def _out_of_bounds(part: NumberPart, value: str) -> str:
+def _out_of_bounds(item: PlacedPart, value: str, less: str) -> str:
+    part = item.part
+    assert isinstance(part, NumberPart)
     if isinstance(part, ChoicePart):
         return none_of(part, value)
     if part.between is not None:
-        return has_others(part, part.between, value)
+        places = range(item.offset, item.end)
+        return has_others(part, part.between, [f"content[{at}{less}]" for at in places])
     conditions = [f"{value} < {part.least}U"] if part.least > part.type.least else []
     if part.greatest < part.type.greatest:
         conditions.append(f"{value} > {part.greatest}U")
     return " || ".join(conditions)
 
 
-def has_others(part: NumberPart, between: tuple[int, int], value: str) -> str:
+def has_others(part: NumberPart, between: tuple[int, int], characters: Iterable[str]) -> str:
     """The condition that some character of a text is not between these two."""
     (first, last), bits, found = between, part.type.byte_bits, []
-    for character in wire_bytes(part.type, value):
+    for character in characters:
         found += [f"{character} < {hexadecimal(first)}"] if first > 0 else []
         found += [f"{character} > {hexadecimal(last)}"] if last < (1 << bits) - 1 else []
     return " || ".join(found)

@@ -146,7 +146,7 @@ class Load(PlacedWalk):
         found = f"{self.helpers.text_size()}({self.address()}, {self._left()}, {hexadecimal(byte)})"
         self.lines.add(f"{member} = ({counting_type(count.greatest)}){found};")
         self.lines.add(f"{self.helpers.copy()}({place}, {self.address()}, {member});")
-        self.skip(f"{member} + 1U")
+        self.skip(f"1U + {member}")
 
     def _left(self) -> str:
         """The number of bytes that are left."""
