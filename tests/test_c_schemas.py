@@ -203,6 +203,17 @@ frame:
 messages:
   beat: {from: station}
 """
+SEVEN_BITS_AS_DIGITS = """
+byte_bits: 7
+frame:
+  sync: {literal: {text: b}}
+  length: {type: uint7, counts: payload}
+  payload: {}
+  sum: {type: uint7, algorithm: {sum: 7}, covers: payload}
+transparency: {covers: length..sum, encoding: base16-upper}
+messages:
+  text: {from: station, fields: {text: {type: ascii, size: {fill: true, max: 40}}}}
+"""
 
 
 def protocol_of(text: str, folder: Path) -> Protocol:
@@ -250,3 +261,21 @@ def test_a_part_that_needs_a_payload_may_never_be_there(tmp_path: Path) -> None:
         check_events(process, module, "station", [("feed", data), ("flush",)])
     process.close()
     assert frame == bytes.fromhex("7E 0A")
+
+
+@pytest.mark.parametrize("portion", [1, 3, 40])
+def test_digits_of_a_byte_that_seven_bits_do_not_make_are_refused_at_once(
+    portion: int, tmp_path: Path
+) -> None:
+    protocol = protocol_of(SEVEN_BITS_AS_DIGITS, tmp_path)
+    process = Process(protocol, COptions())
+    # A length of 16, A, and a byte of eight bits: the frame ends there.
+    data = b"b1041F0" + b"41" * 14
+    pieces = [data[at : at + portion] for at in range(0, len(data), portion)]
+    with imported(protocol) as module:
+        check_events(process, module, "station", [("feed", piece) for piece in pieces])
+        decoder = module.Decoder()
+        assert decoder.feed(data[:6]) == []
+        (event,) = decoder.feed(data[6:7])
+    process.close()
+    assert (event.offset, event.size, event.reason) == (0, 7, "encoding")

@@ -9,7 +9,10 @@ import pytest
 from protogen.api import load
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.decoders.style import DecoderStyle, decoder_style
+from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.options import Events
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.protocol_names import names_of
 
 ROOT = Path(__file__).parent.parent
 FLAT, PUSH = DecoderStyle.FLAT, DecoderStyle.PUSH
@@ -49,6 +52,8 @@ FLAT, PUSH = DecoderStyle.FLAT, DecoderStyle.PUSH
 def test_the_style_of_a_decoder(
     schema: str, sender: str, events: Events, style: DecoderStyle
 ) -> None:
-    plan = load(ROOT / f"{schema}.yaml").sender(sender).plan
-    frame = ReceivedFrame("protocol", sender, plan, groups=(), events=events)
+    protocol = load(ROOT / f"{schema}.yaml")
+    names = names_of(protocol)
+    plan, numbers = protocol.sender(sender).plan, PartNumbers(Helpers(names))
+    frame = ReceivedFrame(names, sender, plan, groups=(), events=events, numbers=numbers)
     assert decoder_style(frame) is style

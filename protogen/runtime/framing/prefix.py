@@ -133,6 +133,8 @@ class Prefix:
         elif self._has_digits:
             is_begun = is_in_code = max(0, len(wire) - self._before) % 2 == 1
             content = self._unstuffed(wire[:-1] if is_begun else wire)
+            if self._has_high_bits(content):
+                return 0
         head_size = self._head_size
         head = bytes(map(and_, content, self._mask))
         limit = self._limits.get(head)
@@ -142,7 +144,10 @@ class Prefix:
             return int(left >= is_in_code and room > 0)
         if len(head) < head_size:
             return int(left > 0 and room > 0)
-        return max(0, min((2 * left if self._has_digits else left) + self._has_end, room))
+        if self._has_digits:
+            # Any two digits may be a byte that seven bits do not make.
+            left = min(left, 1) if self._sender.frame.seven_bit else 2 * left
+        return max(0, min(left + self._has_end, room))
 
     def _content(self, wire: bytes) -> tuple[bytes, bool, bool] | None:
         """Content of a beginning, and whether an end or a code is begun behind it, and a code.
@@ -163,9 +168,13 @@ class Prefix:
         if begun and begun not in self._begun_codes:
             return None
         content = self._unstuffed(own[: clean.end()])
-        if self._sender.frame.seven_bit and not content[self._start_size :].isascii():
+        if self._has_high_bits(content):
             return None
         return content, bool(held or begun), bool(begun)
+
+    def _has_high_bits(self, content: bytes) -> bool:
+        """True if a byte that carries seven bits has its most significant one set."""
+        return self._sender.frame.seven_bit and not content[self._start_size :].isascii()
 
     def _unstuffed(self, wire: bytes) -> bytes:
         region = wire[self._before :]
