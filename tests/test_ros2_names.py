@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from protogen.convert.ros2.names import field_name, field_names, message_name, unlike
+from protogen.convert.ros2.names import field_name, field_names, message_name
+from protogen.model.names import free_name
 from protogen.native.cdr_steps import Alignment
 
 
@@ -34,7 +35,7 @@ def test_no_two_fields_have_one_name() -> None:
 def test_messages_have_names_that_ros_takes() -> None:
     assert message_name("read_motor") == "ReadMotor"
     assert message_name("lidar.points", "list") == "LidarPointsList"
-    assert unlike("Points", ["Points", "Points2"]) == "Points3"
+    assert free_name("Points", ["Points", "Points2"], between="") == "Points3"
 
 
 def test_what_is_known_of_a_place() -> None:

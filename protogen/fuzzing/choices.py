@@ -361,7 +361,7 @@ def count_choices(lengths: Lengths) -> Choices:
 
 def lengths_of(count: Count, said: int) -> Lengths:
     """The least and the greatest number of elements or bytes; `said` is what a number says."""
-    if count.fills or count.until is not None:
+    if count.is_delimited:
         return count.least, max(count.least, min(count.greatest, _GREATEST_COUNT))
     found = said if count.known is None else count.known
     return found, found

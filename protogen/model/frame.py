@@ -9,7 +9,6 @@ import msgspec
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.origin import NOTHING, About
 from protogen.model.types import Integer, characters, codec
-from protogen.runtime.payload.number import shown_character
 
 PartType = Integer
 """Type of a part that is a number: an integer of whole bytes, in wire order."""
@@ -89,14 +88,13 @@ class NumberPart(TypedPart, frozen=True, kw_only=True):
         """The bounds in words."""
         if self.between is None:
             return f"{self.least} to {self.greatest}"
-        return f"{self.type.size} characters from {' to '.join(map(shown_character, self.between))}"
+        return characters(self.type, self.between).allowed
 
     def holds(self, value: int) -> bool:
         """True if a value is in bounds: a text, if each of its characters is."""
         if self.between is None:
             return self.least <= value <= self.greatest
-        first, last = self.between
-        return all(first <= character <= last for character in self.encode(value))
+        return characters(self.type, self.between).holds(value)
 
     @property
     def is_bounded(self) -> bool:

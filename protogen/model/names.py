@@ -8,11 +8,11 @@ from collections.abc import Collection
 _UNIT_WORDS = {"%": "percent", "/": " per ", "^": " ", "°": " deg ", "µ": "u", "Ω": " ohm "}
 
 
-def free_name(name: str, taken: Collection[str]) -> str:
+def free_name(name: str, taken: Collection[str], between: str = "_") -> str:
     """The name, or with the first number behind it that makes it one that is not taken."""
     found, number = name, 2
     while found in taken:
-        found, number = f"{name}_{number}", number + 1
+        found, number = f"{name}{between}{number}", number + 1
     return found
 
 

@@ -364,9 +364,9 @@ NumberType = Integer | Float
 """A type of numbers."""
 
 
-def characters(type_: Integer) -> Characters:
-    """Codec of an integer that people see as characters."""
-    return Characters(type_.size, seven_bit=type_.byte_bits == 7)
+def characters(type_: Integer, between: tuple[int, int] | None = None) -> Characters:
+    """Codec of an integer that people see as characters, which may be bound to some."""
+    return Characters(type_.size, type_.byte_bits == 7, bytes(between or ()))
 
 
 Codec = Number | WrittenNumeral | WrittenFreely

@@ -154,7 +154,12 @@ class Count(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
     @property
     def is_fixed(self) -> bool:
         """True if nothing in the payload says the number."""
-        return self.expression is None and not self.fills and self.until is None
+        return self.expression is None and not self.is_delimited
+
+    @property
+    def is_delimited(self) -> bool:
+        """True if the payload's end or a terminator says the number."""
+        return self.fills or self.until is not None
 
 
 class Step(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):

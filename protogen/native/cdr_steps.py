@@ -18,11 +18,11 @@ from protogen.native.print_steps import (
     Step,
     Worked,
     block,
-    constant_text,
     count_text,
     either_lines,
     fallible,
     indented,
+    is_one_of,
     octal_character,
     scaled_float_text,
     scaled_integer_text,
@@ -101,21 +101,16 @@ def physical(place: Place, scale: Fraction, offset: Fraction, special: Iterable[
     else:
         value = scaled_integer_text(place, scale, offset)
     test = is_one_of(place, special)
-    return Step([f"out = put_f8(out, {f'{test} ? NOT_A_NUMBER : {value}' if test else value});"], 8)
+    found = f"({test}) ? NOT_A_NUMBER : {value}" if test else value
+    return Step([f"out = put_f8(out, {found});"], 8)
 
 
 def plain_physical(place: Place, size: int, special: Iterable[int]) -> Step:
     """Print a float that is a physical value itself; NaN where it has none."""
     return Step(
-        [f"out = put_f{size}(out, {is_one_of(place, special)} ? NOT_A_NUMBER : {place.value});"],
+        [f"out = put_f{size}(out, ({is_one_of(place, special)}) ? NOT_A_NUMBER : {place.value});"],
         size,
     )
-
-
-def is_one_of(place: Place, special: Iterable[int]) -> str:
-    """C that tells whether a number is one of these; empty where there are none."""
-    tests = [f"{place.value} == {constant_text(it, place)}" for it in sorted(special)]
-    return f"({' || '.join(tests)})" if tests else ""
 
 
 def count(count: Count) -> Step:

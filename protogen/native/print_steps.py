@@ -298,8 +298,12 @@ def count_text(count: Count) -> str:
 
 def unless(place: Place, special: Iterable[int], body: Iterable[Step]) -> Step:
     """Take steps unless a number is one of these."""
-    equal = " || ".join(f"{place.value} == {constant_text(it, place)}" for it in sorted(special))
-    return Step([*either_lines(f"!({equal})", block(body))])
+    return Step([*either_lines(f"!({is_one_of(place, special)})", block(body))])
+
+
+def is_one_of(place: Place, special: Iterable[int]) -> str:
+    """C that tells whether a number is one of these; empty where there are none."""
+    return " || ".join(f"{place.value} == {constant_text(it, place)}" for it in sorted(special))
 
 
 def finite(place: Place, scaled: tuple[Fraction, Fraction] | None, body: Iterable[Step]) -> Step:
@@ -364,7 +368,7 @@ def physical(
     else:
         scaled = scaled_float_text if place.is_float else scaled_integer_text
         found = _put_float(scaled(place, scale, offset), others).lines
-    equal = " || ".join(f"{place.value} == {constant_text(it, place)}" for it in sorted(special))
+    equal = is_one_of(place, special)
     return Step([*either_lines(equal, [_put(missing)], found)] if equal else found, _MAX_FLOAT)
 
 

@@ -37,7 +37,6 @@ from protogen.convert.ros2.names import (
     field_names,
     message_name,
     package_name,
-    unlike,
 )
 from protogen.model.names import free_name
 from protogen.model.types import Array, Field, Integer, Struct, Switch, Type
@@ -142,7 +141,7 @@ class Layout:
         """By the table's name."""
 
     def _free(self, *names: str) -> str:
-        found = unlike(message_name(*names), self._names)
+        found = free_name(message_name(*names), self._names, between="")
         self._names.add(found)
         return found
 

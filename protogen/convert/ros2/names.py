@@ -7,7 +7,7 @@ a message's words begin with capitals. Whatever else stands in a name becomes a 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from protogen.model.names import free_name
 from protogen.runtime.attributes import KEYWORDS
@@ -56,12 +56,4 @@ def field_names(names: Sequence[str]) -> Mapping[str, str]:
     for name in names:
         if name not in found:
             found[name] = free_name(field_name(name), set(found.values()))
-    return found
-
-
-def unlike(name: str, taken: Iterable[str]) -> str:
-    """The name of a message, or with the first number behind it that makes it one not taken."""
-    found, number, names = name, 2, set(taken)
-    while found in names:
-        found, number = f"{name}{number}", number + 1
     return found

@@ -31,7 +31,15 @@ from protogen.convert.writers.value_steps import Spot, count_of, said
 from protogen.model.types import Array, Field, Fixed, Octets, Struct, Switch, Text, Type
 from protogen.native import cdr_steps as cdr
 from protogen.native.cdr_steps import Alignment
-from protogen.native.print_steps import Count, Place, Source, Step, Steps, enveloped
+from protogen.native.print_steps import (
+    Count,
+    Place,
+    Source,
+    Step,
+    Steps,
+    enveloped,
+    is_one_of,
+)
 
 
 def message_steps(schema: CaptureSchema, shown: Tables) -> list[Steps]:
@@ -384,7 +392,7 @@ class _Row(_Values):
         place = at.place(column)
         if member.flag is None:
             return self._physical_number(member.type, meaning, place)
-        special = cdr.is_one_of(place, meaning.special)
+        special = is_one_of(place, meaning.special)
 
         def there() -> list[Step]:
             return [*self.flag(True), *self._physical_number(member.type, meaning, place)]

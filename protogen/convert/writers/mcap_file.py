@@ -23,11 +23,6 @@ _LEVEL = 1
 _LOGS = {"window_log": 17, "hash_log": 12}
 """Powers of two: a hash table of 16 KB and a window of 128 KB stay in the processor's caches, which
 saves a seventh of compressing and more. Messages repeat what is near, so files hardly grow."""
-_RECORD = struct.Struct("<BQ")
-_CHUNK = struct.Struct("<QQQI")
-"""Times, size and checksum of a chunk. Behind them stand the compression, then the data."""
-_TEXT_SIZE = struct.Struct("<I")
-_DATA_SIZE = struct.Struct("<Q")
 _INDEX = struct.Struct("<BQHI")
 _FOOTER = struct.Struct("<BQQQ")
 
@@ -94,15 +89,15 @@ class McapFile:
         start, compression = self._file.tell(), self._encoding.compression
         checksum = zlib.crc32(messages.data) if self._encoding.has_checksums else 0
         packed = self._compress(messages.data)
-        head = b"".join(
-            (
-                _CHUNK.pack(messages.least, messages.greatest, len(messages.data), checksum),
-                _TEXT_SIZE.pack(len(compression)) + compression.encode(),
-                _DATA_SIZE.pack(len(packed)),
-            )
+        chunk = self._records.Chunk(
+            compression=compression,
+            data=packed,
+            message_start_time=messages.least,
+            message_end_time=messages.greatest,
+            uncompressed_crc=checksum,
+            uncompressed_size=len(messages.data),
         )
-        self._file.write(_RECORD.pack(6, len(head) + len(packed)) + head)
-        self._file.write(packed)
+        length = self._put(chunk)
         indices = self._file.tell()
         offsets = {}
         for channel, places in messages.places.items():
@@ -110,7 +105,7 @@ class McapFile:
             self._file.write(_INDEX.pack(7, 6 + len(places), channel, len(places)) + places)
             self._counts[channel] += len(places) // 16
         index = self._records.ChunkIndex(
-            chunk_length=indices - start,
+            chunk_length=length,
             chunk_start_offset=start,
             compression=compression,
             compressed_size=len(packed),

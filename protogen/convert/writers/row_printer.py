@@ -25,8 +25,7 @@ class RowPrinter:
         """Raises NativeError and UnprintableError."""
         tables = readings.tables
         self.readings = readings
-        built = built_printer(tables, format, readings.schema)
-        self._printer = Printer(built)
+        self._printer = Printer(built_printer(tables, format, readings.schema))
         self._numbers = {name: number for number, name in enumerate(readings.messages)}
         others = (tables.invalid.name, tables.unknown.name)
         self._channels = [tables.channels[name] for name in (*readings.messages, *others)]
@@ -53,8 +52,7 @@ class RowPrinter:
                 self._channels[number]: _of(number, piece, entries) for number in piece.present
             }
             times = piece.entries[:, 0]
-            least, greatest = int(times.min()), int(times.max())
-            yield Messages(piece.text, places, least, greatest)
+            yield Messages(piece.text, places, int(times.min()), int(times.max()))
 
     def _texts(self, batch: ColumnBatch, each: list[PrintedRows]) -> Iterator[bytes]:
         return self._printer.texts(each, batch.data, batch.filled.offset)

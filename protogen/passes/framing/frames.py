@@ -67,6 +67,7 @@ _ROLES: dict[str, frozenset[str]] = {
     "type": _NUMBER | {"size", "default"},
     PAYLOAD: frozenset({"unprotected"}),
 }
+_ORDER_HINT = "set `byte_order: little` or `big` on the part or the protocol"
 _IDENTITY_BITS = 64
 _COMMON_KEYS = frozenset({"doc", "source"})
 
@@ -259,9 +260,8 @@ class FrameBuilder:
             hint = f"make it `uint{found.byte_bits}`, with a `range` if its upper bits are zero"
             self._context.error("PG105", loc, text, hint)
         if found.size > 1 and order is None:
-            hint = "set `byte_order: little` or `big` on the part or the protocol"
             text = "nothing says in which order the bytes of this number are sent"
-            self._context.error("PG109", loc, text, hint)
+            self._context.error("PG109", loc, text, _ORDER_HINT)
         return found
 
     def _range(self, name: str, item: PartSyntax, type_: PartType) -> tuple[int, int]:
@@ -334,9 +334,8 @@ class FrameBuilder:
             return type_.byte_order
         order = item.byte_order or self._layout.byte_order
         if order is None:
-            hint = "set `byte_order: little` or `big` on the part or the protocol"
             text = "nothing says in which order the bytes of the words are that are added"
-            self._error("PG109", name, "algorithm", text, hint)
+            self._error("PG109", name, "algorithm", text, _ORDER_HINT)
         return order or "little"
 
     def _error(self, code: str, name: str, key: str, text: str, hint: str | None = None) -> None:

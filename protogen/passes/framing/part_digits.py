@@ -5,7 +5,12 @@ from __future__ import annotations
 from protogen.copying import replace
 from protogen.model.frame import PartType
 from protogen.passes.context import Context, Loc
-from protogen.passes.types.fixed_digits import FixedDigits, digits_of
+from protogen.passes.types.fixed_digits import (
+    NOT_IN_SEVEN_BITS,
+    FixedDigits,
+    digits_of,
+    has_no_order,
+)
 from protogen.passes.types.type_names import type_hint
 from protogen.schema.syntax.parts import Part
 
@@ -33,8 +38,7 @@ def digits_type(context: Context, loc: Loc, item: Part, found: PartType) -> Part
         context.error_at_key("PG224", (*loc, fixed.key), text)
         return None
     if found.byte_bits == 7:
-        text = "numbers are no text where `byte_bits` is 7"
-        context.error_at_key("PG224", (*loc, fixed.key), text)
+        context.error_at_key("PG224", (*loc, fixed.key), NOT_IN_SEVEN_BITS)
     numeral = fixed.of(found) if fixed.is_one_kind() else None
     if numeral is None or context.tally.errors > before:
         return None
@@ -46,9 +50,8 @@ def digits_type(context: Context, loc: Loc, item: Part, found: PartType) -> Part
 
 def no_byte_order(context: Context, loc: Loc, item: Part, type_: PartType) -> None:
     """Report a byte order of digits; a checksum may have one for the words that it adds."""
-    if type_.text is not None and item.byte_order is not None:
-        text = "digits have no byte order: the highest one always comes first"
-        context.error("PG222", (*loc, "byte_order"), text, "leave `byte_order` out")
+    if type_.text is not None:
+        has_no_order(context, item.byte_order, (*loc, "byte_order"))
 
 
 def too_few_digits(context: Context, loc: Loc, item: Part, what: str, greatest: int) -> None:

@@ -10,6 +10,7 @@ from protogen.model.types import Integer
 from protogen.passes.context import Context, Loc
 from protogen.schema.syntax.digits import CharacterCode, DigitCount
 
+NOT_IN_SEVEN_BITS = "numbers are no text where `byte_bits` is 7"
 _GREATEST = 1 << 64
 """No digits may stand for this number or a greater one."""
 
@@ -94,6 +95,13 @@ class FixedDigits:
 
     def _place(self, key: str) -> Loc:
         return self._at(key if getattr(self._syntax, key) is not None else self.key)
+
+
+def has_no_order(context: Context, byte_order: str | None, loc: Loc) -> None:
+    """Report a byte order of digits."""
+    if byte_order is not None:
+        text = "digits have no byte order: the highest one always comes first"
+        context.error("PG222", loc, text, "leave `byte_order` out")
 
 
 def digits_of(value: int, base: int) -> int:

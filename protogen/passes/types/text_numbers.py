@@ -9,7 +9,12 @@ from protogen.model.numbers import FreeNumeral
 from protogen.model.types import Integer, NumberType, is_integer
 from protogen.passes.context import Context
 from protogen.passes.types.declared import Effective
-from protogen.passes.types.fixed_digits import FixedDigits, digits_of
+from protogen.passes.types.fixed_digits import (
+    NOT_IN_SEVEN_BITS,
+    FixedDigits,
+    digits_of,
+    has_no_order,
+)
 from protogen.passes.types.type_names import UNKNOWN_TYPE
 from protogen.schema.syntax.digits import DigitCount
 
@@ -85,7 +90,7 @@ class _Form:
     def _is_in_bytes(self) -> bool:
         """True if characters can stand here: neither packed bits nor bytes of 7 bits."""
         layout = self._item.setting.layout
-        text = "numbers are no text where `byte_bits` is 7" if layout.byte_bits != 8 else ""
+        text = NOT_IN_SEVEN_BITS if layout.byte_bits != 8 else ""
         if layout.packed is not None:
             text = "integers that are packed are no text"
         if text:
@@ -93,11 +98,7 @@ class _Form:
         return not text
 
     def _has_no_order(self) -> None:
-        if self._syntax.byte_order is not None:
-            text = "digits have no byte order: the highest one always comes first"
-            self._context.error(
-                "PG222", self._item.at("byte_order"), text, "leave `byte_order` out"
-            )
+        has_no_order(self._context, self._syntax.byte_order, self._item.at("byte_order"))
 
     # --- as many digits as the number needs -----------------------------------------------------
 

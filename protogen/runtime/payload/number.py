@@ -100,7 +100,7 @@ class Characters(Number):
     @property
     def allowed(self) -> str:
         """The characters that may be, in words."""
-        return f"{self.size} characters from {' to '.join(map(shown_character, self.between))}"
+        return f"{self.size} characters from {' to '.join(map(_shown, self.between))}"
 
     def holds(self, number: int) -> bool:
         """True if all characters of a number are between those that may be."""
@@ -125,7 +125,7 @@ class Characters(Number):
         return self.decode(text.encode("latin-1").ljust(self.size, b"\0"))
 
 
-def shown_character(code: int) -> str:
+def _shown(code: int) -> str:
     """A character of ASCII as such if it can be seen, else its number."""
     seen = chr(code)
     return seen if seen.isprintable() and seen not in ' "\\' else f"0x{code:02X}"

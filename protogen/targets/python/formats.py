@@ -151,13 +151,12 @@ def _order(type_: Integer | Float) -> str | None:
 
 def _string(type_: Text | Octets) -> str:
     kind, seven = _string_kind(type_), _seven_bit(type_)
-    if isinstance(type_.extent, Fill):
-        return call(
-            f"{kind}Fill", str(type_.extent.greatest), seven_bit=seven, least=_least(type_.extent)
-        )
-    if isinstance(type_.extent, Until):
-        byte, greatest = f"0x{type_.extent.byte:02X}", str(type_.extent.greatest)
-        return call(f"{kind}Until", byte, greatest, seven_bit=seven, least=_least(type_.extent))
+    match type_.extent:
+        case Fill(greatest=greatest) as of:
+            return call(f"{kind}Fill", str(greatest), seven_bit=seven, least=least(of))
+        case Until(byte=byte, greatest=greatest) as of:
+            bounds = (f"0x{byte:02X}", str(greatest))
+            return call(f"{kind}Until", *bounds, seven_bit=seven, least=least(of))
     return call(kind, extent(type_.extent), seven_bit=seven)
 
 
@@ -174,14 +173,15 @@ def extent(of: Extent) -> str:
             return str(of.greatest)
 
 
-def _least(of: Fill | Until) -> str | None:
+def least(of: Fill | Until) -> str | None:
+    """The least number, where there is one."""
     return str(of.least) if of.least else None
 
 
 def _array(type_: Array, names: Names) -> str:
     element = _checked(type_.element, names)
     if isinstance(type_.extent, Fill):
-        return call("_c.Fill", element, str(type_.extent.greatest), least=_least(type_.extent))
+        return call("_c.Fill", element, str(type_.extent.greatest), least=least(type_.extent))
     counted = call("_c.Counted", extent(type_.extent), element)
     return counted if type_.packed is None else call("_c.Packed", text(type_.packed), counted)
 

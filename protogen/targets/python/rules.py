@@ -22,7 +22,7 @@ from protogen.model.types import (
     Type,
     Until,
 )
-from protogen.targets.python.formats import constant, is_empty
+from protogen.targets.python.formats import constant, is_empty, least
 from protogen.targets.python.formulas import formula
 from protogen.targets.python.literals import call, mapping, number, text
 from protogen.targets.python.names import Names
@@ -120,13 +120,9 @@ def _extent(key: str, extent: Extent) -> dict[str, str | None]:
             return {key: str(extent.count)}
         case Counted():
             return {key: formula(extent.by)}
-        case Fill():
-            least = str(extent.least) if extent.least else None
-            return {"greatest": str(extent.greatest), "least": least}
-        case Until():
-            least = str(extent.least) if extent.least else None
-            greatest, byte = str(extent.greatest), f"0x{extent.byte:02X}"
-            return {"greatest": greatest, "least": least, "until": byte}
+        case Fill() | Until():
+            until = f"0x{extent.byte:02X}" if isinstance(extent, Until) else None
+            return {"greatest": str(extent.greatest), "least": least(extent), "until": until}
 
 
 def _array(type_: Array, field: Field | None, names: Names) -> str:

@@ -25,7 +25,7 @@ from protogen.targets.c.payload.packing import Placed, members_of, number_in
 from protogen.targets.c.payload.placed import PlacedWalk
 from protogen.targets.c.payload.storing import is_bytes
 from protogen.targets.c.payload.walk import amount, times
-from protogen.targets.c.spelling import counting_type, hexadecimal, integer_type, unsigned
+from protogen.targets.c.spelling import counting_type, hexadecimal, integer_type
 
 
 def loaded(helpers: Helpers, type_: NumberType, byte: str, address: str) -> str:
@@ -137,11 +137,6 @@ class Load(PlacedWalk):
 
     def _up_to(self, place: str, member: str, count: Count, byte: int) -> None:
         """Take the bytes in front of a terminator."""
-        if count.least == count.greatest:
-            self.lines.add(f"{member} = {unsigned(count.greatest)};")
-            self._copy(place, count.greatest)
-            self.skip(1)
-            return
         self.catch_up()
         found = f"{self.helpers.text_size()}({self.address()}, {self._left()}, {hexadecimal(byte)})"
         self.lines.add(f"{member} = ({counting_type(count.greatest)}){found};")

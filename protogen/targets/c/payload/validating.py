@@ -106,7 +106,7 @@ class Validate(Walk):
 
     def count(self, count: Count) -> int | str:
         """Number of elements or bytes, which a struct has to have room for."""
-        if count.fills or count.until is not None:
+        if count.is_delimited:
             self._bounded(self.filled(count), count, counting_bits(count.greatest))
         elif count.by is not None and count.by.plain is not None:
             assert count.by.plain.type is not None

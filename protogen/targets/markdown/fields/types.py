@@ -98,14 +98,11 @@ def _digits_of_free(form: FreeNumeral) -> str:
 
 
 def _extended(element: str, count: Count, noun: str) -> str:
-    if count.fills:
+    if count.is_delimited:
         amount = plural(count.greatest, noun)
         amount = f"{count.least} to {amount}" if count.least else f"at most {amount}"
-        return f"{element} to the end, {amount}"
-    if count.until is not None:
-        amount = plural(count.greatest, noun)
-        amount = f"{count.least} to {amount}" if count.least else f"at most {amount}"
-        return f"{element} up to {code(f'{count.until:02X}')}, {amount}"
+        end = "to the end" if count.until is None else f"up to {code(f'{count.until:02X}')}"
+        return f"{element} {end}, {amount}"
     if count.expression is not None:
         return f"{element} x {code(count.expression.text)}"
     return element if noun == "byte" else f"{element} x {count.known}"

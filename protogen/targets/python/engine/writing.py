@@ -379,7 +379,7 @@ class _Writer(Raw):
         """Check a number of bytes or elements."""
         if count.is_fixed:
             self.lines.refuse_if(f"len({value}) != {count.known}")
-        elif count.fills or count.until is not None:
+        elif count.is_delimited:
             self.lines.refuse_if(outside_of(count, f"len({value})"))
         else:
             assert count.expression is not None
