@@ -234,6 +234,8 @@ def wire(convert: Any, step: AnyStep | RestStep, value: Any, values: Values) -> 
         case IntegerStep():
             converted: list[int] = convert([value], 8 * step.sizes.greatest)
             return converted
+    if step.count.until is not None:
+        return [*value.encode(), 0]
     if isinstance(step.type, Text):
         return list(value.encode().ljust(step.sizes.least, b"\0"))
     return list(bytes.fromhex(value))
@@ -258,6 +260,8 @@ def taken(readbytes: Any, step: AnyStep | RestStep, data: bytearray, values: Val
                 return low | high << 32
             return readbytes(data, size=bits, unsigned=not step.type.signed)
     text = isinstance(step.type, Text)
+    if step.count.until is not None:
+        return bytes(iter(lambda: readbytes(data, size=8, unsigned=True), 0)).decode()
     size = max(len(value) if text else len(value) // 2, step.sizes.least)
     read = bytes(readbytes(data, size=8, unsigned=True) for _ in range(size))
     return read.rstrip(b"\0").decode() if text else read.hex()

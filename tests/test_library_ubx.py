@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import struct
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from io import BytesIO
@@ -17,18 +18,21 @@ from library_support import (
     compare_recovery,
     encoded,
     endpoint_of,
+    engine_of,
     peer_module,
 )
 
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
 from protogen.library import FOLDER
+from protogen.model.expressions import Operand
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
     ChooseStep,
     FloatStep,
     IntegerStep,
+    OptionalStep,
     RecordStep,
     RepeatStep,
     RestStep,
@@ -48,10 +52,12 @@ NAMES = {
 BY_PAYLOAD = {
     *("cfg_nmea", "cfg_nmea_4", "cfg_nmea_12", "nav_aopstatus", "rxm_pmreq_short", "mga_ano"),
     *("cfg_rinv", "cfg_valdel", "cfg_valget_poll", "esf_raw", "log_string", "mga_dbd"),
-    *("mon_ver", "rxm_spartn_key"),
+    *("mon_ver", "rxm_spartn_key", "cfg_valset", "cfg_valget", "esf_meas"),
 }
 """Messages that pyubx2 does not make of values, but takes as bytes: of several layouts, or with
 arrays to the end of the payload."""
+ITEMS = {"cfg_valset", "cfg_valget"}
+"""Messages whose items it tells as attributes, called by its names for their keys."""
 ONE_BLOCK = {"mon_io": "ports", "cfg_inf": "protocols"}
 """Messages of which pyubx2 has but one block, and the array that we have of them."""
 WITHOUT = {
@@ -97,14 +103,25 @@ def mapped(
             case RepeatStep():
                 elements = enumerate(value, 1)
                 return [change(step.element, name, item, (*at, n)) for n, item in elements]
+            case OptionalStep():
+                return None if value is None else change(step.step, name, value, at)
             case ChooseStep():
-                chosen = step.case(values[step.expression.text])
+                chosen = step.case(selected(step, values))
                 assert chosen is not None
                 return change(chosen, name, value, at)
             case _:
                 return visit(Leaf(plain(name), without_constant(step), at, value))
 
     return {step.name: change(step, step.name, values[step.name], at) for step in steps}
+
+
+def selected(step: ChooseStep, values: Values) -> int:
+    """The number, or the run of bits of one, that a case is chosen by."""
+    operand = step.expression
+    assert isinstance(operand, Operand)
+    low, high = operand.run or (0, 63)
+    number: int = values[operand.name]
+    return number >> low & (1 << high - low + 1) - 1
 
 
 def plain(name: str) -> str:
@@ -126,6 +143,8 @@ class Attributes:
             name, value = self._all["reserved1", ()][0]
             self._all["version", ()] = [(name, value & 0xFF)]
             self._all["reserved0", ()] = [(name, value >> 8)]
+        if kind == "esf_meas" and message.calibTtagValid:  # It is one more measurement to it.
+            self._all["calibttag", ()] = self._all["data", (message.numMeas + 1,)]
         if kind in ONE_BLOCK:  # It has no array of them.
             self._all = {(name, (1, *at)): found for (name, at), found in self._all.items()}
 
@@ -173,7 +192,9 @@ class Pyubx2:
             given: dict[str, Any] = {"payload": ours[6:-2]}
         else:
             given = self._given(case, Attributes(parsed, case.message))
-        message = self._package.UBXMessage(*kind, parsebitfield=0, **given)
+        # Of this one, a run of bits counts.
+        bits = case.message == "esf_meas"
+        message = self._package.UBXMessage(*kind, parsebitfield=bits, **given)
         return bytes(message.serialize())
 
     def _given(self, case: Case, attributes: Attributes) -> dict[str, Any]:
@@ -193,8 +214,13 @@ class Pyubx2:
             given["reserved1"] = case.values["version"] | case.values["reserved0"] << 8
         return given
 
+    def items_frame(self, items: list[tuple[str, object]]) -> bytes:
+        """The frame that it makes of configuration items by their names, for the RAM."""
+        return bytes(self._package.UBXMessage.config_set(1, 0, items).serialize())
+
     def values(self, case: Case, frame: bytes) -> Values:
-        attributes = Attributes(self._parsed(case, frame), case.message)
+        parsed = self._parsed(case, frame)
+        attributes = Attributes(parsed, case.message)
         steps = self._messages[case.message].plan.steps
         high: dict[str, float] = {}
 
@@ -203,6 +229,8 @@ class Pyubx2:
                 high[leaf.name[:-2]] = leaf.physical
 
         def read(leaf: Leaf) -> Any:
+            if case.message in ITEMS and leaf.indices:
+                return self._of_item(case, leaf, parsed)
             if leaf.name.endswith("hp") and leaf.name[:-2] in high:
                 return leaf.value
             name, theirs = attributes.of(leaf)
@@ -213,6 +241,15 @@ class Pyubx2:
 
         mapped(steps, case.values, note)
         return mapped(steps, case.values, read)
+
+    def _of_item(self, case: Case, leaf: Leaf, parsed: Any) -> Any:
+        """A key or a value of a configuration item; of items with the same key, it has the last."""
+        items = {item["key"]: item["value"]["value"] for item in case.values["items"]}
+        key = case.values["items"][leaf.indices[0] - 1]["key"]
+        name, kind = self._package.cfgkey2name(key)
+        theirs = getattr(parsed, name)
+        value = int.from_bytes(self._package.val2bytes(theirs, kind), "little")
+        return leaf.value if leaf.name == "key" or value == items[key] else theirs
 
     def _compare_bits(self, case: Case, leaf: Leaf, attributes: Attributes) -> None:
         if isinstance(leaf.step, IntegerStep):
@@ -288,6 +325,8 @@ def is_known(case: Case) -> bool:
         return endpoint_of("ubx", case) == "receiver"  # It has only the newest to be sent.
     if name in ONE_BLOCK:
         return len(values[ONE_BLOCK[name]]) == 1
+    if name in ITEMS:  # It takes the highest bit of a key, which is reserved, for one of the size.
+        return all(item["key"] < 1 << 31 for item in values["items"])
     if name == "mga_ack_data0":
         return bool(values["type"] in (0, 1))
     if name != "mga_ano" and any(isinstance(values.get(it), str) for it in ("data", "content")):
@@ -328,3 +367,21 @@ def test_both_make_and_read_the_same_frames(pyubx2: Pyubx2, drawn: list[Case]) -
 def test_no_frame_is_lost_that_it_finds(pyubx2: Pyubx2, drawn: list[Case], endpoint: str) -> None:
     small = [case for case in drawn if not is_large(case)]
     compare_recovery("ubx", endpoint, pyubx2, small[::2])
+
+
+def test_items_of_all_sizes_are_made_by_their_names(pyubx2: Pyubx2) -> None:
+    items = {
+        "CFG_RATE_MEAS": (0x30210001, "two_bytes", 250),
+        "CFG_SIGNAL_GPS_ENA": (0x1031001F, "bit", 1),
+        "CFG_NAVSPG_DYNMODEL": (0x20110021, "byte", 4),
+        "CFG_UART1_BAUDRATE": (0x40520001, "four_bytes", 115200),
+        "CFG_NAVSPG_USRDAT_MAJA": (0x50110062, "eight_bytes", 6378137.0),
+    }
+    given = [(name, value) for name, (_, _, value) in items.items()]
+    frame = pyubx2.items_frame(given)
+    (event,) = engine_of("ubx").events("host", [frame])
+    assert event.message == "cfg_valset"
+    found = event.values["items"]
+    assert [item["key"] for item in found] == [key for key, _, _ in items.values()]
+    values = [item["value"]["value"] for item in found]
+    assert values == [250, 1, 4, 115200, *struct.unpack("<Q", struct.pack("<d", 6378137.0))]

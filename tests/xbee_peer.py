@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from ipaddress import IPv4Address
+from types import SimpleNamespace
 from typing import Any
 
 from library_support import encoded, peer_module
@@ -40,8 +41,10 @@ PACKETS = {
     "transmit_16_status": "raw.TXStatusPacket",
     "modem_status": "common.ModemStatusPacket",
     "transmit_status": "common.TransmitStatusPacket",
+    "route_information": "digimesh.RouteInformationPacket",
     "receive": "common.ReceivePacket",
     "explicit_receive": "common.ExplicitRXIndicatorPacket",
+    "node_identification": "base.UnknownXBeePacket",
     "remote_at_response": "common.RemoteATCommandResponsePacket",
     "io_sample_64": "raw.RX64IOPacket",
     "io_sample_16": "raw.RX16IOPacket",
@@ -69,13 +72,14 @@ PACKETS = {
 """Its class for each message; the arguments are in the order of the fields."""
 DERIVED = {
     *("number_of_hops", "path_length", "content_type_length", "target_length", "reserved"),
-    *("transport", "flags"),
+    *("transport", "flags", "length"),
 }
 """Fields that are no argument: it works them out, or always sends the same."""
 ALWAYS_ZERO = {
     *(("socket_send", "options"), ("socket_send_to", "options"), ("transmit_sms", "options")),
     *(("receive_ipv4", "status"), ("socket_receive", "status"), ("socket_receive_from", "status")),
     *(("device_response", "reserved"), ("device_request", "transport")),
+    ("route_information", "reserved"),
     *(("device_request", "flags"), ("send_data_request", "transport")),
 }
 """Fields that digi-xbee sends as 0."""
@@ -84,6 +88,10 @@ PROPERTIES = {
     "source_16": "x16bit_source_addr",
     "destination_64": "x64bit_dest_addr",
     "destination_16": "x16bit_dest_addr",
+    "cause": "src_event",
+    "responder_64": "responder_addr",
+    "successor_64": "successor_addr",
+    "additional": "_RouteInformationPacket__additional_data",
     "device_64": "registrant_address",
     "updater_16": "x16bit_updater_addr",
     "target_64": "x64bit_target_addr",
@@ -108,6 +116,8 @@ OF_MESSAGE = {
     ("create_source_route", "options"): "route_cmd_options",
     ("register_joining_device", "options"): "options",
     ("send_data_request", "options"): "options",
+    ("route_information", "source_64"): "src_addr",
+    ("route_information", "destination_64"): "dst_addr",
     ("at_response", "value"): "command_value",
     ("at_response", "status"): "real_status",
     ("remote_at_response", "value"): "command_value",
@@ -192,6 +202,10 @@ class DigiXbee:
         """True if it has the values of a case."""
         if case.message.startswith("io_sample"):
             return has_lines(case.values)
+        if case.message == "route_information" and case.values["cause"] not in (0x11, 0x12):
+            return False
+        if case.message == "node_identification":
+            return case.values["role"] in (0, 1, 2)
         for field, value in case.values.items():
             kind = self._enum(case, field)
             if kind is not None and value not in [it.code for it in kind if it.name != "UNKNOWN"]:
@@ -213,6 +227,10 @@ class DigiXbee:
     def frame(self, case: Case) -> bytes:
         if case.message.startswith("io_sample"):
             return self._sample_frame(case)
+        if case.message == "node_identification":
+            payload = bytearray(encoded("xbee1", case)[4:-1])  # It makes none of values.
+            packet = self._base.UnknownXBeePacket(0x95, payload, op_mode=self._mode)
+            return bytes(packet.output(escaped=self._escaped))
         without = {field for message, field in ALWAYS_ZERO if message == case.message} | DERIVED
         if case.message.startswith("socket_receive"):
             without.discard("frame_id")
@@ -248,6 +266,8 @@ class DigiXbee:
             return inner if isinstance(inner, str) else bytearray(inner)
         if isinstance(value, list):
             return IPv4Address(bytes(value))
+        if field == "additional":
+            return bytearray.fromhex(value)
         if field in BYTES:
             return bytearray.fromhex(value) or None
         return value.encode() if field == "text" else value
@@ -258,10 +278,27 @@ class DigiXbee:
     def values(self, case: Case, frame: bytes) -> Values:
         raw = self._base.XBeeAPIPacket.unescape_data(frame) if self._escaped else bytearray(frame)
         packet = self._class(case).create_packet(raw, self._mode)
+        if case.message == "node_identification":
+            return case.values | self._identified(raw[15:-1])
         if not case.message.startswith("io_sample"):
             return {field: self._ours(case, packet, field) for field in case.values}
         heads = {it: self._ours(case, packet, it) for it in case.values if it in HEADS}
         return heads | self._sampled(case.values, packet.io_sample)
+
+    def _identified(self, data: bytearray) -> Values:
+        """What its network takes of a node that identifies itself, from the address on."""
+        kind: Any = peer_module("digi.xbee.devices").XBeeNetwork
+        zigbee = peer_module("digi.xbee.models.protocol").XBeeProtocol.ZIGBEE
+        network = SimpleNamespace(_local_xbee=SimpleNamespace(get_protocol=lambda: zigbee))
+        read = kind._XBeeNetwork__get_data_for_remote  # noqa: SLF001
+        remote_16, remote_64, name, role, parent = read(network, data)
+        return {
+            "remote_16": as_ours(0, remote_16, "remote_16"),
+            "remote_64": as_ours(0, remote_64, "remote_64"),
+            "name": name,
+            "parent_16": as_ours(0, parent, "parent_16"),
+            "role": role.id,
+        }
 
     def _sampled(self, values: Values, sample: Any) -> Values:
         """The fields of a sample, ours where it has the same lines at the same levels."""
@@ -339,6 +376,8 @@ def as_ours(value: Any, theirs: Any, field: str) -> Any:
         return int.from_bytes(theirs.address, "big")
     if isinstance(theirs, IPv4Address):
         return list(theirs.packed)
+    if field == "additional":  # It leaves the checksum at the end.
+        return bytes(theirs[:-1]).hex()
     if hasattr(theirs, "code"):
         return theirs.code
     if field in BYTES:

@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from protogen.model.expression_bounds import linear
-from protogen.model.expressions import Number, every, operands
+from protogen.model.expressions import Number, Operand, every, operands
 from protogen.model.frame import ChoicePart, CounterPart, IdentityPart, ValuePart
 from protogen.model.identities import Runs
 from protogen.model.messages import Message
@@ -91,6 +91,21 @@ def unspecified_choices(message: Message, sizes: SizeSet) -> Choices:
 # --- numbers that count or select ----------------------------------------------------------------
 
 
+class Run(msgspec.Struct, frozen=True):
+    """A run of bits of a number, which has to select one of several cases."""
+
+    low: int
+    high: int
+    cases: tuple[int, ...]
+
+    def selecting(self, value: int) -> int:
+        """The value with one of the cases in the run."""
+        mask = (1 << self.high + 1) - (1 << self.low)
+        chosen = (value & mask) >> self.low
+        case = chosen if chosen in self.cases else self.cases[value % len(self.cases)]
+        return value & ~mask | case << self.low
+
+
 class Need(msgspec.Struct, frozen=True):
     """Bounds of a number because it counts something, or selects one of several cases."""
 
@@ -101,6 +116,8 @@ class Need(msgspec.Struct, frozen=True):
     """True if it may be none of the cases."""
     near: tuple[int, ...] = ()
     """Further values that make a difference."""
+    runs: tuple[Run, ...] = ()
+    """Runs of its bits that select."""
 
     @property
     def is_bounded(self) -> bool:
@@ -115,7 +132,14 @@ class Need(msgspec.Struct, frozen=True):
             self.cases + other.cases,
             self.others and other.others,
             self.near + other.near,
+            self.runs + other.runs,
         )
+
+    def selecting(self, value: int) -> int:
+        """The value with cases in the runs of bits that select."""
+        for run in self.runs:
+            value = run.selecting(value)
+        return value
 
 
 Needs = dict[tuple[int, str], Need]
@@ -171,8 +195,12 @@ def _needs_of_choice(step: ChooseStep) -> Iterator[tuple[Reference, Need]]:
     values = tuple(case.value for case in step.cases)
     if step.selector.plain is not None:
         yield step.selector.plain, Need(cases=values, others=step.rest is not None)
-    else:
-        yield from _needs_of_formula(step.selector, values)
+        return
+    yield from _needs_of_formula(step.selector, values)
+    selector = step.selector.expression
+    if isinstance(selector, Operand) and selector.run is not None and step.rest is None:
+        number = step.selector.references[selector.name]
+        yield number, Need(runs=(Run(*selector.run, values),))
 
 
 def _needs_of_formula(
@@ -204,7 +232,8 @@ def scalar_choices(
     """Choices for a single value; `need` comes from the steps that it counts or selects."""
     match step:
         case IntegerStep():
-            return _integer_choices(step, need)
+            choices = _integer_choices(step, need)
+            return choices if need is None or not need.runs else _selecting_runs(choices, need)
         case FloatStep():
             return _float_choices(step)
         case BytesStep():
@@ -251,6 +280,12 @@ def _selecting(values: Sequence[int], need: Need) -> Choices:
     others = [value for value in values if need.others and value not in need.cases]
     choices = [*need.cases, *others[-1:]]
     return Choices(choices, lambda random: random.choice([*choices, *others]))
+
+
+def _selecting_runs(choices: Choices, need: Need) -> Choices:
+    """The choices with a case in each run of bits that selects."""
+    boundaries = _distinct(map(need.selecting, choices.boundaries))
+    return Choices(boundaries, lambda random: need.selecting(choices.draw(random)))
 
 
 def _known(step: IntegerStep) -> list[int]:

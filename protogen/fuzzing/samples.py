@@ -270,10 +270,12 @@ class _Sampler:
     def _case(self, step: ChooseStep, chooser: Chooser) -> Any:
         inside = chooser.inside(len(step.cases) + (step.rest is not None))
         chosen = step.case(said(step.selector, self._records))
+        if chosen is None:
+            raise _UnfitError
         if isinstance(chosen, RecordStep) and not chosen.steps:
             return None
-        if chosen is None or isinstance(chosen, RestStep):
-            lengths = (0, 0) if chosen is None else self._lengths(chosen.count, 1)
+        if isinstance(chosen, RestStep):
+            lengths = self._lengths(chosen.count, 1)
             value = inside.choose(bytes_choices(*lengths, SEVEN_BITS))
             self.size += len(value) // 2
             return value
