@@ -83,6 +83,12 @@ ALWAYS_ZERO = {
     *(("device_request", "flags"), ("send_data_request", "transport")),
 }
 """Fields that digi-xbee sends as 0."""
+LIMITS: dict[tuple[str, str], tuple[int, ...]] = {
+    **dict.fromkeys(ALWAYS_ZERO, (0,)),
+    ("route_information", "cause"): (0x11, 0x12),
+    ("node_identification", "role"): (0, 1, 2),
+}
+"""Fields of which digi-xbee knows a few values only."""
 PROPERTIES = {
     "source_64": "x64bit_source_addr",
     "source_16": "x16bit_source_addr",
@@ -202,15 +208,11 @@ class DigiXbee:
         """True if it has the values of a case."""
         if case.message.startswith("io_sample"):
             return has_lines(case.values)
-        if case.message == "route_information" and case.values["cause"] not in (0x11, 0x12):
-            return False
-        if case.message == "node_identification":
-            return case.values["role"] in (0, 1, 2)
         for field, value in case.values.items():
             kind = self._enum(case, field)
             if kind is not None and value not in [it.code for it in kind if it.name != "UNKNOWN"]:
                 return False
-            if (case.message, field) in ALWAYS_ZERO and value != 0:
+            if value not in LIMITS.get((case.message, field), (value,)):
                 return False
             if field == "command" and len(value) != 2:
                 return False
@@ -266,10 +268,9 @@ class DigiXbee:
             return inner if isinstance(inner, str) else bytearray(inner)
         if isinstance(value, list):
             return IPv4Address(bytes(value))
-        if field == "additional":
-            return bytearray.fromhex(value)
         if field in BYTES:
-            return bytearray.fromhex(value) or None
+            data = bytearray.fromhex(value)
+            return data if field == "additional" else data or None
         return value.encode() if field == "text" else value
 
     def _short(self, value: int) -> Any:
@@ -290,7 +291,7 @@ class DigiXbee:
         kind: Any = peer_module("digi.xbee.devices").XBeeNetwork
         zigbee = peer_module("digi.xbee.models.protocol").XBeeProtocol.ZIGBEE
         network = SimpleNamespace(_local_xbee=SimpleNamespace(get_protocol=lambda: zigbee))
-        read = kind._XBeeNetwork__get_data_for_remote  # noqa: SLF001
+        read = kind._XBeeNetwork__get_data_for_remote
         remote_16, remote_64, name, role, parent = read(network, data)
         return {
             "remote_16": as_ours(0, remote_16, "remote_16"),
@@ -345,7 +346,7 @@ class DigiXbee:
             yield bytes(packet.output(escaped=self._escaped))
 
 
-BYTES = {"data", "parameter", "value", "key", "file", "response"}
+BYTES = {"additional", "data", "parameter", "value", "key", "file", "response"}
 """Fields of bytes."""
 
 
@@ -376,12 +377,10 @@ def as_ours(value: Any, theirs: Any, field: str) -> Any:
         return int.from_bytes(theirs.address, "big")
     if isinstance(theirs, IPv4Address):
         return list(theirs.packed)
-    if field == "additional":  # It leaves the checksum at the end.
-        return bytes(theirs[:-1]).hex()
     if hasattr(theirs, "code"):
         return theirs.code
-    if field in BYTES:
-        return bytes(theirs or b"").hex()
+    if field in BYTES:  # In one, it leaves the checksum at the end.
+        return bytes(theirs[:-1] if field == "additional" else theirs or b"").hex()
     if isinstance(value, dict):
         return {"value": theirs if isinstance(theirs, str) else list(theirs)}
     if isinstance(theirs, bytes | bytearray):
