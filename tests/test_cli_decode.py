@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import groupby
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from protogen.cli.wire import codec
-from protogen.cli.wire.tagged import tagged_pieces
+from protogen.cli.wire.tagged import Piece, tagged_pieces
 
 MATTY = str(ROOT / "schemas" / "matty.yaml")
 RFLEX = str(ROOT / "schemas" / "rflex.yaml")
@@ -235,7 +236,7 @@ def test_a_long_line_is_read_in_pieces() -> None:
     assert (
         b"".join(piece.data for piece in found if piece.sender == "pc") == b"\x55" + b"\2" * 10**6
     )
-    assert found[-1] == ("esp", b"\1")
+    assert found[-1] == Piece("esp", b"\1")
 
 
 def test_a_fault_in_a_long_line_ends_it() -> None:
@@ -243,7 +244,113 @@ def test_a_fault_in_a_long_line_ends_it() -> None:
     pieces = iter([b"pc: 55", *[b" 02" * 30_000] * 3, b" 0G", b" 02" * 30_000, b"\nesp: 01"])
     found = list(tagged_pieces(pieces, ("pc", "esp"), complaints.append))
     assert complaints == ["line 1, column 270009: `G` is no hex digit and no separator"]
-    assert found[-1] == ("esp", b"\1")
+    assert found[-1] == Piece("esp", b"\1")
+
+
+# --- silences in logs with times ------------------------------------------------------------------
+
+TIMED = """
+protocol: meter
+link: {baud: 9600, idle_timeout: 20 ms}
+endpoints: {meter: Meter, reader: Reader}
+byte_order: big
+frame:
+  length:   {type: uint8, counts: payload}
+  id:       {type: uint8, id: true}
+  payload:  {}
+  checksum: {type: uint8, algorithm: sum-8, covers: length..payload}
+messages:
+  level: {id: 1, from: meter, fields: {level: uint16}}
+  ask:   {id: 2, from: reader}
+"""
+"""A byte of 10 bits takes 1.04 ms."""
+LEVEL = "02 01 00 07 0A"  # 2 + 1 + 0 + 7
+
+
+@pytest.fixture(name="meter")
+def schema_of_a_meter(tmp_path: Path) -> str:
+    path = tmp_path / "meter.yaml"
+    path.write_text(TIMED)
+    return str(path)
+
+
+def kinds(*args: str, input: str) -> list[str]:
+    result = run("decode", *args, "--format", "jsonl", input=input)
+    assert result.exit_code == 0, result.output
+    events = map(json.loads, result.stdout.splitlines())
+    return [event.get("message", event["event"]) for event in events]
+
+
+@pytest.mark.parametrize(
+    ("second", "expected"),
+    [
+        ("(100.019999999)", ["level"]),
+        # The three bytes behind it take 3.125 ms, which are no silence.
+        ("(100.023124999)", ["level"]),
+        ("(100.023125)", ["invalid", "invalid"]),
+        ("(99)", ["level"]),
+    ],
+)
+def test_a_silence_ends_what_came_before(meter: str, second: str, expected: list[str]) -> None:
+    log = f"(100) ttyUSB0 02 01\n{second} ttyUSB0 00 07 0A\n"
+    found = kinds(meter, "--sender", "meter", "--input", "log", "--timed", input=log)
+    # What is no frame is told in as many pieces as it was given up in.
+    assert [kind for kind, _ in groupby(found)] == [kind for kind, _ in groupby(expected)]
+    assert kinds(meter, "--sender", "meter", "--input", "log", input=log) == ["level"]
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "is_silent"),
+    [
+        ("12:00:01.5", "12:00:01.510", False),
+        ("12:00:01.5", "12:00:01.530", True),
+        ("12:00:01,5", "12:00:01,530", True),
+        ("[12:00:01.5]", "[12:00:01.510]", False),
+        ("23:59:59.995", "0:00:00.005", False),
+        ("23:59:59.995", "0:00:01", True),
+        ("2024-02-29T23:59:59.995", "2024-03-01 00:00:00.005Z", False),
+        ("2024-02-29T23:59:59.995", "2024-03-01 00:00:00.125Z", True),
+        ("(1700000000.99)", "(1700000001)", False),
+        ("1700000000.99", "1700000001.1", True),
+    ],
+)
+def test_ways_to_write_a_time(meter: str, first: str, second: str, is_silent: bool) -> None:
+    log = f"{first} meter: 02 01\n{first} reader: 00 02 02\n{second} meter: 00 07 0A\n"
+    found = kinds(meter, "--tagged", "--timed", input=log)
+    assert ("level" in found) is not is_silent
+    assert "ask" in found
+
+
+def test_bytes_of_a_line_without_a_time_are_decoded_and_complained_of(meter: str) -> None:
+    result = run("decode", meter, "--tagged", "--timed", input=f"pump meter: {LEVEL}\n")
+    assert result.exit_code == 1
+    assert result.stdout.split()[1:] == ["meter", "level", "level=7"]
+    mend = "no time in front: write `12:00:01.5 meter: 1B 02`"
+    assert result.stderr == f"warning: line 1: {mend}\n"
+
+
+@pytest.mark.parametrize(
+    ("args", "problem"),
+    [
+        ((RFLEX, "--tagged", "--timed"), "does not say which silence ends a frame"),
+        ((MATTY, "--timed"), "--timed needs to know when the bytes were sent"),
+        ((MATTY, "--timed", "--hex", "55"), "--timed needs to know when the bytes were sent"),
+        ((MATTY, "--input", "log", "--hex", "55"), "--input log is for lines with times"),
+        ((MATTY, "--input", "log", "--tagged"), "--tagged and --input log exclude each other"),
+    ],
+)
+def test_timed_needs_times_and_a_silence(args: tuple[str, ...], problem: str) -> None:
+    result = run("decode", *args, input="")
+    assert result.exit_code == 2
+    assert problem in result.stderr
+
+
+def test_lines_of_a_log_are_of_the_sender_that_they_name(meter: str) -> None:
+    log = f"(1) meter {LEVEL}\n(2) reader 00 02 02\n(3) can0 {LEVEL}\n"
+    assert kinds(meter, "--input", "log", input=log) == ["level", "ask", "level"]
+    # What names an interface is from the sender that is asked for, which has no such message.
+    found = kinds(meter, "--input", "log", "--sender", "reader", input=log)
+    assert found == ["ask", "unknown"]
 
 
 # --- there and back -------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import stat
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from io import BufferedReader
 from pathlib import Path
@@ -13,13 +13,15 @@ from typing import BinaryIO, Literal, cast
 
 from protogen.cli.exits import UsageError
 from protogen.cli.progress import progress
-from protogen.cli.wire.tagged import Piece
+from protogen.cli.wire.tagged import Complain, Piece
 from protogen.convert.inputs.hex_digits import HexReader
-from protogen.convert.inputs.text_lines import decoded
+from protogen.convert.inputs.text_lines import decoded, lines_of
+from protogen.convert.inputs.text_logs import log_lines
 
 STANDARD_INPUT = Path("-")
-InputFormat = Literal["raw", "hex", "tagged"]
-"""Format of a capture: bytes, hex digits, or lines of hex digits behind the name of the sender."""
+InputFormat = Literal["raw", "hex", "tagged", "log"]
+"""Format of a capture: bytes, hex digits, or lines of hex digits behind the name of the sender, or
+behind a time, as `candump -l` writes them."""
 
 _PIECE = 1 << 16
 """The most bytes that are read at once."""
@@ -67,3 +69,12 @@ def hex_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
     for text in decoded(pieces):
         yield Piece(sender, reader.feed(text))
     yield Piece(sender, reader.finish())
+
+
+def timed_pieces(
+    pieces: Iterator[bytes], sender: str, senders: Collection[str], complain: Complain
+) -> Iterator[Piece]:
+    """Bytes of the lines of a log with times: from the sender that a line names, or `sender`."""
+    for line in log_lines(lines_of(pieces), complain):
+        named = line.name if line.name is not None and line.name in senders else sender
+        yield Piece(named, line.data, line.when)

@@ -19,8 +19,10 @@ from protogen.cli.wire.capture import (
     hex_pieces,
     opened,
     raw_pieces,
+    timed_pieces,
 )
 from protogen.cli.wire.complaints import Complaints
+from protogen.cli.wire.silences import LineTimes, Silences
 from protogen.cli.wire.tagged import Complain, Piece, tagged_pieces
 from protogen.convert.inputs.hex_digits import parse_hex
 
@@ -38,6 +40,15 @@ Tagged = Annotated[
     ),
 ]
 
+Timed = Annotated[
+    bool,
+    typer.Option(
+        "--timed",
+        help="A silence of the schema's link.idle_timeout ends what a decoder holds: for logs with"
+        " a time in front of each line, --input log or --tagged.",
+    ),
+]
+
 EventFormat = Literal["text", "jsonl"]
 Show = Callable[[Any], None]
 """Print an event."""
@@ -52,6 +63,7 @@ def decode(  # noqa: PLR0913 - each option is one argument
         InputFormat, typer.Option("--input", help="What the file is written in.")
     ] = "raw",
     tagged: Tagged = False,
+    timed: Timed = False,
     format: Annotated[
         EventFormat, typer.Option(help="One readable line for each event, or one of JSON.")
     ] = "text",
@@ -67,14 +79,16 @@ def decode(  # noqa: PLR0913 - each option is one argument
     from protogen.cli.wire.codec import open_codec
 
     kind = _input_format(input, tagged=tagged, has_text=hex is not None)
+    _check_timed(kind, timed=timed, has_text=hex is not None)
     codec = open_codec(schema)
+    silences = Silences(codec.protocol.link) if timed else None
     if sender is not None:
         find_senders(codec.protocol, sender)
     complaints = Complaints()
     has_invalid = False
     show = _printer(codec, format, show_sender=sender is None and len(codec.senders) > 1)
-    with _capture(file, hex, kind, codec, sender, complaints.add) as pieces:
-        for events in _batches(codec, sender, pieces):
+    with _capture(file, hex, kind, codec, sender, complaints.add, timed=timed) as pieces:
+        for events in _batches(codec, sender, pieces, silences):
             for event in events:
                 has_invalid = has_invalid or event.kind == "invalid"
                 show(event)
@@ -88,12 +102,22 @@ def decode(  # noqa: PLR0913 - each option is one argument
 
 def _input_format(given: InputFormat, *, tagged: bool, has_text: bool) -> InputFormat:
     """Return what the capture is written in. Raises UsageError where two options disagree."""
-    if tagged and given == "hex":
-        raise UsageError("--tagged and --input hex exclude each other", "leave one of them out")
+    if tagged and given not in ("raw", "tagged"):
+        problem = f"--tagged and --input {given} exclude each other"
+        raise UsageError(problem, "leave one of them out")
     if has_text and (tagged or given == "tagged"):
         hint = "leave out --tagged and give --sender NAME, or give the lines in a file"
         raise UsageError("--hex is bytes of one sender, --tagged is for lines that name it", hint)
+    if has_text and given == "log":
+        raise UsageError("--hex is bytes, --input log is for lines with times", "leave one out")
     return "tagged" if tagged else given
+
+
+def _check_timed(kind: InputFormat, *, timed: bool, has_text: bool) -> None:
+    """Raises UsageError where --timed is given for bytes without times."""
+    if timed and (has_text or kind not in ("tagged", "log")):
+        hint = "give --tagged or --input log, with a time in front of each line"
+        raise UsageError("--timed needs to know when the bytes were sent", hint)
 
 
 @contextmanager
@@ -104,6 +128,8 @@ def _capture(
     codec: Codec,
     sender: str | None,
     complain: Complain,
+    *,
+    timed: bool,
 ) -> Iterator[Iterable[Piece]]:
     """Open what is to be decoded. It is from `sender`, unless its lines are tagged."""
     by = sender or ""
@@ -119,13 +145,18 @@ def _capture(
             case "hex":
                 yield hex_pieces(pieces, by)
             case "tagged":
-                yield tagged_pieces(pieces, codec.senders, complain)
+                times = LineTimes() if timed else None
+                yield tagged_pieces(pieces, codec.senders, complain, times)
+            case "log":
+                yield timed_pieces(pieces, by, codec.senders, complain)
 
 
-def _batches(codec: Codec, sender: str | None, pieces: Iterable[Piece]) -> Iterator[list[Any]]:
+def _batches(
+    codec: Codec, sender: str | None, pieces: Iterable[Piece], silences: Silences | None
+) -> Iterator[list[Any]]:
     """Yield the events of each piece: from one sender, or from all, each with its decoder.
 
-    A piece that names no sender may be from any.
+    A piece that names no sender may be from any. A silence in front of it ends what came before.
     """
     decoders: dict[str, Decoder[Any, Any]] = {}
     for piece in pieces:
@@ -133,6 +164,8 @@ def _batches(codec: Codec, sender: str | None, pieces: Iterable[Piece]) -> Itera
             continue
         if piece.sender not in decoders:
             decoders[piece.sender] = codec.decoder(piece.sender or None)
+        if silences is not None and silences.are_in_front(piece):
+            yield decoders[piece.sender].flush()
         yield decoders[piece.sender].feed(piece.data)
     for decoder in decoders.values():
         yield decoder.flush()

@@ -13,6 +13,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
+from protogen.cli.wire.silences import LineTimes
 from protogen.convert.inputs.hex_digits import HexError, HexReader
 from protogen.convert.inputs.text_lines import decoded
 
@@ -28,6 +29,8 @@ class Piece(NamedTuple):
 
     sender: str
     data: bytes
+    when: int | None = None
+    """Nanoseconds from any moment on, where a log with times says it."""
 
 
 class _LinePiece(NamedTuple):
@@ -40,13 +43,17 @@ class _LinePiece(NamedTuple):
 
 
 def tagged_pieces(
-    pieces: Iterator[bytes], senders: Sequence[str], complain: Complain
+    pieces: Iterator[bytes],
+    senders: Sequence[str],
+    complain: Complain,
+    times: LineTimes | None = None,
 ) -> Iterator[Piece]:
     """Bytes of each line behind its sender; lines without a clear sender are complained of.
 
-    Empty lines and those that begin with `#` say nothing. A sender may stand in upper case.
+    Empty lines and those that begin with `#` say nothing. A sender may stand in upper case. With
+    `times`, each line has to begin with one; the bytes of one that does not are read all the same.
     """
-    reader = _Reader(senders, complain)
+    reader = _Reader(senders, complain, times)
     for piece in _line_pieces(pieces):
         if piece.begins:
             reader.open(piece)
@@ -72,7 +79,9 @@ def _line_pieces(pieces: Iterator[bytes]) -> Iterator[_LinePiece]:
 class _Reader:
     """Reads one line after another."""
 
-    def __init__(self, senders: Sequence[str], complain: Complain) -> None:
+    def __init__(self, senders: Sequence[str], complain: Complain, times: LineTimes | None) -> None:
+        self._times = times
+        self._when: int | None = None
         self._senders = senders
         self._tag = _tag_pattern(senders)
         self._names = {name.casefold(): name for name in senders}
@@ -95,8 +104,19 @@ class _Reader:
             self._complain(f"line {piece.number}: {self._mend()}")
             return
         self._sender = self._names[found["name"].casefold()]
+        self._when = self._time(piece)
         self._columns = found.end()
         self._text = piece.text[found.end() :]
+
+    def _time(self, piece: _LinePiece) -> int | None:
+        if self._times is None:
+            return None
+        when = self._times.of(piece.text)
+        if when is None:
+            self._complain(
+                f"line {piece.number}: no time in front: write `12:00:01.5 {self._sender}: 1B 02`"
+            )
+        return when
 
     def go_on(self, text: str) -> None:
         """Take more of the present line."""
@@ -108,7 +128,8 @@ class _Reader:
             return
         try:
             data = self._hex.feed(self._text)
-            yield Piece(self._sender, data + self._hex.finish() if ends else data)
+            whole = data + self._hex.finish() if ends else data
+            yield Piece(self._sender, whole, self._when)
         except HexError as error:
             self._sender = None
             column = self._columns + error.column

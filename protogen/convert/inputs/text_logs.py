@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator
+from typing import NamedTuple
 
 Complain = Callable[[str], None]
 """Take note of a line that can't be used."""
@@ -39,6 +40,16 @@ _LATEST = (1 << 63) - 1
 """The last time that tables have a place for: nanoseconds in an `int64`."""
 
 
+class LogLine(NamedTuple):
+    """What a line says."""
+
+    name: str | None
+    """The interface or the sender."""
+    data: bytes
+    when: int
+    """Nanoseconds since 1970-01-01."""
+
+
 def log_pieces(
     lines: Iterable[str], sender: str, senders: Collection[str], complain: Complain
 ) -> Iterator[tuple[bytes, int]]:
@@ -46,6 +57,13 @@ def log_pieces(
 
     A line that can't be read is complained of, and its bytes are lost.
     """
+    for line in log_lines(lines, complain):
+        if line.name not in senders or line.name == sender:
+            yield line.data, line.when
+
+
+def log_lines(lines: Iterable[str], complain: Complain) -> Iterator[LogLine]:
+    """What each line says. One that can't be read is complained of, and its bytes are lost."""
     for number, line in enumerate(lines, start=1):
         text = line.strip()
         if not text or text.startswith("#"):
@@ -53,11 +71,9 @@ def log_pieces(
         found = _SPLIT.fullmatch(text)
         if found is None or not (found["hex"] or found["id"]):
             complain(f"line {number}: not `(SECONDS) [NAME] HEX`: {text[:40]!r}")
-        elif found["id"] and int(found["id"], 16) & _ERROR:
-            continue
-        elif found["name"] not in senders or found["name"] == sender:
+        elif not (found["id"] and int(found["id"], 16) & _ERROR):
             when = int(found["seconds"]) * 10**9 + int((found["fraction"] or "").ljust(9, "0"))
             if when > _LATEST:
                 complain(f"line {number}: a time behind the year 2262: {text[:40]!r}")
             else:
-                yield bytes.fromhex(found["hex"]), when
+                yield LogLine(found["name"], bytes.fromhex(found["hex"]), when)
