@@ -25,6 +25,7 @@ from protogen.model.frame import (
     LengthPart,
     Part,
     ValuePart,
+    VirtualPart,
 )
 from protogen.model.identities import Identities
 from protogen.model.messages import Message
@@ -150,10 +151,19 @@ class ChecksumPlan(msgspec.Struct, frozen=True, kw_only=True):
 
     part: ChecksumPart
     placed: PlacedPart
-    covers: tuple[Run | bytes, ...]
+    covers: tuple[Run | bytes | VirtualPart, ...]
     """Runs of content in order, neighbours joined; bytes stand for a literal of the end."""
     is_behind: bool
     """True if the checksum stands behind all that it runs over."""
+
+    @property
+    def virtual(self) -> tuple[VirtualPart, ...]:
+        """The parts that it runs over and that are not sent.
+
+        Each has a value that follows from the identity. Where an identity gives one of them none,
+        no frame of it can be verified: it is refused as one with a wrong checksum is.
+        """
+        return tuple(item for item in self.covers if isinstance(item, VirtualPart))
 
     @property
     def over_stuffing(self) -> bool:
@@ -228,6 +238,8 @@ class IdentityGroup(msgspec.Struct, frozen=True, kw_only=True):
     messages: tuple[Message, ...]
     identities: Identities | None = None
     """Where there are several."""
+    virtual: tuple[int, ...] = ()
+    """Value of each part of the frame that is not sent."""
 
     @property
     def fixed(self) -> int | None:

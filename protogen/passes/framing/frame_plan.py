@@ -19,6 +19,7 @@ from protogen.model.frame import (
     Part,
     PayloadPart,
     Substitution,
+    VirtualPart,
 )
 from protogen.model.frame_plan import (
     ChecksumPlan,
@@ -77,6 +78,7 @@ def _group(frame: Frame, identities: Identities, messages: Sequence[Message]) ->
         key=_key(frame, identities.first),
         messages=tuple(messages),
         identities=identities if identities.count > 1 else None,
+        virtual=tuple(messages[0].virtual_value(part) or 0 for part in frame.virtual),
     )
 
 
@@ -236,12 +238,18 @@ class _Planner:
             part=part,
             placed=placed,
             covers=tuple(self._covers(part)),
-            is_behind=all(self._names.index(name) < own for name in part.covers),
+            is_behind=all(
+                self._names.index(name) < own for name in part.covers if name in self._names
+            ),
         )
 
-    def _covers(self, part: ChecksumPart) -> list[Run | bytes]:
-        found: list[Run | bytes] = []
+    def _covers(self, part: ChecksumPart) -> list[Run | bytes | VirtualPart]:
+        found: list[Run | bytes | VirtualPart] = []
         for name in part.covers:
+            virtual = self._frame.virtual_part(name)
+            if virtual is not None:
+                found.append(virtual)
+                continue
             covered = self._frame.part(name)
             if isinstance(covered, LiteralPart) and covered in self._end_literals:
                 found.append(covered.bytes)

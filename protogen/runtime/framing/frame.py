@@ -6,6 +6,7 @@ and only stated here.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from protogen.runtime.checksum import Checksum
@@ -125,6 +126,22 @@ class ChecksumPart(NamedTuple):
         return self.number.size
 
 
+class VirtualPart(NamedTuple):
+    """A number that goes into the checksums that cover it, and is not sent.
+
+    Messages give it a value; `default` is that of those that give none, and of unknown ones.
+    """
+
+    name: str
+    number: Number | Numeral
+    default: int | None = None
+
+    def encoded(self, given: Mapping[str, int]) -> bytes | None:
+        """The bytes of its value, which `given` has by its name; None if it has no value."""
+        value = given.get(self.name, self.default)
+        return None if value is None else self.number.encode(value)
+
+
 NumberPart = IdentityPart | LengthPart | ValuePart | ChecksumPart
 Part = LiteralPart | PayloadPart | NumberPart
 
@@ -223,3 +240,6 @@ class FrameSpec(NamedTuple):
     """True if an encoder has to check that a decoder ends the frame where it ends."""
     is_bounded: bool = False
     """True if the schema says how long a frame can be, so that an encoder has to look."""
+    virtual: tuple[VirtualPart, ...] = ()
+    """Parts that are not sent. A frame whose identity gives one of them no value can't be verified:
+    it fails as one with a wrong checksum does."""

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any, Generic, TypeVar
 
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.framing.frame import FrameSpec, IdentityPart
+from protogen.runtime.framing.frame import ChecksumPart, FrameSpec, IdentityPart
 from protogen.runtime.framing.layout import Layout
 from protogen.runtime.identities import Identities, Identity, Runs
 from protogen.runtime.payload.message import Message
@@ -35,6 +35,8 @@ class IdentityGroup(Generic[MessageT_co]):
         """The payload's size, where no message has another one."""
         self.greatest = max(message.SIZES.greatest for message in messages)
         """The greatest payload of these messages."""
+        self.virtual: Mapping[str, int] = messages[0].VIRTUAL
+        """Values of parts that are not sent, which all of these messages share."""
 
     def holds(self, size: int) -> bool:
         """True if one of these messages can have a payload of that size."""
@@ -145,6 +147,21 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
     def identity(self, numbers: Mapping[str, int]) -> Identity:
         """The identity among the values of a frame's parts."""
         return tuple(numbers[part.name] for part in self.layout.identity)
+
+    def virtual(self, numbers: Mapping[str, int]) -> dict[str, bytes]:
+        """The bytes of parts that are not sent, in a frame with these numbers.
+
+        Those that have no value, because the identity is unknown, are left out.
+        """
+        group = self.group(self.identity(numbers))
+        given: Mapping[str, int] = {} if group is None else group.virtual
+        found = {part.name: part.encoded(given) for part in self.frame.virtual}
+        return {name: data for name, data in found.items() if data is not None}
+
+    def without_value(self, part: ChecksumPart, virtual: Mapping[str, bytes]) -> str:
+        """The first part that a checksum covers, is not sent and has no value; empty if none."""
+        missing = (item.name for item in self.frame.virtual if item.name not in virtual)
+        return next((name for name in missing if name in part.covers), "")
 
     def read(self, numbers: Mapping[str, int], payload: bytes) -> MessageT_co | None:
         """The message of a frame's parts; None where its identity is unknown.

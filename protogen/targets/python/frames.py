@@ -21,6 +21,7 @@ from protogen.model.frame import (
     Transparency,
     TypedPart,
     ValuePart,
+    VirtualPart,
 )
 from protogen.model.framing import AfterEnd, Anywhere, End, Start, StartLiteral, StartSet
 from protogen.model.protocol import Sender
@@ -50,6 +51,12 @@ def part(item: Part) -> str:
         case PayloadPart():
             return call("_rt.PayloadPart", name)
     raise TypeError(f"{type(item).__name__} is no part that a frame has")
+
+
+def virtual_part(item: VirtualPart) -> str:
+    """One part that is not sent."""
+    default = None if item.default is None else str(item.default)
+    return call("_rt.VirtualPart", text(item.name), number(item), default=default)
 
 
 def number(item: TypedPart) -> str:

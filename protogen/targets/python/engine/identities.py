@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
+from protogen.model.frame import VirtualPart
 from protogen.model.frame_plan import EndRule, IdentityGroup
 from protogen.model.identities import Runs
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.numbers import FrameFunction
 from protogen.targets.python.engine.place import Place
-from protogen.targets.python.literals import tuple_of
+from protogen.targets.python.literals import octets_in_class, tuple_of
 
 
 def header(frame: EngineFrame, constants: Constants) -> tuple[str, ...]:
@@ -24,21 +28,39 @@ def kinds(frame: EngineFrame) -> str:
 
     Where that varies, it is negative: the complement of the greatest.
     """
-    lines = [f"    {_entries(frame, item)}," for item in frame.plan.groups]
+    return _table(frame, partial(_kind, frame))
+
+
+def virtual_bytes(frame: EngineFrame, part: VirtualPart) -> str:
+    """Table of the bytes of a part that is not sent, by identity."""
+    index = frame.plan.frame.virtual.index(part)
+
+    def value(group: IdentityGroup, identity: tuple[str, ...]) -> str:
+        return octets_in_class(part.encode(group.virtual[index]))
+
+    return _table(frame, value)
+
+
+_Value = Callable[[IdentityGroup, tuple[str, ...]], str]
+"""Expression for what belongs to an identity, given as expressions of its parts."""
+
+
+def _table(frame: EngineFrame, value: _Value) -> str:
+    lines = [f"    {_entries(item, value)}," for item in frame.plan.groups]
     return "\n".join(["{", *lines, "}"])
 
 
-def _entries(frame: EngineFrame, group: IdentityGroup) -> str:
+def _entries(group: IdentityGroup, value: _Value) -> str:
     if group.identities is None:
         identity = tuple(map(str, group.identity))
-        return f"{identity_key(group.identity)}: {_kind(frame, group, identity)}"
+        return f"{identity_key(group.identity)}: {value(group, identity)}"
     names = tuple(f"part{index}" for index in range(len(group.identity)))
     key = names[0] if len(names) == 1 else tuple_of(names)
     loops = [
         f"        for {name} in {_values(runs)}"
         for name, runs in zip(names, group.identities.runs, strict=True)
     ]
-    entry = f"        {key}: {_kind(frame, group, names)}"
+    entry = f"        {key}: {value(group, names)}"
     return "\n".join(["**{", entry, *loops, "    }"])
 
 
