@@ -171,6 +171,19 @@ class ChecksumPlan(msgspec.Struct, frozen=True, kw_only=True):
         return any(isinstance(run, Run) and run.over_stuffing for run in self.covers)
 
 
+class VirtualPlan(msgspec.Struct, frozen=True, kw_only=True):
+    """A part that is not sent, and its value for each identity."""
+
+    part: VirtualPart
+    values: tuple[tuple[Identities, int], ...]
+    """Values by the identities of messages, also of those that a small receiver does not know."""
+
+    @property
+    def count(self) -> int:
+        """Number of identities."""
+        return sum(identities.count for identities, _ in self.values)
+
+
 class LengthPlan(msgspec.Struct, frozen=True, kw_only=True):
     """The length part: its value for a payload, and the payload's size for a value."""
 
@@ -238,8 +251,11 @@ class IdentityGroup(msgspec.Struct, frozen=True, kw_only=True):
     messages: tuple[Message, ...]
     identities: Identities | None = None
     """Where there are several."""
-    virtual: tuple[int, ...] = ()
-    """Value of each part of the frame that is not sent."""
+
+    @property
+    def told_by(self) -> Identities:
+        """All identities that stand for these messages."""
+        return self.identities or Identities.only(self.identity)
 
     @property
     def fixed(self) -> int | None:
@@ -277,6 +293,8 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     """The parts that make up the end."""
     length: LengthPlan | None
     checksums: tuple[ChecksumPlan, ...]
+    virtual: tuple[VirtualPlan, ...]
+    """The parts that are not sent, in the order of the schema."""
     region: StuffedRegion | None
     # Identities and sizes.
     groups: tuple[IdentityGroup, ...]

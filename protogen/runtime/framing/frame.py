@@ -6,10 +6,10 @@ and only stated here.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 from protogen.runtime.checksum import Checksum
+from protogen.runtime.identities import Identities, Identity
 from protogen.runtime.payload.number import Characters, Number
 from protogen.runtime.payload.numerals import Numeral
 from protogen.runtime.transparency import Transparency
@@ -129,17 +129,13 @@ class ChecksumPart(NamedTuple):
 class VirtualPart(NamedTuple):
     """A number that goes into the checksums that cover it, and is not sent.
 
-    Messages give it a value; `default` is that of those that give none, and of unknown ones.
+    `values` has its value for each identity; `default` is that of unknown ones.
     """
 
     name: str
     number: Number | Numeral
+    values: tuple[tuple[Identity | Identities, int], ...]
     default: int | None = None
-
-    def encoded(self, given: Mapping[str, int]) -> bytes | None:
-        """The bytes of its value, which `given` has by its name; None if it has no value."""
-        value = given.get(self.name, self.default)
-        return None if value is None else self.number.encode(value)
 
 
 NumberPart = IdentityPart | LengthPart | ValuePart | ChecksumPart

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any, Generic, TypeVar
 
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.framing.frame import ChecksumPart, FrameSpec, IdentityPart
+from protogen.runtime.framing.frame import ChecksumPart, FrameSpec, IdentityPart, VirtualPart
 from protogen.runtime.framing.layout import Layout
 from protogen.runtime.identities import Identities, Identity, Runs
 from protogen.runtime.payload.message import Message
@@ -35,8 +35,6 @@ class IdentityGroup(Generic[MessageT_co]):
         """The payload's size, where no message has another one."""
         self.greatest = max(message.SIZES.greatest for message in messages)
         """The greatest payload of these messages."""
-        self.virtual: Mapping[str, int] = messages[0].VIRTUAL
-        """Values of parts that are not sent, which all of these messages share."""
 
     def holds(self, size: int) -> bool:
         """True if one of these messages can have a payload of that size."""
@@ -52,6 +50,31 @@ class IdentityGroup(Generic[MessageT_co]):
         """The message of a payload. Raises PayloadError: size, value or encoding."""
         fitting = (message for message in self.messages if len(payload) in message.SIZES)
         return next(fitting, self.messages[0]).parse_payload(payload)
+
+
+class VirtualBytes:
+    """Bytes of a part that is not sent, by the identities of frames."""
+
+    def __init__(self, part: VirtualPart) -> None:
+        default = part.default
+        self._default = None if default is None else part.number.encode(default)
+        self._listed: dict[Identity, bytes] = {}
+        self._wide: list[tuple[Identities, bytes]] = []
+        for identity, value in part.values:
+            data = part.number.encode(value)
+            if not isinstance(identity, Identities):
+                self._listed[identity] = data
+            elif identity.count <= _LISTED:
+                self._listed |= dict.fromkeys(identity, data)
+            else:
+                self._wide.append((identity, data))
+
+    def of(self, identity: Identity) -> bytes | None:
+        """The bytes in frames of this identity; None where they are not known."""
+        found = self._listed.get(identity)
+        if found is None and self._wide:
+            found = next((data for known, data in self._wide if identity in known), None)
+        return self._default if found is None else found
 
 
 class SenderSpec(Generic[MessageT_co, PartsT_co]):
@@ -153,10 +176,13 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
 
         Those that have no value, because the identity is unknown, are left out.
         """
-        group = self.group(self.identity(numbers))
-        given: Mapping[str, int] = {} if group is None else group.virtual
-        found = {part.name: part.encoded(given) for part in self.frame.virtual}
+        identity = self.identity(numbers)
+        found = {name: value.of(identity) for name, value in self._virtual.items()}
         return {name: data for name, data in found.items() if data is not None}
+
+    @cached_property
+    def _virtual(self) -> Mapping[str, VirtualBytes]:
+        return {part.name: VirtualBytes(part) for part in self.frame.virtual}
 
     def without_value(self, part: ChecksumPart, virtual: Mapping[str, bytes]) -> str:
         """The first part that a checksum covers, is not sent and has no value; empty if none."""

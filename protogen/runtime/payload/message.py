@@ -111,8 +111,6 @@ class Message(Record):
     """The values of the frame's identity parts, in wire order."""
     IDENTITIES: ClassVar[Identities | None] = None
     """All identities, where there are several; IDENTITY is the one that is sent by itself."""
-    VIRTUAL: ClassVar[Mapping[str, int]] = {}
-    """The values of parts of its frames that go into checksums and are not sent, by their names."""
     SPEC_HASH: ClassVar[str]
     """SHA-256, in hex, of its identity, its layout and what its values mean."""
     SIZES: ClassVar[Sizes]

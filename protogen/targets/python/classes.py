@@ -17,8 +17,9 @@ from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, S
 from protogen.runtime.attributes import attribute
 from protogen.targets.escape import paragraphs, python_comment
 from protogen.targets.python import describing
+from protogen.targets.python import frames as tables
 from protogen.targets.python.formats import constant, field_format, is_empty
-from protogen.targets.python.literals import call, mapping, octets_in_class, text, tuple_of
+from protogen.targets.python.literals import call, octets_in_class, text, tuple_of
 from protogen.targets.python.names import Names, RecordNames
 from protogen.targets.python.rules import field_rule
 from protogen.targets.python.spelling import member_name
@@ -120,15 +121,12 @@ def message_class(item: Message, identity: str, names: Names) -> RecordClass:
     """A message; `identity` says in words what its identity is."""
     values = tuple_of(f"0x{value:02X}" for value in item.identity)
     several = () if item.identities is None else (f"IDENTITIES = {_identities(item.identities)}",)
-    given = {text(name): str(value) for name, value in item.virtual}
-    virtual = (f"VIRTUAL = {mapping(given)}",) if given else ()
     constants = (
         f"NAME = {text(item.name)}",
         f"SPEC_HASH = {text(item.spec_hash)}",
         f"SENDERS = {tuple_of(map(text, item.senders))}",
         f"IDENTITY = {values}" + (f"  # {identity}" if identity else ""),
         *several,
-        *virtual,
         f"SIZES = {_sizes(item.sizes)}",
     )
     doc = docstring(describing.message(item), _INDENT)
@@ -137,11 +135,7 @@ def message_class(item: Message, identity: str, names: Names) -> RecordClass:
 
 def _identities(identities: Identities) -> str:
     """All identities of a message that has several."""
-    parts = (
-        tuple_of(tuple_of(f"0x{value:02X}" for value in run) for run in runs)
-        for runs in identities.runs
-    )
-    expression = call("_rt.Identities", tuple_of(parts))
+    expression = tables.identities(identities)
     return wrapped(expression, _INDENT + len("IDENTITIES = "), _INDENT, after=0)
 
 

@@ -66,6 +66,7 @@ class EngineFrame:
             and not any(part.over_wire for part in self.checksums)
             and self.tail == self.checksums
             and self.plan.is_regular
+            and self._has_few_identities
         )
 
     @property
@@ -75,7 +76,13 @@ class EngineFrame:
         A range of very many identities is left to the reference.
         """
         several = filter(None, (group.identities for group in self.plan.groups))
-        return self.plan.takes_whole and sum(item.count for item in several) <= _MOST_IDENTITIES
+        are_few = sum(item.count for item in several) <= _MOST_IDENTITIES
+        return self.plan.takes_whole and are_few and self._has_few_identities
+
+    @property
+    def _has_few_identities(self) -> bool:
+        """True if tables have room for what each identity puts into checksums."""
+        return all(item.count <= _MOST_IDENTITIES for item in self.plan.virtual)
 
     @property
     def lists_frame_sizes(self) -> bool:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 
 from protogen.model.frame import VirtualPart
 from protogen.model.frame_plan import EndRule, IdentityGroup
-from protogen.model.identities import Runs
+from protogen.model.identities import Identities, Runs
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.numbers import FrameFunction
@@ -28,39 +28,35 @@ def kinds(frame: EngineFrame) -> str:
 
     Where that varies, it is negative: the complement of the greatest.
     """
-    return _table(frame, partial(_kind, frame))
+    return _table(_entries(item.told_by, partial(_kind, frame, item)) for item in frame.plan.groups)
 
 
 def virtual_bytes(frame: EngineFrame, part: VirtualPart) -> str:
     """Table of the bytes of a part that is not sent, by identity."""
-    index = frame.plan.frame.virtual.index(part)
+    values = next(item.values for item in frame.plan.virtual if item.part == part)
 
-    def value(group: IdentityGroup, identity: tuple[str, ...]) -> str:
-        return octets_in_class(part.encode(group.virtual[index]))
+    def octets(number: int, _: tuple[str, ...]) -> str:
+        return octets_in_class(part.encode(number))
 
-    return _table(frame, value)
-
-
-_Value = Callable[[IdentityGroup, tuple[str, ...]], str]
-"""Expression for what belongs to an identity, given as expressions of its parts."""
+    return _table(_entries(key, partial(octets, number)) for key, number in values)
 
 
-def _table(frame: EngineFrame, value: _Value) -> str:
-    lines = [f"    {_entries(item, value)}," for item in frame.plan.groups]
-    return "\n".join(["{", *lines, "}"])
+def _table(entries: Iterable[str]) -> str:
+    return "\n".join(["{", *(f"    {entry}," for entry in entries), "}"])
 
 
-def _entries(group: IdentityGroup, value: _Value) -> str:
-    if group.identities is None:
-        identity = tuple(map(str, group.identity))
-        return f"{identity_key(group.identity)}: {value(group, identity)}"
-    names = tuple(f"part{index}" for index in range(len(group.identity)))
+def _entries(identities: Identities, value: Callable[[tuple[str, ...]], str]) -> str:
+    """Entries of a table; `value` is what belongs to an identity, given as expressions."""
+    if identities.count == 1:
+        identity = tuple(map(str, identities.first))
+        return f"{identity_key(identities.first)}: {value(identity)}"
+    names = tuple(f"part{index}" for index in range(len(identities.runs)))
     key = names[0] if len(names) == 1 else tuple_of(names)
     loops = [
         f"        for {name} in {_values(runs)}"
-        for name, runs in zip(names, group.identities.runs, strict=True)
+        for name, runs in zip(names, identities.runs, strict=True)
     ]
-    entry = f"        {key}: {value(group, names)}"
+    entry = f"        {key}: {value(names)}"
     return "\n".join(["**{", entry, *loops, "    }"])
 
 
