@@ -286,6 +286,13 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
         """The identity parts in wire order."""
         return tuple(part for part in self.parts if isinstance(part, IdentityPart))
 
+    def key(self, identity: tuple[int, ...]) -> int:
+        """Values of the identity parts as one number, the first part in its highest bits."""
+        key = 0
+        for part, value in zip(self.identity, identity, strict=True):
+            key = key << part.type.bits | value
+        return key
+
     @cached_property
     def length(self) -> LengthPart | None:
         """The length part, if there is one."""

@@ -84,17 +84,10 @@ def identity_groups(
 def _group(frame: Frame, identities: Identities, messages: Sequence[Message]) -> IdentityGroup:
     return IdentityGroup(
         identity=identities.first,
-        key=_key(frame, identities.first),
+        key=frame.key(identities.first),
         messages=tuple(messages),
         identities=identities if identities.count > 1 else None,
     )
-
-
-def _key(frame: Frame, identity: tuple[int, ...]) -> int:
-    key = 0
-    for part, value in zip(frame.identity, identity, strict=True):
-        key = key << part.type.bits | value
-    return key
 
 
 class _Planner:
