@@ -172,6 +172,11 @@ class VirtualPart(TypedPart, frozen=True, kw_only=True):
     default: int | None = None
     """Value in frames of messages that give none, and of unknown ones; None: those have none."""
 
+    @property
+    def size(self) -> int:
+        """Bytes before stuffing: none."""
+        return 0
+
 
 class Substitution(msgspec.Struct, frozen=True, kw_only=True):
     """Each listed byte is replaced by a sequence."""
