@@ -278,7 +278,8 @@ class FrameBuilder:
             return digits_type(self._context, (*self._loc, name), item, found)
         if item.algorithm is None and found.bits < found.byte_bits:
             text = f"a part takes whole bytes, and `{item.type}` is less than one"
-            hint = f"make it `uint{found.byte_bits}`, with a `range` if its upper bits are zero"
+            hint = f"make it `uint{found.byte_bits}`"
+            hint = hint if item.virtual else f"{hint}, with a `range` if its upper bits are zero"
             self._context.error("PG105", loc, text, hint)
         if found.size > 1 and order is None:
             text = "nothing says in which order the bytes of this number are sent"
