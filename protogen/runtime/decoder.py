@@ -273,6 +273,10 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._is_fresh = True
         return events
 
+    def idle(self) -> list[Event[MessageT_co, PartsT_co]]:
+        """Take a silence on the line: what `flush` does, which ends what has come."""
+        return self.flush()
+
     def _deliver(self) -> list[Event[MessageT_co, PartsT_co]]:
         """The events so far; what they cover is forgotten."""
         passed = self._done - self._starts.context

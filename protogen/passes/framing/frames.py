@@ -47,6 +47,7 @@ from protogen.passes.framing.part_digits import (
 )
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.part_values import number_of, text_bounds, text_type
+from protogen.passes.framing.silences import check_silence, silence_of
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width
@@ -121,12 +122,15 @@ class FrameBuilder:
             text = "the frame has no part called `payload`"
             self._context.error_at_key("PG130", self._loc, text)
         transparency = transparency_of(self._context, self._written)
+        silence = silence_of(self._context, self._written)
         self._one_length(parts)
         before += self._replaced
         if self._context.tally.errors > before or self._loc in self._context.doubtful:
             return None
         known = tuple(part for part in parts if part is not None)
-        frame = Frame(parts=known, transparency=transparency, limit=self._written.limit)
+        frame = Frame(
+            parts=known, transparency=transparency, limit=self._written.limit, silence=silence
+        )
         self._check(frame)
         return frame if self._context.tally.errors == before else None
 
@@ -134,6 +138,7 @@ class FrameBuilder:
         """Check what can only be asked when all parts are there."""
         _check_checksums(self._context, frame, self._loc)
         self._check_identity(frame)
+        check_silence(self._context, self._written, frame)
         length = frame.length
         if length is not None and stated_range(frame) is None:
             around = counted_size(frame, length, empty=True)

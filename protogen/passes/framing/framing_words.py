@@ -34,6 +34,9 @@ def finds_start(start: Start) -> str:
 
 def finds_end(frame: Frame, start: Start, end: End | None, messages: list[Message]) -> str:
     """Sentence on how a receiver finds where a frame ends."""
+    if frame.silence is not None:
+        told = f"; `{frame.length.name}` must give its size" if frame.length else ""
+        return f"after {frame.silence.text} of silence, and nowhere else{told}"
     if frame.length is not None:
         where = f"`{frame.length.name}` gives the size"
         return where if end is None else f"{where}; {_hex(end.bytes)} must follow"
@@ -55,6 +58,11 @@ def finds_end(frame: Frame, start: Start, end: End | None, messages: list[Messag
 
 def synchronisation(frame: Frame, start: Start, end: End | None) -> tuple[bool, str]:
     """Sentence on whether a receiver that joins anywhere surely finds the next frame, and why."""
+    if frame.silence is not None:
+        return True, (
+            "a silence ends whatever was in front of it, so a receiver is in step from the next "
+            "silence on; of frames without a silence between them only the last can be found"
+        )
     match start:
         case StartLiteral(protected=True) | StartSet(protected=True):
             return True, (

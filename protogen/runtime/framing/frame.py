@@ -223,3 +223,13 @@ class FrameSpec(NamedTuple):
     """True if an encoder has to check that a decoder ends the frame where it ends."""
     is_bounded: bool = False
     """True if the schema says how long a frame can be, so that an encoder has to look."""
+    silence: float | None = None
+    """Seconds of silence that end a frame, where nothing else does."""
+
+    @property
+    def given_up_at(self) -> int:
+        """Wire bytes of a candidate that is given up if it is no frame by then.
+
+        A frame of the greatest size that only a silence ends is one until a byte follows.
+        """
+        return self.greatest + (self.silence is not None)
