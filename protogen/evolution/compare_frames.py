@@ -75,8 +75,10 @@ class _Frames:
         for part in new.parts:
             if part.name not in before:
                 yield self._change("frame-part-added", part.name, _kind(part))
-        if _seconds(old) != _seconds(new):
-            yield self._change("frame-silence", "idle", named(_silence(old), _silence(new)))
+        silence = old.silence or new.silence
+        if silence is not None and _seconds(old) != _seconds(new):
+            words = named(_silence(old), _silence(new))
+            yield self._change("frame-silence", silence.name, words)
         yield from self._transparency(old.transparency, new.transparency, renamed)
 
     def _part(self, old: Part, new: Part, renamed: dict[str, str]) -> Iterator[Change]:
