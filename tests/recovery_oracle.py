@@ -7,8 +7,8 @@ The design promises that every frame that was not itself damaged is found. Exact
   end of valid bytes in front, of a frame that lost its own end.
 * Where frames have no start and a protected end, every one at the start of the stream or behind an
   end. In front of any other, damage reaches up to it: nothing tells where it begins.
-* Where only a silence ends frames, every one with a silence behind it: here the last one, at the end
-  of the stream.
+* Where only a silence ends frames, every one with a silence behind it: here the last one, at the
+  end of the stream.
 * Where nothing protects the delimiters, or there are none, every one (behind an end, if that is
   where frames begin) that no accepted frame reaches into: one that began in front of it, and whose
   length, checksum and end are right by chance.

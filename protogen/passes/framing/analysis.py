@@ -275,7 +275,7 @@ class _Analysis:
             is_cut_off=greatest < longest or any(item.is_cut_off for item in per_message),
             self_synchronising=synchronising,
             why_synchronising=why,
-            finds_start=framing_words.finds_start(start),
+            finds_start=framing_words.finds_start(start, is_idle=frame.silence is not None),
             finds_end=framing_words.finds_end(frame, start, end, self._messages),
             undetected=undetected_errors(frame, start, end, self._messages, self._payload),
             messages=per_message,

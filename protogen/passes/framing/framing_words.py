@@ -7,8 +7,8 @@ from protogen.model.framing import AfterEnd, Anywhere, End, Start, StartLiteral,
 from protogen.model.messages import Message
 
 
-def finds_start(start: Start) -> str:
-    """Sentence on how a receiver finds where a frame starts."""
+def finds_start(start: Start, *, is_idle: bool = False) -> str:
+    """Sentence on how a receiver finds where a frame starts; `is_idle`: a silence ends frames."""
     match start:
         case StartLiteral(protected=True):
             return f"at {_hex(start.bytes)}, which occurs nowhere else in a frame"
@@ -24,7 +24,10 @@ def finds_start(start: Start) -> str:
         case AfterEnd():
             return "behind the end of the frame before, or at the start of the stream"
         case Anywhere(checked=True):
-            return "at any byte from which sizes and checksum are right"
+            where = " up to the silence" if is_idle else ""
+            return f"at any byte from which sizes and checksum are right{where}"
+        case Anywhere() if is_idle:
+            return "behind a silence; what can be no frame is passed over byte by byte"
         case Anywhere():
             return (
                 "where the frame before ends, or at the start of the stream; what can be no frame "
