@@ -169,3 +169,35 @@ def test_generated_code_has_the_time() -> None:
     assert module.PROTOCOL.sender("station").frame.silence == 35 / 9600
     words = " ".join(module.__doc__.split())
     assert "Frames of station end after 3.65 ms of silence: call `Decoder.idle` then." in words
+
+
+# --- captures -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("engine", ["native", "python"])
+def test_a_capture_has_one_silence_at_its_end(
+    tmp_path: Path, engine: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("numpy")
+    from protogen.capture import NoSilenceWarning, columns, engines
+
+    monkeypatch.setattr(engines, "_warned", set())
+    path = tmp_path / "line.bin"
+    path.write_bytes(PING + WIND)
+    with pytest.warns(NoSilenceWarning, match="only a silence ends a frame of station"):
+        tables = columns(path, IDLE, sender="station", engine=engine)
+    assert tables.messages["wind"]["direction"].tolist() == [192]
+    assert len(tables.messages["ping"]["offset"]) == 0
+
+
+def test_convert_says_that_a_capture_has_one_silence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("numpy")
+    from protogen.capture import engines
+
+    monkeypatch.setattr(engines, "_warned", set())
+    path = tmp_path / "line.bin"
+    path.write_bytes(WIND)
+    result = run("convert", str(IDLE), str(path), "--to", "csv", "--output", str(tmp_path / "out"))
+    assert "warning: only a silence ends a frame of station" in result.stderr
