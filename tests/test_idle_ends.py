@@ -17,6 +17,7 @@ from compiled import ROOT, module_at, protocol_of
 from corpus import DAMAGES, damaged, material_of
 from markdown_pages import page
 
+from protogen.api import load, module_of
 from protogen.fuzzing.c_calls import Step
 from protogen.model.frame_plan import EndRule
 from protogen.targets.c.options import COptions
@@ -201,3 +202,50 @@ def test_convert_says_that_a_capture_has_one_silence(
     path.write_bytes(WIND)
     result = run("convert", str(IDLE), str(path), "--to", "csv", "--output", str(tmp_path / "out"))
     assert "warning: only a silence ends a frame of station" in result.stderr
+
+
+# --- several forms, and both ends -----------------------------------------------------------------
+
+FORMS = """
+protocol: demo
+endpoints: {one: One, two: Two}
+max_frame: 64
+forms:
+  short:
+    frame:
+      start: {literal: 2, unprotected: stands_in_data}
+      id: {type: uint8, id: true}
+      payload: {}
+      sum: {type: uint8, algorithm: sum-8, covers: id..payload}
+      end: {idle: 4 ms}
+  long:
+    from: one
+    frame:
+      start: {literal: 3, unprotected: stands_in_data}
+      id: {type: uint16, id: true, byte_order: little}
+      payload: {}
+      sum: {type: uint8, algorithm: sum-8, covers: id..payload}
+      end: {idle: 4 ms}
+messages:
+  first: {id: 1, from: one, fields: {a: uint8}}
+  second: {id: 9, from: two, forms: short, fields: {a: uint8}}
+decisions:
+  stands_in_data: {question: What of data?, document: No., choice: Look on., because: Rare.}
+"""
+
+
+def test_a_silence_ends_frames_of_each_form_and_of_both_ends(tmp_path: Path) -> None:
+    path = tmp_path / "demo.yaml"
+    path.write_text(FORMS, encoding="utf-8")
+    decoder = module_of(load(path)).Decoder()
+    for wire in ("02 01 05 06", "03 01 00 05 06", "02 09 07 10"):  # Sums of 1 and 5, of 9 and 7.
+        assert decoder.feed(bytes.fromhex(wire)) == []
+        assert brief(decoder.idle()) == [("message", wire)]
+    decoder.feed(bytes.fromhex("02 03 03 01 00 05 06"))
+    found = [("invalid", "02"), ("invalid", "03"), ("message", "03 01 00 05 06")]
+    assert brief(decoder.idle()) == found
+
+
+def test_ends_of_different_kinds_take_decoders_of_their_own() -> None:
+    with pytest.raises(ValueError, match="found in different ways: name the sender"):
+        module_at(SILENCES).Decoder()
