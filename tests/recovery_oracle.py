@@ -7,6 +7,8 @@ The design promises that every frame that was not itself damaged is found. Exact
   end of valid bytes in front, of a frame that lost its own end.
 * Where frames have no start and a protected end, every one at the start of the stream or behind an
   end. In front of any other, damage reaches up to it: nothing tells where it begins.
+* Where only a silence ends frames, every one with a silence behind it: here the last one, at the
+  end of the stream.
 * Where nothing protects the delimiters, or there are none, every one (behind an end, if that is
   where frames begin) that no accepted frame reaches into: one that began in front of it, and whose
   length, checksum and end are right by chance.
@@ -28,7 +30,8 @@ class Fate(StrEnum):
 
     FOUND = "found"
     NOT_DUE = "not due"
-    """It was not found, and it does not stand behind an end, where alone such frames begin."""
+    """It was not found, and it does not stand behind an end, where alone such frames begin, or no
+    silence is behind it, which alone ends it."""
     COVERED = "covered"
     """It was not found, and an accepted frame that began in front of it reaches into it."""
     LOST = "lost"
@@ -47,7 +50,8 @@ def _fate(
     shared = len(shared_start(spec))
     if (offset, raw) in accepted or (offset + shared, raw[shared:]) in accepted:
         return Fate.FOUND
-    if not is_due(spec, stream.data[:offset]):
+    is_behind = stream.data[offset + len(raw) :]
+    if not is_due(spec, stream.data[:offset]) or (spec.silence is not None and is_behind):
         return Fate.NOT_DUE
     if any(start < offset < start + len(other) for start, other in accepted):
         return Fate.COVERED

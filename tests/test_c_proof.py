@@ -29,6 +29,8 @@ CONSTRUCTS = [
 """Schemas of what no document has, and C has to parse."""
 DIGITS = ROOT / "tests" / "framings" / "digit_words.yaml"
 """Digits around a payload, which a decoder reads and compares."""
+IDLE = ROOT / "tests" / "framings" / "idle_end.yaml"
+"""Frames that only a silence ends, so that a decoder holds one byte more than they have."""
 DECODES = [
     (path, machine)
     for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS)
@@ -39,7 +41,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
     [(path, events, machine) for path in SCHEMAS for events in EVENTS for machine in MACHINES]
     if ALL
     else [
-        *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS, DIGITS)),
+        *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS, DIGITS, IDLE)),
         *((path, events, NARROW) for path in DOCUMENTS for events in EVENTS),
     ]
 )

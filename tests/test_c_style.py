@@ -47,6 +47,8 @@ FLAT, PUSH = DecoderStyle.FLAT, DecoderStyle.PUSH
         ("tests/framings/cobs", "station", "messages", PUSH),
         # Nothing but a checksum tells a frame from other bytes.
         ("tests/framings/checksum_only", "station", "messages", PUSH),
+        # And only a silence ends it.
+        ("tests/framings/idle_end", "station", "messages", PUSH),
     ],
 )
 def test_the_style_of_a_decoder(

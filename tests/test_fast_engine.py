@@ -535,6 +535,7 @@ SENT_BY_THE_REFERENCE = {
 """Behind the payload stands something that is no checksum."""
 CUT_BY_THE_REFERENCE = {
     ("checksum_only", "station"),
+    ("idle_end", "station"),
     ("terminated_alone", "device"),
     *SENT_BY_THE_REFERENCE,
 }

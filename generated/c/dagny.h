@@ -698,6 +698,9 @@ void dagny_host_decoder_feed(struct dagny_host_decoder *decoder, const uint8_t *
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void dagny_host_decoder_flush(struct dagny_host_decoder *decoder);
 
+/** The same, under the name for a silence. */
+#define dagny_host_decoder_idle dagny_host_decoder_flush
+
 /* --- what robot sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of robot on the wire, in bytes. */
@@ -785,6 +788,9 @@ void dagny_robot_decoder_feed(struct dagny_robot_decoder *decoder, const uint8_t
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void dagny_robot_decoder_flush(struct dagny_robot_decoder *decoder);
+
+/** The same, under the name for a silence. */
+#define dagny_robot_decoder_idle dagny_robot_decoder_flush
 
 /* --- handlers --------------------------------------------------------------------------------- */
 

@@ -703,6 +703,9 @@ void dagny_library_host_decoder_feed(struct dagny_library_host_decoder *decoder,
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void dagny_library_host_decoder_flush(struct dagny_library_host_decoder *decoder);
 
+/** The same, under the name for a silence. */
+#define dagny_library_host_decoder_idle dagny_library_host_decoder_flush
+
 /* --- what robot sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of robot on the wire, in bytes. */
@@ -783,6 +786,9 @@ void dagny_library_robot_decoder_feed(struct dagny_library_robot_decoder *decode
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void dagny_library_robot_decoder_flush(struct dagny_library_robot_decoder *decoder);
+
+/** The same, under the name for a silence. */
+#define dagny_library_robot_decoder_idle dagny_library_robot_decoder_flush
 
 /* --- handlers --------------------------------------------------------------------------------- */
 

@@ -565,6 +565,9 @@ void matty_pc_decoder_feed(struct matty_pc_decoder *decoder, const uint8_t *data
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void matty_pc_decoder_flush(struct matty_pc_decoder *decoder);
 
+/** The same, under the name for a silence. */
+#define matty_pc_decoder_idle matty_pc_decoder_flush
+
 /* --- what esp sends --------------------------------------------------------------------------- */
 
 /** The greatest frame of esp on the wire, in bytes. */
@@ -638,6 +641,9 @@ void matty_esp_decoder_feed(struct matty_esp_decoder *decoder, const uint8_t *da
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void matty_esp_decoder_flush(struct matty_esp_decoder *decoder);
+
+/** The same, under the name for a silence. */
+#define matty_esp_decoder_idle matty_esp_decoder_flush
 
 /* --- handlers --------------------------------------------------------------------------------- */
 

@@ -697,6 +697,9 @@ void matty_v4_pc_decoder_feed(struct matty_v4_pc_decoder *decoder, const uint8_t
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void matty_v4_pc_decoder_flush(struct matty_v4_pc_decoder *decoder);
 
+/** The same, under the name for a silence. */
+#define matty_v4_pc_decoder_idle matty_v4_pc_decoder_flush
+
 /* --- what esp sends --------------------------------------------------------------------------- */
 
 /** The greatest frame of esp on the wire, in bytes. */
@@ -771,6 +774,9 @@ void matty_v4_esp_decoder_feed(struct matty_v4_esp_decoder *decoder, const uint8
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void matty_v4_esp_decoder_flush(struct matty_v4_esp_decoder *decoder);
+
+/** The same, under the name for a silence. */
+#define matty_v4_esp_decoder_idle matty_v4_esp_decoder_flush
 
 /* --- handlers --------------------------------------------------------------------------------- */
 

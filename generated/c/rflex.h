@@ -1049,6 +1049,9 @@ void rflex_linux_decoder_feed(struct rflex_linux_decoder *decoder, const uint8_t
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rflex_linux_decoder_flush(struct rflex_linux_decoder *decoder);
 
+/** The same, under the name for a silence. */
+#define rflex_linux_decoder_idle rflex_linux_decoder_flush
+
 /* --- what flex sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of flex on the wire, in bytes. */
@@ -1133,6 +1136,9 @@ void rflex_flex_decoder_feed(struct rflex_flex_decoder *decoder, const uint8_t *
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rflex_flex_decoder_flush(struct rflex_flex_decoder *decoder);
+
+/** The same, under the name for a silence. */
+#define rflex_flex_decoder_idle rflex_flex_decoder_flush
 
 /* --- handlers --------------------------------------------------------------------------------- */
 

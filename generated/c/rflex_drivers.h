@@ -1300,6 +1300,9 @@ void rflex_drivers_linux_decoder_feed(struct rflex_drivers_linux_decoder *decode
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rflex_drivers_linux_decoder_flush(struct rflex_drivers_linux_decoder *decoder);
 
+/** The same, under the name for a silence. */
+#define rflex_drivers_linux_decoder_idle rflex_drivers_linux_decoder_flush
+
 /* --- what flex sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of flex on the wire, in bytes. */
@@ -1386,6 +1389,9 @@ void rflex_drivers_flex_decoder_feed(struct rflex_drivers_flex_decoder *decoder,
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rflex_drivers_flex_decoder_flush(struct rflex_drivers_flex_decoder *decoder);
+
+/** The same, under the name for a silence. */
+#define rflex_drivers_flex_decoder_idle rflex_drivers_flex_decoder_flush
 
 /* --- handlers --------------------------------------------------------------------------------- */
 

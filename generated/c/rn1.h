@@ -619,6 +619,9 @@ void rn1_host_decoder_feed(struct rn1_host_decoder *decoder, const uint8_t *data
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rn1_host_decoder_flush(struct rn1_host_decoder *decoder);
 
+/** The same, under the name for a silence. */
+#define rn1_host_decoder_idle rn1_host_decoder_flush
+
 /* --- what brain sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of brain on the wire, in bytes. */
@@ -695,6 +698,9 @@ void rn1_brain_decoder_feed(struct rn1_brain_decoder *decoder, const uint8_t *da
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rn1_brain_decoder_flush(struct rn1_brain_decoder *decoder);
+
+/** The same, under the name for a silence. */
+#define rn1_brain_decoder_idle rn1_brain_decoder_flush
 
 /* --- handlers --------------------------------------------------------------------------------- */
 

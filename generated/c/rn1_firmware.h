@@ -805,6 +805,9 @@ void rn1_firmware_host_decoder_feed(struct rn1_firmware_host_decoder *decoder, c
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rn1_firmware_host_decoder_flush(struct rn1_firmware_host_decoder *decoder);
 
+/** The same, under the name for a silence. */
+#define rn1_firmware_host_decoder_idle rn1_firmware_host_decoder_flush
+
 /* --- what brain sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of brain on the wire, in bytes. */
@@ -883,6 +886,9 @@ void rn1_firmware_brain_decoder_feed(struct rn1_firmware_brain_decoder *decoder,
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void rn1_firmware_brain_decoder_flush(struct rn1_firmware_brain_decoder *decoder);
+
+/** The same, under the name for a silence. */
+#define rn1_firmware_brain_decoder_idle rn1_firmware_brain_decoder_flush
 
 /* --- handlers --------------------------------------------------------------------------------- */
 

@@ -334,6 +334,9 @@ void uherobot_daemon_decoder_feed(struct uherobot_daemon_decoder *decoder, const
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void uherobot_daemon_decoder_flush(struct uherobot_daemon_decoder *decoder);
 
+/** The same, under the name for a silence. */
+#define uherobot_daemon_decoder_idle uherobot_daemon_decoder_flush
+
 /* --- what board sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of board on the wire, in bytes. */
@@ -409,6 +412,9 @@ void uherobot_board_decoder_feed(struct uherobot_board_decoder *decoder, const u
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void uherobot_board_decoder_flush(struct uherobot_board_decoder *decoder);
+
+/** The same, under the name for a silence. */
+#define uherobot_board_decoder_idle uherobot_board_decoder_flush
 
 /* --- handlers --------------------------------------------------------------------------------- */
 

@@ -294,6 +294,9 @@ void uherobot_daemon_daemon_decoder_feed(struct uherobot_daemon_daemon_decoder *
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void uherobot_daemon_daemon_decoder_flush(struct uherobot_daemon_daemon_decoder *decoder);
 
+/** The same, under the name for a silence. */
+#define uherobot_daemon_daemon_decoder_idle uherobot_daemon_daemon_decoder_flush
+
 /* --- what board sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of board on the wire, in bytes. */
@@ -373,6 +376,9 @@ void uherobot_daemon_board_decoder_feed(struct uherobot_daemon_board_decoder *de
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
 void uherobot_daemon_board_decoder_flush(struct uherobot_daemon_board_decoder *decoder);
+
+/** The same, under the name for a silence. */
+#define uherobot_daemon_board_decoder_idle uherobot_daemon_board_decoder_flush
 
 /* --- handlers --------------------------------------------------------------------------------- */
 

@@ -12,7 +12,12 @@ Needs NumPy: `pip install 'protogen-serial[capture]'`.
 
 from __future__ import annotations
 
-from protogen.capture.errors import CaptureError, MissingPackageError, SlowCaptureWarning
+from protogen.capture.errors import (
+    CaptureError,
+    MissingPackageError,
+    NoSilenceWarning,
+    SlowCaptureWarning,
+)
 from protogen.capture.read import batches, columns
 from protogen.capture.schema import CaptureSchema, Column, InvalidReason, TableSchema
 from protogen.capture.tables import Tables
@@ -23,6 +28,7 @@ __all__ = [
     "Column",
     "InvalidReason",
     "MissingPackageError",
+    "NoSilenceWarning",
     "SlowCaptureWarning",
     "TableSchema",
     "Tables",

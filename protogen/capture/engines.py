@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, Literal, Protocol
 
-from protogen.capture.errors import CaptureError, SlowCaptureWarning
+from protogen.capture.errors import CaptureError, NoSilenceWarning, SlowCaptureWarning
 from protogen.capture.layout import capture_schema
 from protogen.capture.pure import PythonEngine, Reading
 from protogen.capture.tables import Tables
@@ -43,6 +43,9 @@ def makers(protocol: Model, sender: Sender, name: EngineName | None) -> tuple[Ma
     """
     if name not in (None, "native", "python"):
         raise CaptureError(f"there is no engine {name!r}; there are native and python")
+    if sender.plan.ends_idle:
+        text = f"only a silence ends a frame of {sender.name}, and a capture without times has one"
+        _warn(NoSilenceWarning, f"{text}: at its end, in front of which one frame is found at most")
     if name != "python":
         from protogen.capture.memory import KEPT, Memory
         from protogen.capture.native import NativeEngine, library_of
@@ -54,7 +57,8 @@ def makers(protocol: Model, sender: Sender, name: EngineName | None) -> tuple[Ma
         except NativeError as error:
             if name == "native":
                 raise CaptureError(f"no native engine: {error}") from None
-            _warn(str(error))
+            text = "columns are filled from Python's events, hundreds of times slower than by C"
+            _warn(SlowCaptureWarning, f"{text}: {error}")
     return partial(_python, protocol, sender), False
 
 
@@ -64,12 +68,11 @@ _STACK = 6
 `makers`, the context manager of `read.py`, the library's, and `columns` or `batches`."""
 
 
-def _warn(why: str) -> None:
-    """Say once that rows come from events, what that costs, and why it is so."""
-    if why not in _warned:
-        _warned.add(why)
-        text = f"columns are filled from Python's events, hundreds of times slower than by C: {why}"
-        warnings.warn(text, SlowCaptureWarning, stacklevel=_STACK)
+def _warn(kind: type[UserWarning], text: str) -> None:
+    """Say once what is slow, or what a capture can't show."""
+    if text not in _warned:
+        _warned.add(text)
+        warnings.warn(text, kind, stacklevel=_STACK)
 
 
 def reading_of(protocol: Model, sender: Sender) -> Reading:

@@ -15,3 +15,7 @@ class MissingPackageError(CaptureError, ImportError):
 
 class SlowCaptureWarning(UserWarning):
     """A capture is read in Python, because there is no native engine. Warned of once."""
+
+
+class NoSilenceWarning(UserWarning):
+    """Only a silence ends frames, and a capture without times has one: its end. Warned of once."""

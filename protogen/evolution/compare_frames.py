@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 
 from protogen.copying import replace
 from protogen.evolution.change import Change, named
@@ -76,6 +77,10 @@ class _Frames:
         for part in new.declared:
             if part.name not in before:
                 yield self._change("frame-part-added", part.name, _kind(part))
+        silence = old.silence or new.silence
+        if silence is not None and _seconds(old) != _seconds(new):
+            words = named(_silence(old), _silence(new))
+            yield self._change("frame-silence", silence.name, words)
         yield from self._transparency(old.transparency, new.transparency, renamed)
 
     def _part(self, old: Part, new: Part, renamed: dict[str, str]) -> Iterator[Change]:
@@ -238,6 +243,14 @@ def _coverage(part: ChecksumPart) -> str:
     wire = " on the wire" if part.over_wire else ""
     empty = ", absent without a payload" if part.when_payload else ""
     return f"{_listed(part.covers)}{wire}{empty}"
+
+
+def _seconds(frame: Frame) -> Fraction | None:
+    return None if frame.silence is None else frame.silence.seconds
+
+
+def _silence(frame: Frame) -> str:
+    return "no silence" if frame.silence is None else f"{frame.silence.text} of silence"
 
 
 def _essence(item: Transparency | None, renamed: dict[str, str]) -> object:

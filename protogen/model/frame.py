@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import cached_property
+from math import ceil, floor, log10
 
 import msgspec
 
@@ -218,6 +220,27 @@ class Transparency(msgspec.Struct, frozen=True, kw_only=True):
     about: About = NOTHING
 
 
+class Silence(msgspec.Struct, frozen=True, kw_only=True):
+    """Silence of the line behind the last byte of a frame, which alone ends it."""
+
+    name: str
+    seconds: Fraction
+    about: About = NOTHING
+
+    @property
+    def microseconds(self) -> int:
+        """Whole microseconds that are no less."""
+        return ceil(self.seconds * 1_000_000)
+
+    @property
+    def text(self) -> str:
+        """The time for people, to three digits: `3.65 ms`."""
+        milliseconds = self.seconds * 1000
+        digits = max(0, 2 - floor(log10(milliseconds)))
+        shown = f"{float(milliseconds):.{digits}f}"
+        return f"{shown.rstrip('0').rstrip('.') if '.' in shown else shown} ms"
+
+
 class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=True):
     """Parts in wire order, exactly one of which is the payload."""
 
@@ -227,6 +250,8 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     transparency: Transparency | None = None
     limit: int | None = None
     """Wire bytes that no frame exceeds, where the schema bounds them."""
+    silence: Silence | None = None
+    """The silence that ends a frame, where nothing else does."""
 
     @cached_property
     def declared(self) -> tuple[Part, ...]:

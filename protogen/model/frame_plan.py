@@ -58,6 +58,8 @@ class EndRule(Enum):
     """The length part."""
     IDENTITY = auto()
     """The size of the message's payload."""
+    IDLE = auto()
+    """A silence of the line, and no byte."""
 
 
 class Store(Enum):
@@ -483,12 +485,26 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
             return False
         if self.identity:
             return True  # An unknown identity tells no size.
-        return bool(self.end_bytes) and self.has_open_groups
+        return (bool(self.end_bytes) or self.ends_idle) and self.has_open_groups
+
+    @property
+    def ends_idle(self) -> bool:
+        """True if a silence ends a frame."""
+        return self.end_rule is EndRule.IDLE
+
+    @property
+    def given_up_at(self) -> int:
+        """Wire bytes of a candidate that is given up if it is no frame by then.
+
+        Of a frame that only a silence ends, one byte more than the greatest has.
+        """
+        return self.greatest + self.ends_idle
 
     @property
     def measures(self) -> bool:
         """True if the size of some payload follows from its first bytes alone."""
-        return self.length is None and not self.end_bytes and self.has_open_groups
+        has_end = bool(self.end_bytes) or self.ends_idle
+        return self.length is None and not has_end and self.has_open_groups
 
     @cached_property
     def has_open_groups(self) -> bool:
@@ -498,7 +514,8 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     @property
     def ends_at_start(self) -> bool:
         """True if some frame ends where the next starts, and nothing else tells."""
-        return self.opens and not self.end_bytes and self.start is not StartRule.ANYWHERE
+        has_end = bool(self.end_bytes) or self.ends_idle
+        return self.opens and not has_end and self.start is not StartRule.ANYWHERE
 
     @cached_property
     def has_one_spelling(self) -> bool:

@@ -91,7 +91,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
 
     The raw bytes of all events, joined, are the input; how the input is divided among calls of
     `feed` changes nothing. At most one greatest frame is kept between calls, and behind it what may
-    yet become a start literal of three bytes or more.
+    yet become a start literal of three bytes or more; in front of a frame that only a silence ends,
+    as much noise.
     """
 
     def __init__(
@@ -120,6 +121,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._least = min(item.frame.least for item in senders) - shared
         self._greatest = max(item.frame.greatest for item in senders)
         self._is_anywhere = isinstance(senders[0].frame.start, Anywhere)
+        # Whether noise has to go where it and a candidate are longer than a frame.
+        self._keeps_one = self._is_anywhere and not senders[0].layout.ends_idle
         self._events: list[Event[MessageT_co, PartsT_co]] = []
         self._data = b""  # What is not delivered, and a little context in front of it.
         self._behind = bytearray()  # What came behind it, and the candidate has taken.
@@ -273,6 +276,10 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._is_fresh = True
         return events
 
+    def idle(self) -> list[Event[MessageT_co, PartsT_co]]:
+        """Take a silence on the line: what `flush` does, which ends what has come."""
+        return self.flush()
+
     def _deliver(self) -> list[Event[MessageT_co, PartsT_co]]:
         """The events so far; what they cover is forgotten."""
         passed = self._done - self._starts.context
@@ -371,7 +378,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         data = self._data
         for place in range(self._pushed, len(data)):
             verdict = candidate.push(data[place])
-            if self._is_anywhere and place + 1 - self._done > self._greatest:
+            if self._keeps_one and place + 1 - self._done > self._greatest:
                 self._noise(self._scan, complete=True)
             if verdict is not None:
                 return self._judge(verdict)

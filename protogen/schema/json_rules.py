@@ -24,7 +24,7 @@ _NUMERIC = ("scale", "offset", "unit", "special", "range")
 _NAMED = ("values", "flags", "bits")
 _LENGTHS = ("size", "until")
 _WRITTEN = ("digits", "code", "chars")
-_PART_ROLES = ("literal", "id", "virtual", "counts", "counter", "algorithm")
+_PART_ROLES = ("literal", "id", "virtual", "counts", "counter", "algorithm", "idle")
 
 
 def _with(*keys: str) -> JsonObject:
@@ -153,7 +153,12 @@ _FIELD_RULES = (
 
 _PART_RULES = (
     _at_most_one_of("A part does one of these.", _PART_ROLES),
-    _where(_any_of(_PART_ROLES[1:]), "A part that is a number has a type.", _with("type")),
+    _where(_any_of(_PART_ROLES[1:-1]), "A part that is a number has a type.", _with("type")),
+    _where(
+        _with("idle"),
+        "A silence is all that its part is.",
+        {"propertyNames": {"enum": ["idle", "doc", "source"]}},
+    ),
     _where(
         _with("literal"),
         "A literal is all that its part is.",

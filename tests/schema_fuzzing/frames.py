@@ -42,6 +42,8 @@ class FramePlan:
     """The greatest size on the wire, if that is stated."""
     spare: int | None = None
     """A payload that surely fits that, however it is stuffed."""
+    silence: PartPlan | None = None
+    """What ends the frame, where only a silence does."""
 
     @property
     def surely(self) -> int | None:
@@ -73,7 +75,8 @@ class FramePlan:
     @property
     def delimited(self) -> bool:
         """True if the frame tells where the payload ends."""
-        return bool(self.closing) or any(part.role == "length" for part in self.parts)
+        has_length = any(part.role == "length" for part in self.parts)
+        return bool(self.closing) or has_length or self.silence is not None
 
     @property
     def starts_with_set(self) -> bool:
@@ -129,7 +132,8 @@ class FramePlan:
 
     def data(self) -> dict[str, Any]:
         """The frame in the schema language."""
-        return {part.name: part.data for part in self.parts}
+        silence = () if self.silence is None else (self.silence,)
+        return {part.name: part.data for part in (*self.parts, *silence)}
 
     def transparency(self) -> Any:
         """The transparency in the schema language, or None."""
@@ -209,6 +213,7 @@ class _Drawing:
         self._code = draw(codes())
         self._start = draw(st.sampled_from(STARTS))
         self._end = draw(st.sampled_from(ENDS))
+        self._is_idle = self._code is None and self._end == "none" and draw(forms.one_in(3))
         self._has_length = draw(st.booleans())
         self._anywhere = self._start == self._end == "none"
         self._by_position = self._anywhere and not draw(forms.one_in(4))
@@ -224,6 +229,10 @@ class _Drawing:
         parts = self._with_covers(parts, region)
         lenient = self._code is not None and self._draw(forms.one_in(6))
         plan = FramePlan(tuple(parts), self._code, region, lenient, room)
+        if self._is_idle:
+            idle = {"idle": self._draw(st.sampled_from(["4 ms", "500us", "1.75 ms", "2 s"]))}
+            plan = replace(plan, silence=PartPlan(self._maker.name(), "silence", idle))
+            return self._limited(plan)
         return self._limited(plan) if self._draw(forms.one_in(4)) else plan
 
     # -- delimiters --------------------------------------------------------------------------
@@ -299,7 +308,7 @@ class _Drawing:
     def _around_payload(self, identity: list[PartPlan]) -> tuple[list[PartPlan], list[PartPlan]]:
         draw, maker = self._draw, self._maker
         tail = [maker.number("value")] if draw(forms.one_in(6)) else []
-        late = self._has_length or self._end != "none"
+        late = self._has_length or self._end != "none" or self._is_idle
         if len(identity) > 1 and late and draw(forms.one_in(4)):
             tail.append(identity.pop())
         others = [maker.number(draw(st.sampled_from(["counter", "value"])))

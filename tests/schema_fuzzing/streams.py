@@ -59,11 +59,14 @@ def portions(draw: st.DrawFn, data: bytes) -> list[bytes]:
     return [data[low:high] for low, high in zip([0, *cuts], [*cuts, len(data)], strict=True)]
 
 
-def lost(framing: Framing, stream: Stream, events: Sequence[Any]) -> list[tuple[int, bytes]]:
+def lost(
+    framing: Framing, stream: Stream, events: Sequence[Any], *, is_idle: bool
+) -> list[tuple[int, bytes]]:
     """Undamaged frames that a decoder had to find and did not.
 
     A frame may be hidden by another valid one that begins earlier, in the damage, unless the start
     is protected: then only the first bytes of a start of several bytes can be taken for its end.
+    `is_idle`: a silence alone ends frames, so that only the last one can be found.
     """
     valid = [event for event in events if event.kind != "invalid"]
     found = {(event.offset, event.raw) for event in valid}
@@ -74,6 +77,7 @@ def lost(framing: Framing, stream: Stream, events: Sequence[Any]) -> list[tuple[
         if (offset, frame) not in found
         and (not shared or (offset + shared, frame[shared:]) not in found)
         and _is_due(framing, stream.data[:offset])
+        and not (is_idle and offset + len(frame) < len(stream.data))
         and not _is_hidden(framing, offset, valid)
     ]
 

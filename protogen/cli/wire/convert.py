@@ -164,11 +164,11 @@ def _run(
 
 @contextmanager
 def _plain_warnings() -> Iterator[None]:
-    """Let what is slow be said as commands say it, without the line of protogen that warns."""
-    from protogen.capture.errors import SlowCaptureWarning
+    """Let warnings be said as commands say them, without the line of protogen that warns."""
+    from protogen.capture.errors import NoSilenceWarning, SlowCaptureWarning
 
     def show(message: Any, category: Any, *where: Any, **more: Any) -> None:
-        if issubclass(category, SlowCaptureWarning):
+        if issubclass(category, NoSilenceWarning | SlowCaptureWarning):
             typer.echo(f"warning: {message}", err=True)
         else:
             usual(message, category, *where, **more)

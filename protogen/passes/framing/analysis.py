@@ -22,13 +22,13 @@ from protogen.model.framing import (
     StartSet,
 )
 from protogen.model.messages import Message
-from protogen.model.protocol import Link
 from protogen.model.sizes import SizeSet
 from protogen.passes.context import Context
 from protogen.passes.draft import Draft
 from protogen.passes.framing import framing_words
 from protogen.passes.framing.capacity import GREATEST_FRAME, amount, payload_range
 from protogen.passes.framing.delimiters import delimiters_of, judge_delimiters
+from protogen.passes.framing.silences import character_time
 from protogen.passes.proofs import wire_sizes
 from protogen.passes.proofs.alphabets import payload_alphabet
 from protogen.passes.proofs.codewords import occurs
@@ -169,7 +169,7 @@ class _Analysis:
 
     def _ends_known(self, end: End | None) -> bool:
         """True if the frame, or each message, says where it ends."""
-        if self.frame.length is not None or end is not None:
+        if self.frame.length is not None or self.frame.silence is not None or end is not None:
             return True
         if not set(self.frame.identity) <= set(self.frame.head):
             text = "the identity comes behind the payload, and nothing else tells where it ends"
@@ -275,7 +275,7 @@ class _Analysis:
             is_cut_off=greatest < longest or any(item.is_cut_off for item in per_message),
             self_synchronising=synchronising,
             why_synchronising=why,
-            finds_start=framing_words.finds_start(start),
+            finds_start=framing_words.finds_start(start, is_idle=frame.silence is not None),
             finds_end=framing_words.finds_end(frame, start, end, self._messages),
             undetected=undetected_errors(frame, start, end, self._messages, self._payload),
             messages=per_message,
@@ -294,7 +294,8 @@ class _Analysis:
 
     def _payload_sizes(self, start: Start) -> SizeSet:
         # Without a length, unknown messages alone have other sizes than those that are known.
-        may_be_unknown = self.frame.identity and not isinstance(start, Anywhere)
+        has_end = self.frame.silence is not None or not isinstance(start, Anywhere)
+        may_be_unknown = self.frame.identity and has_end
         if self._carried is not None and (self.frame.length is not None or may_be_unknown):
             return self._carried
         least = min((message.sizes.least for message in self._messages), default=0)
@@ -326,11 +327,11 @@ class _Analysis:
             message=message.name,
             least=sizes.least,
             greatest=sizes.greatest,
-            per_second=_rate(self._context, sizes.greatest),
+            per_second=_rate(self._context, self.frame, sizes.greatest),
         )
 
 
-def _rate(context: Context, size: int) -> Fraction | None:
-    link = context.syntax.link
-    bits = Link(data_bits=link.data_bits, parity=link.parity, stop_bits=link.stop_bits)
-    return Fraction(link.baud, bits.bits_per_byte * size) if link.baud else None
+def _rate(context: Context, frame: Frame, size: int) -> Fraction | None:
+    character = character_time(context)
+    silence = Fraction(0) if frame.silence is None else frame.silence.seconds
+    return 1 / (character * size + silence) if character else None

@@ -116,4 +116,4 @@ def joined_words(parts: Iterable[LiteralPart | ChoicePart]) -> tuple[bytes, ...]
 
 def is_delimited(frame: Frame) -> bool:
     """True if the frame itself tells where the payload ends."""
-    return frame.length is not None or bool(tail_literals(frame))
+    return bool(frame.length or frame.silence or tail_literals(frame))

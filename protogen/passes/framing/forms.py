@@ -43,8 +43,15 @@ def _alone(context: Context) -> None:
 def _go_together(context: Context, draft: Draft, names: Sequence[str]) -> bool:
     """True if one search finds the starts of all forms."""
     first = draft.framings[names[0]]
+    is_idle = draft.frames[names[0]].silence is not None
     for name in names[1:]:
         framing = draft.framings[name]
+        if is_idle != (draft.frames[name].silence is not None):
+            one, other = context.frames[names[0]].form, context.frames[name].form
+            text = f"a silence alone ends frames of only one of `{one}` and `{other}`"
+            hint = "let it end both, or neither"
+            context.error_at_key("PG174", context.frames[name].loc[:-1], text, hint)
+            return False
         if _kind_of_start(framing) != _kind_of_start(first):
             text = f"frames of `{context.frames[name].form}` are found in another way than those"
             context.error_at_key(

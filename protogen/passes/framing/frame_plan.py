@@ -180,6 +180,8 @@ class _Planner:
         return tuple(filter(None, (self._start_bytes,)))
 
     def _end_rule(self) -> EndRule:
+        if self._frame.silence is not None:
+            return EndRule.IDLE
         if self._unique_end:
             return EndRule.DELIMITER
         if self._stuffed and self._unique_start and not self._end_bytes:
@@ -187,6 +189,8 @@ class _Planner:
         return EndRule.IDENTITY if self._frame.length is None else EndRule.LENGTH
 
     def _rescans(self) -> bool:
+        if self._frame.silence is not None:
+            return True
         end_is_final = self._unique_end and _has_no_border(self._end_bytes)
         match self._start:
             case StartLiteral():
@@ -286,6 +290,8 @@ class _Planner:
         """True if bytes of the wire tell where a frame ends, before they are unstuffed."""
         if self._end_rule() in (EndRule.DELIMITER, EndRule.NEXT_START):
             return True
+        if self._end_rule() is EndRule.IDLE:
+            return False
         return not self._stuffed and bool(self._frame.length or self._frame.identity)
 
     def _takes_whole(self) -> bool:

@@ -48,6 +48,7 @@ from protogen.passes.framing.part_digits import (
 )
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.part_values import number_of, text_bounds, text_type
+from protogen.passes.framing.silences import check_silence, silence_of
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.framing.virtual_parts import check_virtual_parts, sent_run
 from protogen.passes.framing.written_frames import WrittenFrame
@@ -124,6 +125,7 @@ class FrameBuilder:
             text = "the frame has no part called `payload`"
             self._context.error_at_key("PG130", self._loc, text)
         transparency = transparency_of(self._context, self._written)
+        silence = silence_of(self._context, self._written)
         self._one_length(parts)
         before += self._replaced
         if self._context.tally.errors > before or self._loc in self._context.doubtful:
@@ -133,6 +135,7 @@ class FrameBuilder:
             virtual=tuple(part for part in parts if isinstance(part, VirtualPart)),
             transparency=transparency,
             limit=self._written.limit,
+            silence=silence,
         )
         self._check(frame)
         return frame if self._context.tally.errors == before else None
@@ -142,6 +145,7 @@ class FrameBuilder:
         _check_checksums(self._context, frame, self._loc)
         check_virtual_parts(self._context, frame, self._loc)
         self._check_identity(frame)
+        check_silence(self._context, self._written, frame)
         length = frame.length
         if length is not None and stated_range(frame) is None:
             around = counted_size(frame, length, empty=True)

@@ -7,8 +7,8 @@ from protogen.model.framing import AfterEnd, Anywhere, End, Start, StartLiteral,
 from protogen.model.messages import Message
 
 
-def finds_start(start: Start) -> str:
-    """Sentence on how a receiver finds where a frame starts."""
+def finds_start(start: Start, *, is_idle: bool = False) -> str:
+    """Sentence on how a receiver finds where a frame starts; `is_idle`: a silence ends frames."""
     match start:
         case StartLiteral(protected=True):
             return f"at {_hex(start.bytes)}, which occurs nowhere else in a frame"
@@ -24,7 +24,10 @@ def finds_start(start: Start) -> str:
         case AfterEnd():
             return "behind the end of the frame before, or at the start of the stream"
         case Anywhere(checked=True):
-            return "at any byte from which sizes and checksum are right"
+            where = " up to the silence" if is_idle else ""
+            return f"at any byte from which sizes and checksum are right{where}"
+        case Anywhere() if is_idle:
+            return "behind a silence; what can be no frame is passed over byte by byte"
         case Anywhere():
             return (
                 "where the frame before ends, or at the start of the stream; what can be no frame "
@@ -34,6 +37,9 @@ def finds_start(start: Start) -> str:
 
 def finds_end(frame: Frame, start: Start, end: End | None, messages: list[Message]) -> str:
     """Sentence on how a receiver finds where a frame ends."""
+    if frame.silence is not None:
+        told = f"; `{frame.length.name}` must give its size" if frame.length else ""
+        return f"after {frame.silence.text} of silence, and nowhere else{told}"
     if frame.length is not None:
         where = f"`{frame.length.name}` gives the size"
         return where if end is None else f"{where}; {_hex(end.bytes)} must follow"
@@ -55,6 +61,11 @@ def finds_end(frame: Frame, start: Start, end: End | None, messages: list[Messag
 
 def synchronisation(frame: Frame, start: Start, end: End | None) -> tuple[bool, str]:
     """Sentence on whether a receiver that joins anywhere surely finds the next frame, and why."""
+    if frame.silence is not None:
+        return True, (
+            "a silence ends whatever was in front of it, so a receiver is in step from the next "
+            "silence on; of frames without a silence between them only the last can be found"
+        )
     match start:
         case StartLiteral(protected=True) | StartSet(protected=True):
             return True, (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import TypedDict
 
 import msgspec
 
@@ -21,6 +22,11 @@ class WrittenFrame(msgspec.Struct, frozen=True):
     loc: Loc
     """Place of its parts."""
     parts: Mapping[str, Part]
+    """Those that take bytes."""
+    silences: Mapping[str, Part]
+    """Those that are a silence of the line."""
+    names: tuple[str, ...]
+    """Names of all parts, in order."""
     transparency: TransparencySyntax | None = None
     transparency_loc: Loc = ()
     form: str = ""
@@ -68,7 +74,7 @@ def _forms_of(
             WrittenFrame(
                 endpoint=endpoint,
                 loc=(*loc, "frame"),
-                parts=form.frame,
+                **_divided(form.frame),
                 transparency=form.transparency,
                 transparency_loc=(*loc, "transparency"),
                 form=name,
@@ -86,12 +92,26 @@ def _of_endpoint(syntax: ProtocolSyntax, endpoint: str, key: str) -> WrittenFram
     return WrittenFrame(
         endpoint=endpoint,
         loc=("frame", key),
-        parts=syntax.frame[key],
+        **_divided(syntax.frame[key]),
         transparency=syntax.transparency.get(stuffing),
         transparency_loc=("transparency", stuffing),
         limit=limit,
         limit_loc=limit_loc,
     )
+
+
+class _Divided(TypedDict):
+    parts: Mapping[str, Part]
+    silences: Mapping[str, Part]
+    names: tuple[str, ...]
+
+
+def _divided(parts: Mapping[str, Part]) -> _Divided:
+    return {
+        "parts": {name: item for name, item in parts.items() if item.idle is None},
+        "silences": {name: item for name, item in parts.items() if item.idle is not None},
+        "names": tuple(parts),
+    }
 
 
 def _limit(syntax: ProtocolSyntax, endpoint: str) -> tuple[int | None, Loc]:

@@ -126,7 +126,7 @@ def _identity(frame: Frame, part: IdentityPart, end: End | None, messages: list[
     index = frame.identity.index(part)
     groups = _groups_without(messages, index)
     wrong, found = f"a wrong `{part.name}` that makes it", ""
-    if frame.length is None and end is None:
+    if frame.length is None and frame.silence is None and end is None:
         if any(len({message.told_by for message in group}) > 1 for group in groups):
             found = f"{wrong} another message of the same size, or a shorter one"
     elif any(_share_a_size(group) for group in groups):
@@ -171,7 +171,7 @@ def _other_size(frame: Frame, start: Start, messages: list[Message]) -> str:
     """Without a mark, a frame that is read too long or too short moves all that follow."""
     sizes = {message.sizes for message in messages}
     alike = frame.length is None and len(sizes) == 1 and sizes.pop().fixed is not None
-    if not isinstance(start, Anywhere) or start.checked or alike:
+    if not isinstance(start, Anywhere) or start.checked or alike or frame.silence is not None:
         return ""
     return "a wrong byte that makes another size of a frame: those behind it are cut elsewhere"
 
@@ -248,7 +248,7 @@ def _stuffing(frame: Frame) -> str:
 
 def _misread_size(frame: Frame, end: End | None, messages: list[Message]) -> str:
     """The sentence about wrong sizes; empty where none goes unnoticed."""
-    if end is not None and end.protected:
+    if frame.silence is not None or (end is not None and end.protected):
         return ""  # It then stands in the wrong place.
     if frame.length is not None:
         return _wrong_length(frame, frame.length, messages)
@@ -260,7 +260,7 @@ def _misread_absence(frame: Frame, messages: list[Message]) -> str:
     length = frame.length
     optional = any(part.when_payload for part in frame.checksums)
     always = any(not part.when_payload for part in frame.checksums)
-    if length is None or not optional or always:
+    if length is None or not optional or always or frame.silence is not None:
         return ""
     if not any(0 in sizes and sizes.fixed is None for sizes in _acceptable(frame, messages)):
         return ""

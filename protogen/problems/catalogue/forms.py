@@ -109,8 +109,9 @@ form that comes later: of bytes that are a valid frame of both forms, the one ab
         "Forms of frame whose starts are found in different ways",
         """\
 A receiver looks for the starts of all forms at once. That works where each begins with a literal,
-or with a first byte of a range of its own. Forms without a mark at their start, and such that share
-the delimiter between two frames, go together only with others of the same kind.
+or with a first byte of a range of its own. Forms without a mark at their start, such that share the
+delimiter between two frames, and such that only a silence ends, go together only with others of
+the same kind.
 """,
         _with_forms(_SHORT + _LONG.replace("    start:   {literal: 4}\n", "")),
         _with_forms(_SHORT + _LONG),

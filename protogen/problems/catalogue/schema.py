@@ -13,6 +13,7 @@ from protogen.problems.catalogue.keys_and_names import KEY_AND_NAME_CODES
 from protogen.problems.catalogue.messages import MESSAGE_CODES
 from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.parts import PART_CODES
+from protogen.problems.catalogue.silences import SILENCE_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
 from protogen.problems.catalogue.virtual_parts import VIRTUAL_PART_CODES
@@ -24,6 +25,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *TEXT_NUMBER_CODES,
     *TERMINATOR_CODES,
     *VIRTUAL_PART_CODES,
+    *SILENCE_CODES,
     *EXPRESSION_CODES,
     *FRAME_CODES,
     *FRAMING_CODES,

@@ -181,7 +181,7 @@ class Content:
         if self.payload_size is not None:
             self._next = len(self.bytes) + self.payload_size
             self._clear_bits = self._sender.frame.seven_bit
-        elif self._layout.end or self._group is None:
+        elif self._layout.end or self._layout.ends_idle or self._group is None:
             self._open_payload()
         else:
             self._is_measuring = True

@@ -192,6 +192,8 @@ def check_together(senders: Senders) -> None:
 def _kind_of_start(sender: SenderSpec[Any, Any]) -> object:
     """What has to be the same in all forms."""
     start, layout = sender.frame.start, sender.layout
+    if layout.ends_idle:
+        return "idle", StartLiteral if isinstance(start, StartMark) else type(start)
     if isinstance(start, StartMark):
         return start if layout.shares_delimiter else StartLiteral
     return sender.frame.end if isinstance(start, AfterEnd) else type(start)

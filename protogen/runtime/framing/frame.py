@@ -239,3 +239,13 @@ class FrameSpec(NamedTuple):
     virtual: tuple[VirtualPart, ...] = ()
     """Parts that are not sent. A frame whose identity gives one of them no value can't be verified:
     it fails as one with a wrong checksum does."""
+    silence: float | None = None
+    """Seconds of silence that end a frame, where nothing else does."""
+
+    @property
+    def given_up_at(self) -> int:
+        """Wire bytes of a candidate that is given up if it is no frame by then.
+
+        A frame of the greatest size that only a silence ends is one until a byte follows.
+        """
+        return self.greatest + (self.silence is not None)

@@ -99,6 +99,11 @@ class Layout:
         )
 
     @cached_property
+    def ends_idle(self) -> bool:
+        """True if a silence ends a frame, and no byte."""
+        return self.spec.silence is not None
+
+    @cached_property
     def texts(self) -> tuple[tuple[int, Characters], ...]:
         """The parts that events show as texts, by their places among all that they show."""
         shown = (part for part in self.parts if isinstance(part, IdentityPart | ValuePart))

@@ -82,14 +82,14 @@ class Candidate:
         self._wire.append(byte)
         try:
             self._take(byte)
-            if self._cut is None and len(self._wire) >= self._spec.greatest:
+            if self._cut is None and len(self._wire) >= self._spec.given_up_at:
                 raise Rejected("length", f"no frame has more than {self._spec.greatest} bytes")
         except Rejected as why:
             return self._failure(why)
         return self._cut
 
     def flush(self) -> Cut | Failure:
-        """Take the end of the input."""
+        """Take the end of the input, or a silence."""
         try:
             self._close_at_flush()
         except Rejected as why:
@@ -166,7 +166,7 @@ class Candidate:
             self._complete()
 
     def _close_at_flush(self) -> None:
-        if not self._ends_at_start:
+        if not (self._ends_at_start or self._layout.ends_idle):
             raise Rejected("truncated", "the input ends inside the frame")
         held, self._held = self._held, b""
         for byte in held:
@@ -225,7 +225,9 @@ class Candidate:
             self._open()
 
     def _open(self) -> None:
-        """From now on only a delimiter can tell where the frame ends."""
+        """From now on only a delimiter, or a silence, can tell where the frame ends."""
+        if self._layout.ends_idle:
+            return
         if isinstance(self._spec.start, Anywhere):
             raise Rejected("size", "the identity is unknown, and nothing else gives a size")
         self._delimiters = tuple(filter(None, (self._layout.end,)))
@@ -235,7 +237,7 @@ class Candidate:
             self._delimiters = self._layout.start_words if self._layout.mark_size else ()
 
     def _meet_full(self) -> None:
-        if self._delimiters:
+        if self._delimiters or self._layout.ends_idle:
             return
         if self._layout.end:
             self._end_left = len(self._layout.end)

@@ -32,6 +32,7 @@ _DURATION_UNITS = {
     "ms": Fraction(1, 1000),
     "s": Fraction(1),
 }
+_SILENCE = re.compile(r"([0-9]{1,9}(?:\.[0-9]{1,9})?) ?(us|ms|s|characters?)")
 _SPAN = re.compile(r"([0-9]{1,4})\.\.([0-9]{1,4})")
 _RATIONAL_PATTERN = (
     r"^\s*[-+]?([0-9]+/0*[1-9][0-9]*|([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]{1,3})?)\s*$"
@@ -82,6 +83,13 @@ def _to_duration(value: object) -> object:
     if match is None:
         raise ValueError("expected a time with its unit, such as 20 ms, 500 us or 1.5 s")
     return Fraction(match[1]) * _DURATION_UNITS[match[2]]
+
+
+def _to_silence(value: object) -> object:
+    match = _SILENCE.fullmatch(str(value))
+    if match is None or not Fraction(match[1]):
+        raise ValueError("expected a time, such as 3.5 characters, 20 ms or 500 us")
+    return str(value)
 
 
 def _to_number(value: object) -> object:
@@ -167,6 +175,24 @@ Duration = Annotated[
     ),
 ]
 """A time in seconds, written with its unit."""
+
+SilenceText = Annotated[
+    str,
+    BeforeValidator(
+        _to_silence,
+        json_schema_input_type=Annotated[str, Field(pattern=f"^{_SILENCE.pattern}$")],
+    ),
+]
+"""A silence of the line: a time with its unit, or a number of characters."""
+
+
+def silence_seconds(text: str, character: Fraction | None) -> Fraction | None:
+    """Seconds of a silence as written; None where it needs to be known how long a character is."""
+    match = _SILENCE.fullmatch(text)
+    assert match is not None
+    unit = _DURATION_UNITS.get(match[2], character)
+    return None if unit is None else Fraction(match[1]) * unit
+
 
 RawNumber = Annotated[int, BeforeValidator(_to_number, json_schema_input_type=int | Character)]
 """A raw value: an integer, or one character that stands for its code."""

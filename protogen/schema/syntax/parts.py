@@ -19,6 +19,7 @@ from protogen.schema.syntax.base import (
     PartValue,
     RawNumber,
     ShortForm,
+    SilenceText,
     SourceRef,
     Syntax,
     Text,
@@ -219,6 +220,10 @@ class Part(Syntax):
         None,
         description="What an encoder writes where the caller gives no value; of a virtual part, "
         "the value of messages that give none.",
+    )
+    idle: SilenceText | None = Field(
+        None,
+        description="The silence behind a frame that alone ends it: 3.5 characters, 20 ms.",
     )
     byte_order: ByteOrder | None = Field(None, description="Byte order of this part.")
     doc: Text | None = Field(None, description="What the part means.")

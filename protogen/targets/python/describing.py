@@ -44,6 +44,12 @@ def module(protocol: Protocol) -> list[str]:
     """Docstring of a protocol's module."""
     line = descriptions.of_link(protocol.link)
     lines = [line + _silence(protocol.link)] if line else []
+    lines += [
+        f"Frames of {sender.name} end after {sender.frame.silence.text} of silence: call "
+        f"`Decoder.idle` then."
+        for sender in protocol.senders
+        if sender.frame.silence is not None
+    ]
     return escaped([*descriptions.of_protocol(protocol), *lines])
 
 

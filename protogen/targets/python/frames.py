@@ -17,6 +17,7 @@ from protogen.model.frame import (
     NumberPart,
     Part,
     PayloadPart,
+    Silence,
     Substitution,
     Transparency,
     TypedPart,
@@ -199,6 +200,11 @@ def end(item: End | None) -> str:
     if item is None:
         return "None"
     return call("_rt.End", octets(item.bytes), protected=str(item.protected))
+
+
+def silence(item: Silence | None) -> str | None:
+    """The seconds of silence that end a frame; None where something else does."""
+    return None if item is None else repr(float(item.seconds))
 
 
 def stuffed(sender: Sender) -> str:

@@ -361,6 +361,7 @@ def _frame(sender: Sender) -> str:
         ambiguous_cut="True" if framing.cut_ambiguous else None,
         is_bounded="True" if sender.frame.limit is not None else None,
         virtual=_unless(tuple_of(map(frames.virtual_part, sender.plan.virtual)), "()"),
+        silence=frames.silence(sender.frame.silence),
     )
     return wrapped(expression, _INDENT + len("return "), _INDENT, after=0)
 

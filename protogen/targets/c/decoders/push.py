@@ -94,7 +94,7 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     def greatest_content(self, group: GroupView) -> int:
         """Bytes of content that a frame of the group has at most."""
         around = self.around if group.greatest else self.least_around
-        return min(around + group.greatest, self.plan.greatest)
+        return min(around + group.greatest, self.plan.given_up_at)
 
     # --- messages ---------------------------------------------------------------------------------
 
@@ -255,6 +255,8 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     @property
     def crosses(self) -> bool:
         """True if something is done between two parts."""
+        if self.plan.ends_idle:
+            return False
         refuses = self.can_open and self.plan.start is StartRule.ANYWHERE
         return self.crosses_region or refuses or not self.plan.end_is_unique
 

@@ -81,7 +81,7 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @cached_property
     def counter(self) -> str:
         """The type of what counts bytes of a candidate, and a few bytes behind it."""
-        most = self.plan.greatest + self.around + self.start_size + self.end_size
+        most = self.plan.given_up_at + self.around + self.start_size + self.end_size
         bits = next(bits for bits in (8, 16, 32) if most < (1 << bits) - 4)
         return f"uint{bits}_t"
 
@@ -127,7 +127,7 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     def buffer_size(self) -> int:
         """Bytes of the buffer."""
         if self.keeps_wire:
-            return self.plan.greatest + max(self.start_size - 1, 0)
+            return self.plan.given_up_at + max(self.start_size - 1, 0)
         content = self.around + self.plan.payload.greatest
         return self.plan.greatest if self.length is None else min(self.plan.greatest, content)
 
@@ -326,7 +326,8 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         is_kept_whole = plan.store is not Store.CONTENT or plan.end_begins_start
         if not self.all_events and not is_kept_whole and plan.identity_is_early:
             # What nobody asked for is given up at once: no frame can start inside of it.
-            return plan.length is None and bool(plan.end_bytes) and plan.has_open_groups
+            has_end = bool(plan.end_bytes) or plan.ends_idle
+            return plan.length is None and has_end and plan.has_open_groups
         return plan.opens
 
     @property
@@ -337,9 +338,7 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def ends_at_start(self) -> bool:
         """True if some frame ends where the next starts, and nothing else tells."""
-        return (
-            self.can_open and not self.plan.end_bytes and self.plan.start is not StartRule.ANYWHERE
-        )
+        return self.can_open and self.plan.ends_at_start
 
     @property
     def known_from(self) -> int:

@@ -39,9 +39,16 @@ class PushStates(ReceivedFrame, frozen=True, dict=True):
     @property
     def searches(self) -> bool:
         """True if a delimiter is looked for inside candidates, from the start or later."""
+        if self.plan.ends_idle:
+            return False
         return self.plan.end_is_unique or (
             self.can_open and self.plan.start is not StartRule.ANYWHERE
         )
+
+    @property
+    def closes(self) -> bool:
+        """True if some frame is ended by what follows its last byte, or by a silence."""
+        return self.searches or self.plan.ends_idle
 
     @property
     def marks(self) -> tuple[bytes, ...]:

@@ -78,6 +78,7 @@ def whole_frames(decoder: ReceivedFrame) -> WholeFrames | None:
         _unstuffs(d)
         and not d.keeps_both
         and d.plan.start in (StartRule.LITERAL, StartRule.SET)
+        and not d.plan.ends_idle
         and d.known_from > 0
         and sizes_are_known
         and not d.plan.shares_delimiter

@@ -15,6 +15,7 @@ from protogen.targets.markdown.frames.parts import (
     transparency_text,
 )
 from protogen.targets.markdown.pages.context import by_frame, sender_code
+from protogen.targets.markdown.text.origin import about_line
 from protogen.targets.markdown.text.table import View
 from protogen.targets.markdown.text.words import capital, listed, plural, sentence
 
@@ -84,7 +85,9 @@ def _properties(sender: Sender) -> Iterator[tuple[str, Sentences]]:
     sizes = plural(SizeSet.between(framing.least, framing.greatest), "byte")
     sync = "Yes." if framing.self_synchronising else "No."
     yield "Start", (_said(framing.finds_start),)
-    yield "End", (_said(framing.finds_end),)
+    silence = sender.frame.silence
+    doc = about_line(silence.about) if silence is not None else ""
+    yield "End", tuple(filter(None, (_said(framing.finds_end), doc)))
     yield "Self-synchronising", (f"{sync} {_said(framing.why_synchronising)}".strip(),)
     refused = (_CUT_OFF,) if framing.is_cut_off else ()
     yield "Frame size", (f"{sizes} on the wire.", *refused)
