@@ -252,11 +252,39 @@ def _use(draw: st.DrawFn, setting: Setting, declared: Declared) -> Built:
     return replace(declared.built, data=data)
 
 
-def _extended(element: Built, count: Any, bounds: Size) -> st.SearchStrategy[Built]:
+@st.composite
+def _extended(draw: st.DrawFn, element: Built, count: Any, bounds: Size) -> Built:
     """So many of an element, or a text or bytes of this size."""
     is_string = element.data.get("type") in ("ascii", "bytes")
+    if not is_string and element.size.fixed and draw(forms.one_in(4)):
+        return draw(_sized(element, count, bounds))
     data = {**element.data, "size" if is_string else "count": count}
-    return st.just(Built(data, element.size * bounds))
+    return Built(data, element.size * bounds)
+
+
+@st.composite
+def _sized(draw: st.DrawFn, element: Built, count: Any, bounds: Size) -> Built:
+    """So many of an element, told by their bytes."""
+    each, size = element.size.least, count
+    if isinstance(count, int):
+        size = count * each
+    elif isinstance(count, dict):
+        size = {key: it if key == "fill" else it * each for key, it in count.items()}
+    elif count != "fill" and (bounds.least or not count.isidentifier() or draw(st.booleans())):
+        size = f"({count}) * {each}"
+    elif count != "fill":
+        bounds = Size(0, bounds.greatest // each)
+    is_struct = "fields" in element.data or element.data["type"] not in _NUMBERS
+    data = {**element.data, "size": size}
+    if is_struct or draw(st.booleans()):
+        data["count"] = "fill"
+    return Built(data, element.size * bounds)
+
+
+_NUMBERS = {
+    *(f"{sign}int{bits}" for sign in "us" for bits in range(1, 65)),
+    *("byte", "char", "bool", "float32", "float64"),
+}
 
 
 # --- items --------------------------------------------------------------------------------------

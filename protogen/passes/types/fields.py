@@ -45,6 +45,7 @@ from protogen.passes.types.packing import (
 )
 from protogen.passes.types.separators import character, check_separated, with_absent
 from protogen.passes.types.setting import Setting
+from protogen.passes.types.sized_arrays import in_elements, is_sized_array
 from protogen.passes.types.terminators import until_of
 from protogen.passes.types.text_numbers import says_text, text_number, with_text
 from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
@@ -132,7 +133,7 @@ class FieldBuilder:
             return self._switch(item) or UNKNOWN_TYPE
         if item.syntax.type in ("ascii", "bytes"):
             return self._string(item)
-        if item.syntax.count is not None:
+        if item.syntax.count is not None or is_sized_array(item.syntax):
             return self._array(item)
         return self._element(item, item.setting)
 
@@ -192,7 +193,8 @@ class FieldBuilder:
         return struct
 
     def _array(self, item: Effective) -> Array:
-        written, loc = item.syntax.count, item.at("count")
+        key = "size" if is_sized_array(item.syntax) else "count"
+        written, loc = getattr(item.syntax, key), item.at(key)
         setting = packed_elements(self._context, item, replace(item.setting, last=False))
         element = self._element(item, setting)
         if takes_rest(element):
@@ -201,12 +203,24 @@ class FieldBuilder:
         if element.sizes.least == 0 and isinstance(written, FillSyntax):
             text = "an element may be empty, so nothing says how many fill the payload"
             self._context.error("PG118", loc, text)
-        least = max(1, element.sizes.least)
         return Array(
             element=element,
-            extent=self._extent(written, loc, least, item.setting),
+            extent=self._number_of(element, written, loc, item),
             packed=order_of_elements(self._context, element, item, setting),
         )
+
+    def _number_of(self, element: Type, written: Written, loc: Loc, item: Effective) -> Extent:
+        """The number of elements of an array; where its bytes are told, that of those."""
+        if not is_sized_array(item.syntax):
+            return self._extent(written, loc, max(1, element.sizes.least), item.setting)
+        extent, size = self._extent(written, loc, 1, item.setting), element.sizes.fixed
+        if not size and takes_rest(element):
+            return Fixed(count=0)  # Which was reported.
+        if not size:
+            text = "elements have to be of one size that is not 0, so that bytes tell their number"
+            self._context.error("PG240", loc, text, "count the elements: `count`")
+            return Fixed(count=0)
+        return in_elements(self._context, written, extent, size, item)
 
     def _string(self, item: Effective) -> Text | Octets:
         extent, byte_bits = self._length(item), item.setting.layout.byte_bits

@@ -33,7 +33,7 @@ def check_packing(context: Context, name: str, item: Effective) -> bool:
 
 def _can_pack(context: Context, name: str, item: Effective) -> None:
     syntax, loc = item.syntax, item.at("packed")
-    if syntax.fields is None and syntax.count is None:
+    if syntax.fields is None and syntax.count is None and syntax.size is None:
         what = "a switch" if syntax.switch is not None else "a single value"
         text = f"`packed` is for arrays and structs of integers, and `{name}` is {what}"
         hint = "make a packed struct of it and its neighbours"
@@ -51,7 +51,7 @@ def _is_packable(item: Effective) -> bool:
     syntax = item.syntax
     if syntax.fields is not None or syntax.switch is not None or syntax.when is not None:
         return False
-    is_counted = syntax.count is None or _is_fixed(item)
+    is_counted = _is_fixed(item) if syntax.count is not None else syntax.size is None
     return is_counted and syntax.type not in ("float32", "float64", "ascii", "bytes")
 
 
@@ -65,7 +65,8 @@ def packed_elements(context: Context, item: Effective, setting: Setting) -> Sett
     if order is None or item.syntax.fields is not None or not _is_fixed(item):
         if order is not None and item.syntax.fields is None:
             text = "the number of packed integers is always the same, and 1 at least"
-            context.error("PG221", item.at("count"), text)
+            key = "count" if item.syntax.count is not None else "size"
+            context.error("PG221", item.at(key), text)
         return setting
     return _packed(setting, order)
 

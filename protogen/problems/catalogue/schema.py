@@ -13,6 +13,7 @@ from protogen.problems.catalogue.keys_and_names import KEY_AND_NAME_CODES
 from protogen.problems.catalogue.messages import MESSAGE_CODES
 from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.parts import PART_CODES
+from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
 
@@ -22,6 +23,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *PACKING_CODES,
     *TEXT_NUMBER_CODES,
     *TERMINATOR_CODES,
+    *SIZED_ARRAY_CODES,
     *EXPRESSION_CODES,
     *FRAME_CODES,
     *FRAMING_CODES,
