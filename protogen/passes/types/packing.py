@@ -9,6 +9,7 @@ from protogen.model.types import Array, BitOrder, Field, Type, is_integer
 from protogen.passes.context import Context
 from protogen.passes.types.declared import Effective
 from protogen.passes.types.setting import Setting
+from protogen.passes.types.sized_arrays import is_sized_array
 
 
 def check_packing(context: Context, name: str, item: Effective) -> bool:
@@ -33,7 +34,7 @@ def check_packing(context: Context, name: str, item: Effective) -> bool:
 
 def _can_pack(context: Context, name: str, item: Effective) -> None:
     syntax, loc = item.syntax, item.at("packed")
-    if syntax.fields is None and syntax.count is None and syntax.size is None:
+    if syntax.fields is None and syntax.count is None and not is_sized_array(syntax):
         what = "a switch" if syntax.switch is not None else "a single value"
         text = f"`packed` is for arrays and structs of integers, and `{name}` is {what}"
         hint = "make a packed struct of it and its neighbours"
