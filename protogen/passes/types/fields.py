@@ -9,11 +9,12 @@ from collections.abc import Mapping, Sequence
 
 from protogen.copying import replace
 from protogen.model.expressions import Expression
-from protogen.model.nesting import takes_rest
+from protogen.model.nesting import fills, takes_rest
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
     Case,
+    Counted,
     Extent,
     Field,
     Fixed,
@@ -45,7 +46,13 @@ from protogen.passes.types.packing import (
 )
 from protogen.passes.types.separators import character, check_separated, with_absent
 from protogen.passes.types.setting import Setting
-from protogen.passes.types.sized_arrays import in_elements, is_sized_array
+from protogen.passes.types.sized_arrays import (
+    has_region,
+    in_elements,
+    in_region,
+    is_sized_array,
+    region_of,
+)
 from protogen.passes.types.terminators import until_of
 from protogen.passes.types.text_numbers import says_text, text_number, with_text
 from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
@@ -90,7 +97,7 @@ class FieldBuilder:
             if setting.layout.packed is not None:
                 built[name] = replace(built[name], bit=bits)
                 bits += bits_of(built[name].type)
-            filler = filler or (name if takes_rest(built[name].type) else "")
+            filler = filler or (name if fills(built[name]) else "")
         return tuple(built.values())
 
     def field(self, name: str, item: FieldSyntax, loc: Loc, setting: Setting) -> Field:
@@ -106,8 +113,9 @@ class FieldBuilder:
             return unknown
         if not check_separated(self._context, name, effective):
             return unknown
-        found = meaning.attach(self._context, name, self._type(effective), effective)
-        return replace(found, when=self._when(effective))
+        type_, region = self._in_region(effective)
+        found = meaning.attach(self._context, name, type_, effective)
+        return replace(found, when=self._when(effective), region=region)
 
     def _effective(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Effective:
         return self._declarations.effective(item, loc, setting)
@@ -124,6 +132,14 @@ class FieldBuilder:
         self._expansion.vary()
         found = condition(self._context, item.syntax.when, item.at("when"), item.setting)
         return None if found is None else found.expression
+
+    def _in_region(self, item: Effective) -> tuple[Type, Fixed | Counted | None]:
+        """The type of a field, and the region that it has to fill, where there is one."""
+        if not has_region(item.syntax):
+            return self._type(item), None
+        extent = self._extent(item.syntax.size, item.at("size"), 1, item.setting)
+        inner = replace(item, setting=in_region(item.setting, extent))
+        return region_of(self._context, self._type(inner), extent, item)
 
     # -- types --------------------------------------------------------------------------------
 
@@ -220,7 +236,12 @@ class FieldBuilder:
             text = "elements have to be of one size that is not 0, so that bytes tell their number"
             self._context.error("PG240", loc, text, "count the elements: `count`")
             return Fixed(count=0)
-        return in_elements(self._context, written, extent, size, item)
+        stated = item.syntax.count
+        within = None
+        if stated is not None:
+            inner = in_region(item.setting, extent)
+            within = self._extent(stated, item.at("count"), size, inner)
+        return in_elements(self._context, extent, size, item, within)
 
     def _string(self, item: Effective) -> Text | Octets:
         extent, byte_bits = self._length(item), item.setting.layout.byte_bits
@@ -325,7 +346,8 @@ class FieldBuilder:
     def _case_struct(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Struct:
         """A case that is no struct, or not always one, becomes one of a single field."""
         effective = self._effective(item, loc, setting).syntax
-        if effective.fields is None or (effective.count or effective.when) is not None:
+        is_bare = (effective.count or effective.when) is None and effective.size is None
+        if effective.fields is None or not is_bare:
             inner = replace(setting, owner=f"{setting.owner}_value", position=0)
             field = self.field("value", item, loc, inner)
             struct = Struct(name=setting.owner, fields=(field,))

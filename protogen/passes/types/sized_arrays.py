@@ -1,13 +1,14 @@
-"""Arrays whose number of bytes is told, instead of the number of their elements."""
+"""Arrays whose number of bytes is told, and structs and switches in regions of so many bytes."""
 
 from __future__ import annotations
 
 from protogen.copying import replace
 from protogen.model.expressions import Quotient
-from protogen.model.types import Counted, Extent, Fill, Fixed
+from protogen.model.types import Array, Counted, Extent, Fill, Fixed, Type
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.declared import Effective
 from protogen.passes.types.extents import Written
+from protogen.passes.types.setting import Setting
 from protogen.schema.syntax.fields import FieldSyntax
 from protogen.schema.syntax.fields import Fill as FillSyntax
 
@@ -15,22 +16,27 @@ _STRINGS = ("ascii", "bytes")
 
 
 def is_sized_array(syntax: FieldSyntax) -> bool:
-    """True if a field is an array whose size in bytes is told."""
-    if syntax.size is None or syntax.type in _STRINGS or syntax.switch is not None:
-        return False
-    return syntax.fields is None or syntax.count is not None
+    """True if a field is an array of numbers whose size in bytes is told."""
+    is_number = syntax.type is not None and syntax.type not in _STRINGS
+    return syntax.size is not None and is_number and not has_region(syntax)
+
+
+def has_region(syntax: FieldSyntax) -> bool:
+    """True if a field is a struct, some of them or a switch, in a region of so many bytes."""
+    return syntax.size is not None and (syntax.fields is not None or syntax.switch is not None)
 
 
 def check_size(context: Context, item: Effective) -> None:
-    """Report a size where something else says the same."""
+    """Report a size where something else says the same, or nothing can have one."""
     syntax = item.syntax
     if syntax.size is None or syntax.type in _STRINGS:
         return
-    if not is_sized_array(syntax):
-        what = "a switch has that of its cases" if syntax.switch else "a struct that of its fields"
-        text = f"`size` is for ascii, bytes and arrays; {what}"
-        hint = None if syntax.switch else "for several of them write `count: fill` beside the size"
-        context.error_at_key("PG240", item.at("size"), text, hint)
+    if item.setting.layout.separator is not None:
+        text = "a field beside a separator has no size: it ends where the next one begins"
+        context.error_at_key("PG240", item.at("size"), text, "leave `size` out")
+    elif has_region(syntax) and syntax.count is None and isinstance(syntax.size, FillSyntax):
+        text = "this says nothing: what comes last ends where the payload does"
+        context.error_at_key("PG240", item.at("size"), text, "leave `size` out")
     elif syntax.count is not None and not isinstance(syntax.count, FillSyntax):
         text = "`size` tells the number of elements already"
         hint = "leave `count` out, or say `count: fill`: as many as these bytes hold"
@@ -38,14 +44,49 @@ def check_size(context: Context, item: Effective) -> None:
 
 
 def in_elements(
-    context: Context, written: Written, extent: Extent, size: int, item: Effective
+    context: Context, extent: Extent, size: int, item: Effective, stated: Extent | None = None
 ) -> Extent:
-    """An extent of bytes as one of elements of `size` bytes each, within the bounds of `count`."""
-    found = _divided(context, written, extent, size, item.at("size"))
-    count = item.syntax.count
-    if not isinstance(count, FillSyntax) or isinstance(found, Fixed):
+    """An extent of bytes as one of elements of `size` bytes each, within what `count` states."""
+    found = _divided(context, item.syntax.size, extent, size, item.at("size"))
+    if not isinstance(stated, Fill):
         return found
-    return _bounded(context, found, count, item.at("count"))
+    least = max(found.counts.least, stated.least)
+    greatest = min(found.counts.greatest, stated.greatest)
+    if least > greatest:
+        text = f"{least} are more than the {greatest} that there can be"
+        context.error("PG180", item.at("count"), text)
+        return found
+    if not isinstance(found, Counted | Fill):
+        return found
+    is_stated = found.stated or stated.stated
+    return replace(found, least=least, greatest=greatest, stated=is_stated)
+
+
+def in_region(setting: Setting, region: Extent) -> Setting:
+    """The setting of what lies in a region of so many bytes, where that says how many."""
+    if not isinstance(region, Fixed | Counted):
+        return setting
+    return replace(setting, capacity=region.counts.greatest, used=0, delimited=True, last=True)
+
+
+def region_of(
+    context: Context, type_: Type, extent: Extent, item: Effective
+) -> tuple[Type, Fixed | Counted | None]:
+    """A type, and the region that it lies in: none for elements that so many bytes count."""
+    if isinstance(type_, Array) and type_.element.sizes.fixed:
+        stated = type_.extent
+        found = in_elements(context, extent, type_.element.sizes.fixed, item, stated)
+        return replace(type_, extent=found), None
+    if not isinstance(extent, Fixed | Counted):
+        text = "elements have to be of one size, so that bytes to the end tell their number"
+        context.error_at_key("PG240", item.at("size"), text, "leave `size` out")
+        return type_, None
+    bounds = extent.counts
+    if type_.sizes.within(bounds.least, bounds.greatest) is None:
+        text = f"this takes {type_.sizes} bytes, and the region has {bounds}"
+        context.error("PG241", item.at("size"), text)
+        return type_, None
+    return type_, extent
 
 
 def _divided(context: Context, written: Written, extent: Extent, size: int, loc: Loc) -> Extent:
@@ -75,17 +116,3 @@ def _divided(context: Context, written: Written, extent: Extent, size: int, loc:
 def _not_whole(context: Context, bytes_: str, size: int, loc: Loc) -> None:
     text = f"{bytes_} are no whole number of elements: each has {size}"
     context.error("PG239", loc, text, f"write a multiple of {size}")
-
-
-def _bounded(context: Context, extent: Extent, count: FillSyntax, loc: Loc) -> Extent:
-    """The extent within the bounds that `count: {fill: true, min: .., max: ..}` states."""
-    if not isinstance(extent, Counted | Fill) or (count.min == 0 and count.max is None):
-        return extent
-    least = max(extent.least, count.min)
-    greatest = extent.greatest if count.max is None else min(extent.greatest, count.max)
-    if least > greatest:
-        text = f"{least} are more than the {greatest} that there can be"
-        context.error("PG180", loc, text)
-        return extent
-    stated = extent.stated or count.max is not None
-    return replace(extent, least=least, greatest=greatest, stated=stated)
