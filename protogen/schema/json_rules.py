@@ -99,8 +99,6 @@ _FIELD_RULES = (
         "These are for numbers.",
         _none_of((*_NUMERIC, *_NAMED, *_WRITTEN, "until", "const", "default", "closed")),
     ),
-    _where(_with("switch"), "A switch has the size of its cases.", _none_of(("size",))),
-    _where(_with("fields", "size"), "So many bytes of structs are an array.", _with("count")),
     _where(
         _with("count", "size"),
         "As many elements as the bytes hold.",

@@ -63,6 +63,8 @@ class _Scope:
             self._add_counted(here)
         elif kind == "switch":
             self._add_switch(here)
+        elif kind == "region":
+            self._add_region(here)
         else:
             self._put(self._draw(_ITEMS[kind](here)))
         return not self._last
@@ -151,6 +153,26 @@ class _Scope:
         most = min((1 << bits) - 1, room // max(1, element.size.least))
         self._put(self._draw(_extended(element, name, Size(0, most))))
 
+    # -- regions -----------------------------------------------------------------------------
+
+    def _add_region(self, here: Setting) -> None:
+        """A struct in a region of so many bytes, told by a number that tells nothing else."""
+        inner = replace(here.inside(last=False), budget=min(here.budget - 2, _USUAL_BYTES))
+        built = self._draw(structs(inner, greatest=3))
+        fields = dict(built.data)
+        # Behind what is last in a region, a switch would take bytes of other values.
+        fills = self._draw(st.booleans())
+        fill = {"type": "bytes", "size": {"fill": True, "max": 1}}
+        fields[self._draw(fresh(FIELDS, fields))] = fill if fills else "uint1"
+        size = built.size + Size(1 - fills, 1)
+        told: int | str = size.greatest
+        if not size.fixed or self._draw(st.booleans()):
+            bits = self._setting.byte_bits
+            told = self._put(Built({"type": f"uint{bits}"}, Size(1, 1)))
+            if "when" in self._fields[told]:
+                return
+        self._put(Built({"fields": fields, "size": told}, size))
+
     # -- switches ----------------------------------------------------------------------------
 
     def _add_switch(self, here: Setting) -> None:
@@ -187,7 +209,7 @@ def _kinds(setting: Setting) -> list[str]:
     """Kinds of fields that may be drawn here."""
     kinds = ["number"] * 6 + ["string", "string", "array", "array", "counted", "counted", "switch"]
     if setting.depth < GREATEST_DEPTH:
-        kinds += ["struct", "struct"]
+        kinds += ["struct", "struct", "region"] if setting.budget > 2 else ["struct", "struct"]
     if setting.budget > 1:
         kinds += ["until", "until"]
     if can_pack(setting):

@@ -30,6 +30,7 @@ from protogen.model.types import (
     Type,
     Until,
 )
+from schema_fuzzing.reference import value_bytes
 
 _USUAL_COUNT = 5
 _GREATEST_COUNT = 300
@@ -103,6 +104,11 @@ def _struct(draw: st.DrawFn, fields: Sequence[Field], outer: Scope) -> dict[str,
         uses = list(_uses(field.name, fields[index + 1 :]))
         is_there = field.when is None or worked_out(field.when, scope)
         found[field.name] = draw(_field(field, scope, uses)) if is_there else None
+        if field.region is not None and found[field.name] is not None:
+            told = plain_name(field.region.by) if isinstance(field.region, Counted) else None
+            if told is not None:
+                size = len(value_bytes(field.type, found[field.name], scope))
+                found[told] = scope[told] = size
         scope.pop(field.name, None)
         if isinstance(field.type, Integer | Struct):
             scope[field.name] = found[field.name]

@@ -137,9 +137,12 @@ class FieldBuilder:
         """The type of a field, and the region that it has to fill, where there is one."""
         if not has_region(item.syntax):
             return self._type(item), None
+        before = self._context.tally.errors
         extent = self._extent(item.syntax.size, item.at("size"), 1, item.setting)
-        inner = replace(item, setting=in_region(item.setting, extent))
-        return region_of(self._context, self._type(inner), extent, item)
+        is_told = self._context.tally.errors == before
+        inner = replace(item, setting=in_region(item.setting, extent)) if is_told else item
+        type_ = self._type(inner)
+        return region_of(self._context, type_, extent, item) if is_told else (type_, None)
 
     # -- types --------------------------------------------------------------------------------
 

@@ -77,6 +77,8 @@ def region_of(
         stated = type_.extent
         found = in_elements(context, extent, type_.element.sizes.fixed, item, stated)
         return replace(type_, extent=found), None
+    if not isinstance(type_, Array) and isinstance(extent, Fill):
+        return type_, None  # Which was reported.
     if not isinstance(extent, Fixed | Counted):
         text = "elements have to be of one size, so that bytes to the end tell their number"
         context.error_at_key("PG240", item.at("size"), text, "leave `size` out")

@@ -1,4 +1,4 @@
-"""Problems of arrays whose number of bytes is told."""
+"""Problems of arrays whose number of bytes is told, and of regions of so many bytes."""
 
 from __future__ import annotations
 
@@ -23,11 +23,23 @@ multiples; but one that can never be a multiple makes every message invalid.
         "misplaced-size",
         "A size in bytes where it tells nothing",
         """\
-`size` is the number of bytes of an `ascii` or `bytes` field, or of an array of elements that all
-have the same size. A single struct or switch has the size of its fields; an array of structs says
-`count: fill` beside the size. Beside a size there is no other count, as the size tells it.
+`size` is the number of bytes of an `ascii` or `bytes` field, of an array, or of the region that a
+struct or a switch lies in. It tells how many elements there are, so there is no other count beside
+it; `count: fill` stands for that. Where a field comes last it ends with the payload anyway, and
+beside a separator with the next one.
 """,
         with_fields("words: {type: uint16, count: 3, size: 6}"),
         with_fields("words: {type: uint16, size: 6}"),
+    ),
+    Code(
+        "PG241",
+        "region-never-filled",
+        "A region that what lies in it never fills",
+        """\
+A struct or switch with a `size` takes just so many bytes. Here it can't: it always has more, or
+fewer, so that every message would be invalid.
+""",
+        with_fields("place: {size: 3, fields: {x: uint16, y: uint16}}"),
+        with_fields("place: {size: 4, fields: {x: uint16, y: uint16}}"),
     ),
 )
