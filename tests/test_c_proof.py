@@ -24,7 +24,7 @@ SLOW = ("dagny_library", "rflex_drivers")
 """Cases that take minutes: long arrays that fill payloads; some documents have them too."""
 CONSTRUCTS = [
     ROOT / "tests" / "framings" / f"{name}.yaml"
-    for name in ("packed_bits", "digits_line", "written_line", "sized_arrays", "regions")
+    for name in ("packed_bits", "digits_line", "written_line")
 ]
 """Schemas of what no document has, and C has to parse."""
 DIGITS = ROOT / "tests" / "framings" / "digit_words.yaml"
