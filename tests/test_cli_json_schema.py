@@ -189,7 +189,7 @@ def test_mistakes_are_invalid(
         {"type": "uint8", "fields": {"y": "uint8"}},
         {"type": "ascii"},
         {"type": "bytes", "count": 4},
-        {"type": "uint16", "size": 4},
+        {"type": "uint16", "size": 4, "count": 2},
         {"type": "uint8", "scale": "0,1"},
         {"type": "uint8", "scale": 0},
         {"type": "uint8", "unit": ["m"]},

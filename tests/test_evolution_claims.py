@@ -349,3 +349,36 @@ def test_the_words_of_a_stuffing_say_what_changed(tmp_path: Path) -> None:
         "from escape AB of AA AB, xor 20 over length..crc "
         "to escape AB of AA AB, xor 40 over length..crc"
     }
+
+
+class TestSizes:
+    """What becomes of messages with arrays and regions of so many bytes."""
+
+    @pytest.mark.parametrize(
+        ("before", "after", "rule"),
+        [
+            ("{type: uint16, size: n}", "{type: uint16, count: n}", "field-count"),
+            ("{type: uint16, size: n}", "{type: uint16, size: n - 2}", "field-count"),
+            ("{size: n, fields: PAIR}", "{fields: PAIR}", "field-encoding"),
+            ("{size: n, fields: PAIR}", "{size: n - 1, fields: PAIR}", "field-count"),
+        ],
+    )
+    def test_frames_show_what_changed(
+        self, before: str, after: str, rule: str, tmp_path: Path
+    ) -> None:
+        old, new = (with_field(tmp_path / f"{i}.yaml", it) for i, it in enumerate((before, after)))
+        found = [item for item in findings(old, new)[1] if item.category.value == "WIRE"]
+        assert rule in {item.rule.name for item in found}
+        assert all(item.witnesses for item in found)
+
+    def test_a_size_that_never_changes_is_a_count(self, tmp_path: Path) -> None:
+        old = with_field(tmp_path / "old.yaml", "{type: uint16, count: 2}")
+        new = with_field(tmp_path / "new.yaml", "{type: uint16, size: 4}")
+        assert findings(old, new)[1] == []
+
+
+def with_field(path: Path, field: str) -> Protocol:
+    written = field.replace("PAIR", "{a: uint8, b: {type: bytes, size: {fill: true, max: 3}}}")
+    before = "  order: {id: 2, from: host, fields: {mode: mode}}\n"
+    after = "  order: {id: 2, from: host, fields: {n: {type: uint8, range: [1, 4]}, x: FORM}}\n"
+    return compiled(path, SCHEMA.replace(before, after.replace("FORM", written)))

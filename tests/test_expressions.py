@@ -24,6 +24,7 @@ from protogen.model.expressions import (
     Not,
     Number,
     Operand,
+    Quotient,
     every,
     folded,
     named,
@@ -187,7 +188,34 @@ def test_bounds_are_exact(text: str, expected: Interval) -> None:
     ],
 )
 def test_a_line_over_one_field_is_found(text: str, expected: tuple[str, int, int] | None) -> None:
-    assert linear(parse_expression(text)) == expected
+    found = linear(parse_expression(text))
+    assert (found and found[:3]) == expected
+
+
+class TestQuotient:
+    """Elements of 3 bytes each, in n - 1 bytes."""
+
+    COUNT = Quotient(parse_expression("n - 1"), 3)
+
+    @pytest.mark.parametrize(("n", "due"), [(7, 2), (6, -1), (1, 0), (0, -1), (-2, -1)])
+    def test_a_part_of_an_element_is_no_number(self, n: int, due: int) -> None:
+        assert value_of(self.COUNT, lambda _: n) == due
+
+    def test_numbers_of_columns_are_worked_out_alike(self) -> None:
+        found = value_of(self.COUNT, lambda _: np.array([7, 6, 1, 0], "i8"))
+        assert found.tolist() == [2, -1, 0, -1]
+
+    def test_its_bounds_hold_that_too(self) -> None:
+        assert bounds_of(self.COUNT, lambda _: (4, 10)) == (-1, 3)
+
+    def test_the_number_of_bytes_follows_from_that_of_elements(self) -> None:
+        line = linear(self.COUNT)
+        assert line is not None
+        assert line.inverse(2) == 7
+        assert line.within(0, 2) == (1, 7)
+
+    def test_it_is_shown_as_people_write_it(self) -> None:
+        assert (str(self.COUNT), self.COUNT.text) == ("((n - 1) / 3)", "(n - 1) / 3")
 
 
 @pytest.mark.parametrize("factor", [-5, -1, 1, 3])

@@ -119,7 +119,7 @@ def test_clean_frames_are_cut_without_the_reference(
     taken_one_by_one = len(candidates)
     events += decoder.flush()
     if [event.raw for event in events] == frames:  # Some frames are cut elsewhere, by any engine.
-        assert taken_one_by_one <= 1
+        assert taken_one_by_one <= 1 or (name_of(path), sender) in PARTLY_CUT_BY_THE_REFERENCE
 
 
 @EVERY_SENDER
@@ -540,6 +540,8 @@ CUT_BY_THE_REFERENCE = {
     *SENT_BY_THE_REFERENCE,
 }
 """Nothing marks where the others' frames start, so a frame may begin at every byte."""
+PARTLY_CUT_BY_THE_REFERENCE = {("told_regions", "device")}
+"""Some of their payloads alone tell where they end."""
 
 
 @EVERY_SENDER

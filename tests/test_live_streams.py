@@ -122,6 +122,8 @@ AWAITED_BY_THE_REFERENCE = {
     ("told_numbers", "station"),
     ("told_presence", "station"),
     ("terminated", "station"),
+    ("sized_arrays", "station"),
+    ("regions", "station"),
     ("terminated_alone", "device"),  # Nothing marks where these frames start.
 }
 

@@ -146,7 +146,7 @@ def _columns(
 ) -> Iterator[Column]:
     for step in steps:
         held, when = held_step(step), None
-        if isinstance(step, OptionalStep):
+        if isinstance(step, OptionalStep):  # Outside of a region, where there are both.
             by = step.condition
             when = by if isinstance(by, int) else _referred(by, outer)
         if isinstance(held, BytesStep | RepeatStep) and held.count.member:

@@ -71,6 +71,7 @@ class FieldComparison(msgspec.Struct, frozen=True):
         if (old.when and types.now(old.when)) != new.when:
             words = named(_condition(old), _condition(new))
             yield self._change("field-presence", path, words)
+        yield from types.compare_regions(old.region, new.region, path)
         if old.const != new.const:
             yield self._change("field-constant", path, named(_shown(old.const), _shown(new.const)))
         if old.default != new.default:

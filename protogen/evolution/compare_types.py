@@ -119,6 +119,15 @@ class TypeComparison:
         rule = "field-count" if ends[0] == ends[1] else "field-encoding"
         yield self._report(rule, path, named(_amount(old), _amount(new)))
 
+    def compare_regions(
+        self, old: Fixed | Counted | None, new: Fixed | Counted | None, path: str
+    ) -> Iterator[Change]:
+        """The changes of what tells how many bytes a field takes."""
+        if old is not None and new is not None:
+            yield from self._extents(old, new, path)
+        elif old is not new:
+            yield self._report("field-encoding", path, named(_region(old), _region(new)))
+
     def _packing(self, old: Array | Struct, new: Array | Struct, path: str) -> Iterator[Change]:
         if old.packed != new.packed:
             words = named(_packed(old.packed), _packed(new.packed))
@@ -303,6 +312,10 @@ def _bytes(kind: Type) -> tuple[Extent, int] | None:
 
 def _packed(order: BitOrder | None) -> str:
     return "whole bytes" if order is None else f"packed bits, {order}"
+
+
+def _region(extent: Fixed | Counted | None) -> str:
+    return "no size" if extent is None else f"a size of {_amount(extent)}"
 
 
 def _amount(extent: Extent) -> str:

@@ -27,6 +27,7 @@ from protogen.model.payload_plan import (
     OptionalStep,
     PayloadPlan,
     RecordStep,
+    RegionStep,
     RepeatStep,
     RestStep,
     said,
@@ -101,6 +102,7 @@ class _Exchange(ABC):
         return values
 
     def _value(self, step: AnyStep | RestStep, given: Any) -> Any:
+        step = step.step if isinstance(step, RegionStep) else step
         match step:
             case FloatStep():
                 return self._float(step.type.bits, float(0 if given is None else given))

@@ -30,6 +30,7 @@ from protogen.model.payload_plan import (
     OptionalStep,
     RecordStep,
     Reference,
+    RegionStep,
     RepeatStep,
 )
 from protogen.model.sizes import SizeSet
@@ -173,9 +174,16 @@ def _needs(step: AnyStep, level: int) -> Iterator[tuple[Reference, Need]]:
             yield from _needs_of_choice(step)
             for case in step.cases:
                 yield from _needs(case.step, level)
-        case OptionalStep():
-            yield from _needs_of_formula(step.condition, (0, 1))
+        case OptionalStep() | RegionStep():
+            yield from _needs_around(step)
             yield from _needs(step.step, level)
+
+
+def _needs_around(step: OptionalStep | RegionStep) -> Iterator[tuple[Reference, Need]]:
+    if isinstance(step, OptionalStep):
+        yield from _needs_of_formula(step.condition, (0, 1))
+    else:
+        yield from _needs_of_count(step.region)
 
 
 def _needs_of_count(count: Count) -> Iterator[tuple[Reference, Need]]:

@@ -25,6 +25,7 @@ from protogen.fuzzing.choices import (
     scalar_choices,
     unspecified_choices,
 )
+from protogen.model.expression_bounds import linear
 from protogen.model.frame import Frame
 from protogen.model.messages import Message
 from protogen.model.payload_plan import (
@@ -37,6 +38,8 @@ from protogen.model.payload_plan import (
     IntegerStep,
     OptionalStep,
     RecordStep,
+    Reference,
+    RegionStep,
     RepeatStep,
     RestStep,
     said,
@@ -192,6 +195,8 @@ class _Sampler:
         """Bytes of the values so far."""
         self._sizes = sizes
         self._records: list[Values] = []
+        self._said_of: set[tuple[int, str]] = set()
+        """Numbers that told something already, by their records."""
 
     def record(self, steps: tuple[AnyStep, ...], chooser: Chooser) -> Values:
         """The values of a record."""
@@ -216,8 +221,10 @@ class _Sampler:
                 return self._case(step, chooser)
             case OptionalStep():
                 # What is there half of the time takes twice the rounds.
-                is_there = said(step.condition, self._records)
+                is_there = self._told(step.condition)
                 return self._value(step.step, chooser.inside(2)) if is_there else None
+            case RegionStep():
+                return self._region(step, chooser)
             case ConstantStep():
                 return self._taken(step, constant_value(step))
             case _:
@@ -249,9 +256,49 @@ class _Sampler:
             values.append(value)
         return values
 
+    def _region(self, step: RegionStep, chooser: Chooser) -> Any:
+        """What fills a region; the number that tells its size follows it, where it is free to."""
+        begun, outside = self.size, self._sizes
+        region, most = step.region, max(0, outside.greatest - begun)
+        known = region.known
+        if region.by is not None and any(map(self._has_told, region.by.references.values())):
+            known = self._said(region, region.by)
+        least, greatest = (known, known) if known is not None else (region.least, region.greatest)
+        self._sizes = SizeSet.between(begun + least, begun + min(greatest, most))
+        value = self._value(step.step, chooser)
+        size, self._sizes = self.size - begun, outside
+        if not least <= size <= greatest:
+            raise _UnfitError
+        if known is None and region.by is not None:
+            self._tell(region.by, size)
+        return value
+
+    def _tell(self, by: Formula, size: int) -> None:
+        """Have the number that tells a size tell this one."""
+        line = linear(by.expression)
+        if line is not None:
+            number = by.references[line.name]
+            *path, name = number.name.split(".")
+            record: Any = self._records[number.level]
+            for member in path:
+                record = record[member]
+            record[name] = line.inverse(size)
+        if self._told(by) != size:
+            raise _UnfitError
+
+    def _has_told(self, number: Reference) -> bool:
+        return (id(self._records[number.level]), number.name) in self._said_of
+
+    def _told(self, number: int | Formula) -> int:
+        """What earlier numbers say, which stay as they are from now on."""
+        if isinstance(number, Formula):
+            for it in number.references.values():
+                self._said_of.add((id(self._records[it.level]), it.name))
+        return said(number, self._records)
+
     def _said(self, count: Count, by: Formula) -> int:
         """The number of elements or bytes that earlier numbers say."""
-        found = said(by, self._records)
+        found = self._told(by)
         if not count.least <= found <= count.greatest:
             raise _UnfitError
         return found
@@ -269,7 +316,7 @@ class _Sampler:
 
     def _case(self, step: ChooseStep, chooser: Chooser) -> Any:
         inside = chooser.inside(len(step.cases) + (step.rest is not None))
-        chosen = step.case(said(step.selector, self._records))
+        chosen = step.case(self._told(step.selector))
         if chosen is None:
             raise _UnfitError
         if isinstance(chosen, RecordStep) and not chosen.steps:

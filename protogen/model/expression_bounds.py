@@ -15,6 +15,7 @@ from protogen.model.expressions import (
     Minus,
     Number,
     Operand,
+    Quotient,
     every,
     names_in,
     nothing,
@@ -40,6 +41,9 @@ def bounds_of(expression: Expression, of: Callable[[Operand], Interval]) -> Inte
         case Arithmetic():
             left, right = bounds_of(expression.left, of), bounds_of(expression.right, of)
             return _arithmetic_bounds(expression.operator, left, right)
+        case Quotient():
+            low, high = bounds_of(expression.operand, of)
+            return min(-1, low // expression.size), max(-1, high // expression.size)
     return 0, 1
 
 
@@ -91,18 +95,22 @@ def _arithmetic_bounds(operator: ArithmeticOperator, left: Interval, right: Inte
 
 
 class Linear(NamedTuple):
-    """`factor` x the field `name` + `offset`."""
+    """`factor` x the field `name` + `offset`, which is `size` times the value."""
 
     name: str
     factor: int
     offset: int
+    size: int = 1
 
     def inverse(self, value: int) -> int:
         """The field's number for a value; rounded down where none has just that."""
-        return (value - self.offset) // self.factor
+        return (value * self.size - self.offset) // self.factor
 
     def within(self, least: int, greatest: int) -> Interval:
         """The least and the greatest number of the field whose value is within these bounds."""
+        if self.size > 1:
+            whole = Linear(self.name, self.factor, self.offset)
+            return whole.within(least * self.size, greatest * self.size)
         if self.factor < 0:
             return Linear(self.name, -self.factor, -self.offset).within(-greatest, -least)
         return -((self.offset - least) // self.factor), (greatest - self.offset) // self.factor
@@ -110,6 +118,9 @@ class Linear(NamedTuple):
 
 def linear(expression: Expression) -> Linear | None:
     """The expression as a line over one field; None where it is none."""
+    if isinstance(expression, Quotient):
+        whole = linear(expression.operand)
+        return None if whole is None else whole._replace(size=expression.size)
     names = names_in(expression)
     found = _factors(expression)
     if len(names) != 1 or found is None or found[0] == 0:

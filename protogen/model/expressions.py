@@ -132,6 +132,20 @@ class Arithmetic(_Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Quotient(_Node):
+    """A number of bytes as one of elements, each of which has `size`; -1 where a part is left.
+
+    No schema writes it: it is what counts where a size is given in bytes.
+    """
+
+    operand: Expression
+    size: int
+    at: int = field(default=0, compare=False)
+
+    __str__ = _Node.__str__
+
+
+@dataclass(frozen=True, slots=True)
 class Comparison(_Node):
     """Two numbers compared."""
 
@@ -181,7 +195,9 @@ class Not(_Node):
     __str__ = _Node.__str__
 
 
-Expression = Number | Operand | Minus | Arithmetic | Comparison | Membership | Junction | Not
+Expression = (
+    Number | Operand | Minus | Arithmetic | Quotient | Comparison | Membership | Junction | Not
+)
 
 
 def named(name: str) -> Operand:
@@ -201,7 +217,7 @@ def inside(expression: Expression) -> tuple[Expression, ...]:
     match expression:
         case Arithmetic() | Comparison() | Junction():
             return expression.left, expression.right
-        case Minus() | Not():
+        case Minus() | Not() | Quotient():
             return (expression.operand,)
         case Membership():
             return (expression.operand, *expression.values)
@@ -231,7 +247,7 @@ def rebuilt(expression: Expression, change: Callable[[Expression], Expression]) 
         case Arithmetic() | Comparison() | Junction():
             left, right = rebuilt(expression.left, change), rebuilt(expression.right, change)
             return change(replace(expression, left=left, right=right))
-        case Minus() | Not():
+        case Minus() | Not() | Quotient():
             return change(replace(expression, operand=rebuilt(expression.operand, change)))
         case Membership():
             values = tuple(rebuilt(value, change) for value in expression.values)
@@ -270,8 +286,9 @@ def value_of(expression: Expression, look: Callable[[Operand], Any]) -> Any:
             return expression.value
         case Operand():
             return expression.of(look(expression))
-        case Minus():
-            return -value_of(expression.operand, look)
+        case Minus() | Quotient():
+            number = value_of(expression.operand, look)
+            return -number if isinstance(expression, Minus) else _elements(number, expression.size)
         case Arithmetic():
             left, right = value_of(expression.left, look), value_of(expression.right, look)
             return _ARITHMETIC[expression.operator](left, right)
@@ -287,6 +304,12 @@ def value_of(expression: Expression, look: Callable[[Operand], Any]) -> Any:
             return left & right if expression.operator == "and" else left | right
         case Not():
             return condition_of(expression.operand, look) == False  # noqa: E712 - also of arrays
+
+
+def _elements(number: Any, size: int) -> Any:
+    """The elements of this size in so many bytes, or -1; also of arrays."""
+    count, left = number // size, number % size
+    return count - (left != 0) * (count + 1)
 
 
 def condition_of(expression: Expression, look: Callable[[Operand], Any]) -> Any:
@@ -356,6 +379,10 @@ class Printer:
         level = _LEVELS[arithmetic.operator]
         return self._between(arithmetic, level, Level(level + 1))
 
+    def quotient(self, quotient: Quotient) -> str:
+        """A number of bytes as one of elements, in brackets."""
+        return f"({self.inside(quotient.operand, Level.PRODUCT)} / {quotient.size})"
+
     def word(self, operator: str) -> str:
         """An operator."""
         return self.words.get(operator, operator)
@@ -391,8 +418,8 @@ class Printer:
                 return f"-{self.inside(expression.operand, Level.ATOM)}"
             case Arithmetic():
                 return self.arithmetic(expression)
-            case Membership():
-                return self.membership(expression)
+            case Quotient() | Membership():
+                return self._special(expression)
             case Not():
                 return f"{self.word('not ')}{self.inside(expression.operand, Level.NOT)}"
             case Comparison():
@@ -400,6 +427,9 @@ class Printer:
             case Junction():
                 level = _LEVELS[expression.operator]
                 return self._between(expression, level, level)
+
+    def _special(self, item: Quotient | Membership) -> str:
+        return self.quotient(item) if isinstance(item, Quotient) else self.membership(item)
 
     def _between(
         self, item: Arithmetic | Comparison | Junction, in_front: Level, behind: Level
@@ -417,3 +447,6 @@ class _Named(Printer):
 
     def operand(self, operand: Operand) -> str:
         return operand.label
+
+    def quotient(self, quotient: Quotient) -> str:
+        return super().quotient(quotient)[1:-1]  # There is nothing around it.

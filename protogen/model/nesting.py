@@ -45,12 +45,17 @@ def takes_rest(type_: Type) -> bool:
     """True if a value takes all that the payload has left."""
     match type_:
         case Struct():
-            return bool(type_.fields) and takes_rest(type_.fields[-1].type)
+            return bool(type_.fields) and fills(type_.fields[-1])
         case Switch():
             return type_.rest is not None or any(map(takes_rest, inner_types(type_)))
         case Integer():
             return type_.takes_rest
     return isinstance(type_.extent, Fill)
+
+
+def fills(field: Field) -> bool:
+    """True if a field takes all that the payload has left, and not just what its region has."""
+    return field.region is None and takes_rest(field.type)
 
 
 def can_count(type_: Type) -> bool:

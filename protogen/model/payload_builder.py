@@ -22,6 +22,7 @@ from protogen.model.payload_plan import (
     PayloadPlan,
     RecordStep,
     Reference,
+    RegionStep,
     RepeatStep,
     RestStep,
     Step,
@@ -91,7 +92,9 @@ class _Builder:
             member = count_name(fields, field) if field.has_count else ""
             at_end = is_last and index == len(fields) - 1
             self._needed = needed[index]
-            step = self._step(field, field.type, field.name, at_end, member)
+            inside = at_end or field.region is not None
+            step = self._step(field, field.type, field.name, inside, member)
+            step = step if field.region is None else self._region(field, field.region, step, at_end)
             if isinstance(step, IntegerStep) and field.name in needed[index]:
                 step = replace(step, is_needed=True)
             step = _constant(field, step) if field.const is not None else step
@@ -180,6 +183,22 @@ class _Builder:
                 return self._repeat(field, type_, name, is_last, member)
             case Switch():
                 return self._choose(field, type_, name, is_last)
+
+    def _region(
+        self, field: Field, region: Fixed | Counted, step: AnyStep, is_last: bool
+    ) -> RegionStep:
+        return RegionStep(
+            name=field.name,
+            field=field,
+            sizes=replace(field, when=None).sizes,
+            checks=step.checks | {Check.COUNT},
+            is_refusable=True,
+            holds_values=step.holds_values or step.fills,
+            is_last=is_last,
+            type=field.type,
+            step=step,
+            region=self._count(region, ""),
+        )
 
     def _optional(self, field: Field, when: Expression, step: AnyStep) -> OptionalStep:
         return OptionalStep(

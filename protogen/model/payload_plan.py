@@ -331,6 +331,14 @@ class OptionalStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
         return self.step.fills
 
 
+class RegionStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
+    """A step that takes just so many bytes; inside of it, its end is that of the payload."""
+
+    step: AnyStep
+    region: Count
+    """The bytes."""
+
+
 AnyStep = (
     IntegerStep
     | FloatStep
@@ -340,6 +348,7 @@ AnyStep = (
     | RepeatStep
     | ChooseStep
     | OptionalStep
+    | RegionStep
 )
 
 
@@ -388,8 +397,10 @@ def said(number: int | Formula, records: Sequence[Mapping[str, Any]]) -> int:
 
 
 def held_step(step: AnyStep) -> AnyStep:
-    """The step of the value itself, whether that is always there or not."""
-    return step.step if isinstance(step, OptionalStep) else step
+    """The step of the value itself, whether that is always there or not, in a region or not."""
+    while isinstance(step, OptionalStep | RegionStep):
+        step = step.step
+    return step
 
 
 def without_constant(step: AnyStep) -> AnyStep:
@@ -410,7 +421,7 @@ def every_step(steps: Iterable[AnyStep]) -> Iterator[AnyStep]:
                 yield from every_step((step.value,))
             case ChooseStep():
                 yield from every_step(case.step for case in step.cases)
-            case OptionalStep():
+            case OptionalStep() | RegionStep():
                 yield from every_step((step.step,))
 
 

@@ -393,6 +393,8 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     unknown: bool = False
     when: Expression | None = None
     """The condition on which the field is there; None: it always is."""
+    region: Fixed | Counted | None = None
+    """Bytes that what it holds has to take, just as many, where they are told."""
     renamed_from: str | None = None
     """Name in the version before, where that was another one."""
     about: About = NOTHING
@@ -400,12 +402,14 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def sizes(self) -> SizeSet:
         """Wire bytes; none where the field is not there."""
-        return self.type.sizes if self.when is None else self.type.sizes | SizeSet.exactly(0)
+        sizes = self.type.sizes if self.region is None else _within(self.type.sizes, self.region)
+        return sizes if self.when is None else sizes | SizeSet.exactly(0)
 
     @property
     def needs(self) -> frozenset[str]:
         """Names of earlier fields that say whether it is there, count or select."""
-        return self.type.needs if self.when is None else self.type.needs | names_in(self.when)
+        needs = self.type.needs if self.when is None else self.type.needs | names_in(self.when)
+        return needs if self.region is None else needs | self.region.needs
 
     @property
     def scaled(self) -> bool:
@@ -451,6 +455,12 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
         if self.when is None and isinstance(self.type, Integer) and isinstance(self.const, int):
             return int(self.const)
         return None
+
+
+def _within(sizes: SizeSet, region: Fixed | Counted) -> SizeSet:
+    """Sizes of what has to take so many bytes; where none does, that was reported."""
+    bounds = region.counts
+    return sizes.within(bounds.least, bounds.greatest) or bounds
 
 
 def total(fields: tuple[Field, ...]) -> SizeSet:

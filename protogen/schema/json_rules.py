@@ -97,7 +97,12 @@ _FIELD_RULES = (
     _where(
         _any_of(_FORMS),
         "These are for numbers.",
-        _none_of((*_NUMERIC, *_NAMED, *_WRITTEN, *_LENGTHS, "const", "default", "closed")),
+        _none_of((*_NUMERIC, *_NAMED, *_WRITTEN, "until", "const", "default", "closed")),
+    ),
+    _where(
+        _with("count", "size"),
+        "As many elements as the bytes hold.",
+        {"properties": {"count": {"not": {"type": "integer"}}}},
     ),
     _where(
         _type_like("ascii|bytes"),
@@ -139,8 +144,8 @@ _FIELD_RULES = (
     ),
     _where(
         _type_like(f"{INTEGER_PATTERN}|byte|char|bool|float32|float64"),
-        "Elements are counted by `count`; `size` and `until` are for ascii and bytes.",
-        _none_of(_LENGTHS),
+        "Only ascii and bytes are ended by a terminator.",
+        _none_of(("until",)),
     ),
     _where(
         _type_like(f"{INTEGER_PATTERN}|byte|char"),

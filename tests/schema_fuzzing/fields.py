@@ -63,6 +63,8 @@ class _Scope:
             self._add_counted(here)
         elif kind == "switch":
             self._add_switch(here)
+        elif kind == "region":
+            self._add_region(here)
         else:
             self._put(self._draw(_ITEMS[kind](here)))
         return not self._last
@@ -151,6 +153,26 @@ class _Scope:
         most = min((1 << bits) - 1, room // max(1, element.size.least))
         self._put(self._draw(_extended(element, name, Size(0, most))))
 
+    # -- regions -----------------------------------------------------------------------------
+
+    def _add_region(self, here: Setting) -> None:
+        """A struct in a region of so many bytes, told by a number that tells nothing else."""
+        inner = replace(here.inside(last=False), budget=min(here.budget - 2, _USUAL_BYTES))
+        built = self._draw(structs(inner, greatest=3))
+        fields = dict(built.data)
+        # Behind what is last in a region, a switch would take bytes of other values.
+        fills = self._draw(st.booleans())
+        fill = {"type": "bytes", "size": {"fill": True, "max": 1}}
+        fields[self._draw(fresh(FIELDS, fields))] = fill if fills else "uint1"
+        size = built.size + Size(1 - fills, 1)
+        told: int | str = size.greatest
+        if not size.fixed or self._draw(st.booleans()):
+            bits = self._setting.byte_bits
+            told = self._put(Built({"type": f"uint{bits}"}, Size(1, 1)))
+            if "when" in self._fields[told]:
+                return
+        self._put(Built({"fields": fields, "size": told}, size))
+
     # -- switches ----------------------------------------------------------------------------
 
     def _add_switch(self, here: Setting) -> None:
@@ -187,7 +209,7 @@ def _kinds(setting: Setting) -> list[str]:
     """Kinds of fields that may be drawn here."""
     kinds = ["number"] * 6 + ["string", "string", "array", "array", "counted", "counted", "switch"]
     if setting.depth < GREATEST_DEPTH:
-        kinds += ["struct", "struct"]
+        kinds += ["struct", "struct", "region"] if setting.budget > 2 else ["struct", "struct"]
     if setting.budget > 1:
         kinds += ["until", "until"]
     if can_pack(setting):
@@ -252,11 +274,39 @@ def _use(draw: st.DrawFn, setting: Setting, declared: Declared) -> Built:
     return replace(declared.built, data=data)
 
 
-def _extended(element: Built, count: Any, bounds: Size) -> st.SearchStrategy[Built]:
+@st.composite
+def _extended(draw: st.DrawFn, element: Built, count: Any, bounds: Size) -> Built:
     """So many of an element, or a text or bytes of this size."""
     is_string = element.data.get("type") in ("ascii", "bytes")
+    if not is_string and element.size.fixed and draw(forms.one_in(4)):
+        return draw(_sized(element, count, bounds))
     data = {**element.data, "size" if is_string else "count": count}
-    return st.just(Built(data, element.size * bounds))
+    return Built(data, element.size * bounds)
+
+
+@st.composite
+def _sized(draw: st.DrawFn, element: Built, count: Any, bounds: Size) -> Built:
+    """So many of an element, told by their bytes."""
+    each, size = element.size.least, count
+    if isinstance(count, int):
+        size = count * each
+    elif isinstance(count, dict):
+        size = {key: it if key == "fill" else it * each for key, it in count.items()}
+    elif count != "fill" and (bounds.least or not count.isidentifier() or draw(st.booleans())):
+        size = f"({count}) * {each}"
+    elif count != "fill":
+        bounds = Size(0, bounds.greatest // each)
+    is_struct = "fields" in element.data or element.data["type"] not in _NUMBERS
+    data = {**element.data, "size": size}
+    if is_struct or draw(st.booleans()):
+        data["count"] = "fill"
+    return Built(data, element.size * bounds)
+
+
+_NUMBERS = {
+    *(f"{sign}int{bits}" for sign in "us" for bits in range(1, 65)),
+    *("byte", "char", "bool", "float32", "float64"),
+}
 
 
 # --- items --------------------------------------------------------------------------------------

@@ -53,12 +53,13 @@ def payload_bytes(fields: Sequence[Field], values: Mapping[str, Any], outer: Sco
     found = b""
     for field in fields:
         if field.when is None or worked_out(field.when, scope):
-            found += _value(field.type, values[field.name], scope)
+            found += value_bytes(field.type, values[field.name], scope)
         scope[field.name] = values[field.name]
     return found
 
 
-def _value(type_: Type, value: Any, scope: Scope) -> bytes:
+def value_bytes(type_: Type, value: Any, scope: Scope) -> bytes:
+    """The bytes of a value."""
     match type_:
         case Integer():
             return number_bytes(type_, int(value))
@@ -73,7 +74,7 @@ def _value(type_: Type, value: Any, scope: Scope) -> bytes:
         case Struct():
             return payload_bytes(type_.fields, value or {}, scope)
         case Array():
-            return b"".join(_value(type_.element, element, scope) for element in value)
+            return b"".join(value_bytes(type_.element, element, scope) for element in value)
     return _switch_bytes(type_, value, scope)
 
 
@@ -101,7 +102,7 @@ def _bits(type_: Type, value: Any, order: str) -> list[int]:
 def _switch_bytes(type_: Switch, value: Any, scope: Scope) -> bytes:
     for case in type_.cases:
         if case.value == worked_out(type_.selector, scope):
-            return _value(case.type, value, scope)
+            return value_bytes(case.type, value, scope)
     return bytes.fromhex(value)
 
 

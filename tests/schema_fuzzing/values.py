@@ -5,14 +5,14 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from math import ceil, floor
+from math import ceil, floor, lcm
 from typing import Any
 
 from expression_oracle import worked_out
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from protogen.model.expressions import plain_name
+from protogen.model.expressions import Expression, Quotient, plain_name
 from protogen.model.frame import ChoicePart, CounterPart, Frame, IdentityPart, ValuePart
 from protogen.model.messages import Message
 from protogen.model.types import (
@@ -30,6 +30,7 @@ from protogen.model.types import (
     Type,
     Until,
 )
+from schema_fuzzing.reference import value_bytes
 
 _USUAL_COUNT = 5
 _GREATEST_COUNT = 300
@@ -103,6 +104,11 @@ def _struct(draw: st.DrawFn, fields: Sequence[Field], outer: Scope) -> dict[str,
         uses = list(_uses(field.name, fields[index + 1 :]))
         is_there = field.when is None or worked_out(field.when, scope)
         found[field.name] = draw(_field(field, scope, uses)) if is_there else None
+        if field.region is not None and found[field.name] is not None:
+            told = plain_name(field.region.by) if isinstance(field.region, Counted) else None
+            if told is not None:
+                size = len(value_bytes(field.type, found[field.name], scope))
+                found[told] = scope[told] = size
         scope.pop(field.name, None)
         if isinstance(field.type, Integer | Struct):
             scope[field.name] = found[field.name]
@@ -134,8 +140,18 @@ def _uses_in(name: str, type_: Type) -> Iterator[Counted | Switch]:
 
 
 def _counted_by(name: str, extent: Extent) -> Iterator[Counted]:
-    if isinstance(extent, Counted) and plain_name(extent.by) == name:
+    if isinstance(extent, Counted) and plain_name(_bytes_of(extent)) == name:
         yield extent
+
+
+def _bytes_of(extent: Counted) -> Expression:
+    """What counts, be it elements or their bytes."""
+    return extent.by.operand if isinstance(extent.by, Quotient) else extent.by
+
+
+def _each(extent: Counted) -> int:
+    """What a number that counts has to be a multiple of."""
+    return extent.by.size if isinstance(extent.by, Quotient) else 1
 
 
 # --- values -------------------------------------------------------------------------------------
@@ -208,7 +224,7 @@ def _used(
     least, greatest = _bounds(type_, field)
     counts = [use for use in uses if isinstance(use, Counted)]
     switches = [use for use in uses if isinstance(use, Switch)]
-    greatest = min([greatest, *(use.greatest for use in counts)])
+    greatest = min([greatest, *(use.greatest * _each(use) for use in counts)])
     if counts:
         usual = _count(least, greatest)
     elif type_.enum is not None and type_.enum.closed:
@@ -220,6 +236,8 @@ def _used(
         open_ended = all(switch.rest is not None for switch in switches)
         usual = usual | st.sampled_from(known) if open_ended else st.sampled_from(known)
     value = draw(usual)
+    # One that counts bytes may be 0.
+    value -= value % lcm(*map(_each, counts))
     return bool(value) if type_.role == "bool" else value
 
 

@@ -27,6 +27,7 @@ from protogen.model.payload_plan import (
     PackedNumber,
     PayloadPlan,
     RecordStep,
+    RegionStep,
     RepeatStep,
     RestStep,
     packed_numbers,
@@ -181,8 +182,23 @@ class _Reader:
             case OptionalStep():
                 if _said(step.expression, scope):
                     self._step(step.step, path, scope)
+            case RegionStep():
+                self._region(step, path, scope)
             case _:
                 self._scalar(step, path, scope)
+
+    def _region(self, step: RegionStep, path: str, scope: Scope) -> None:
+        size = _count(step.region, scope) or 0
+        outside, there = self._cursor, min(size, self._cursor.left)
+        self._cursor = outside.part(size)
+        self._step(step.step, path, scope)
+        left = size - there + self._cursor.left
+        if left and not self._short:
+            fault = f"{left} of the {size} bytes are left over"
+            row = self._cursor.take(left, path, "bytes", fault=fault, subject=step.field)
+            self._short = row.cut
+            self.rows.append(row)
+        self._cursor = outside
 
     def _elements(self, step: RepeatStep, path: str, scope: Scope) -> None:
         count = _count(step.count, scope)

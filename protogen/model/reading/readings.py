@@ -19,6 +19,7 @@ from protogen.model.payload_plan import (
     OptionalStep,
     PayloadPlan,
     RecordStep,
+    RegionStep,
     RepeatStep,
     said,
 )
@@ -89,8 +90,8 @@ def _reading(step: AnyStep, value: Any, records: _Records) -> str:
             return physical(step.field, float(value))
         case BytesStep():
             return quoted(value) if isinstance(step.type, Text) else f"hex:{value}"
-        case ConstantStep():
-            return _reading(step.value, value, records)
+        case ConstantStep(value=inner) | RegionStep(step=inner):
+            return _reading(inner, value, records)
         case OptionalStep():
             return "absent" if value is None else _reading(step.step, value, records)
 

@@ -50,6 +50,8 @@ def _fewest(extent: Extent) -> int:
 
 def _size_of(field: Field, count: _Count, choose: _Choose) -> int:
     size = _size(field.type, count, choose)
+    if field.region is not None:
+        size = min(size, field.region.counts.greatest)
     return size if field.when is None else choose((0, size))
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.declared import VALUE_NAMES, Effective
+from protogen.passes.types.sized_arrays import check_size
 from protogen.passes.types.terminators import check_until
 from protogen.schema.syntax.fields import FieldSyntax
 
@@ -36,10 +37,7 @@ def check_keys(context: Context, name: str, item: Effective) -> None:
         text = f"`cases` are for a switch, and `{name}` is none"
         hint = "name the field that chooses: `switch`"
         context.error_at_key("PG110", item.at("cases"), text, hint)
-    if syntax.size is not None and syntax.type not in _STRINGS:
-        text = f"`size` is for ascii and bytes; `{name}` is neither"
-        hint = "elements are counted by `count`; bytes are `type: bytes` with this `size`"
-        context.error_at_key("PG110", item.at("size"), text, hint)
+    check_size(context, item)
     check_until(context, name, item)
     if syntax.count is not None:
         _count_fits(context, item)

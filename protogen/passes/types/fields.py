@@ -9,11 +9,12 @@ from collections.abc import Mapping, Sequence
 
 from protogen.copying import replace
 from protogen.model.expressions import Expression
-from protogen.model.nesting import takes_rest
+from protogen.model.nesting import fills, takes_rest
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
     Case,
+    Counted,
     Extent,
     Field,
     Fixed,
@@ -45,6 +46,13 @@ from protogen.passes.types.packing import (
 )
 from protogen.passes.types.separators import character, check_separated, with_absent
 from protogen.passes.types.setting import Setting
+from protogen.passes.types.sized_arrays import (
+    has_region,
+    in_elements,
+    in_region,
+    is_sized_array,
+    region_of,
+)
 from protogen.passes.types.terminators import until_of
 from protogen.passes.types.text_numbers import says_text, text_number, with_text
 from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
@@ -89,7 +97,7 @@ class FieldBuilder:
             if setting.layout.packed is not None:
                 built[name] = replace(built[name], bit=bits)
                 bits += bits_of(built[name].type)
-            filler = filler or (name if takes_rest(built[name].type) else "")
+            filler = filler or (name if fills(built[name]) else "")
         return tuple(built.values())
 
     def field(self, name: str, item: FieldSyntax, loc: Loc, setting: Setting) -> Field:
@@ -105,8 +113,9 @@ class FieldBuilder:
             return unknown
         if not check_separated(self._context, name, effective):
             return unknown
-        found = meaning.attach(self._context, name, self._type(effective), effective)
-        return replace(found, when=self._when(effective))
+        type_, region = self._in_region(effective)
+        found = meaning.attach(self._context, name, type_, effective)
+        return replace(found, when=self._when(effective), region=region)
 
     def _effective(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Effective:
         return self._declarations.effective(item, loc, setting)
@@ -124,6 +133,17 @@ class FieldBuilder:
         found = condition(self._context, item.syntax.when, item.at("when"), item.setting)
         return None if found is None else found.expression
 
+    def _in_region(self, item: Effective) -> tuple[Type, Fixed | Counted | None]:
+        """The type of a field, and the region that it has to fill, where there is one."""
+        if not has_region(item.syntax):
+            return self._type(item), None
+        before = self._context.tally.errors
+        extent = self._extent(item.syntax.size, item.at("size"), 1, item.setting)
+        is_told = self._context.tally.errors == before
+        inner = replace(item, setting=in_region(item.setting, extent)) if is_told else item
+        type_ = self._type(inner)
+        return region_of(self._context, type_, extent, item) if is_told else (type_, None)
+
     # -- types --------------------------------------------------------------------------------
 
     def _type(self, item: Effective) -> Type:
@@ -132,7 +152,7 @@ class FieldBuilder:
             return self._switch(item) or UNKNOWN_TYPE
         if item.syntax.type in ("ascii", "bytes"):
             return self._string(item)
-        if item.syntax.count is not None:
+        if item.syntax.count is not None or is_sized_array(item.syntax):
             return self._array(item)
         return self._element(item, item.setting)
 
@@ -192,7 +212,8 @@ class FieldBuilder:
         return struct
 
     def _array(self, item: Effective) -> Array:
-        written, loc = item.syntax.count, item.at("count")
+        key = "size" if is_sized_array(item.syntax) else "count"
+        written, loc = getattr(item.syntax, key), item.at(key)
         setting = packed_elements(self._context, item, replace(item.setting, last=False))
         element = self._element(item, setting)
         if takes_rest(element):
@@ -201,12 +222,29 @@ class FieldBuilder:
         if element.sizes.least == 0 and isinstance(written, FillSyntax):
             text = "an element may be empty, so nothing says how many fill the payload"
             self._context.error("PG118", loc, text)
-        least = max(1, element.sizes.least)
         return Array(
             element=element,
-            extent=self._extent(written, loc, least, item.setting),
+            extent=self._number_of(element, written, loc, item),
             packed=order_of_elements(self._context, element, item, setting),
         )
+
+    def _number_of(self, element: Type, written: Written, loc: Loc, item: Effective) -> Extent:
+        """The number of elements of an array; where its bytes are told, that of those."""
+        if not is_sized_array(item.syntax):
+            return self._extent(written, loc, max(1, element.sizes.least), item.setting)
+        extent, size = self._extent(written, loc, 1, item.setting), element.sizes.fixed
+        if not size and takes_rest(element):
+            return Fixed(count=0)  # Which was reported.
+        if not size:
+            text = "elements have to be of one size that is not 0, so that bytes tell their number"
+            self._context.error("PG240", loc, text, "count the elements: `count`")
+            return Fixed(count=0)
+        stated = item.syntax.count
+        within = None
+        if stated is not None:
+            inner = in_region(item.setting, extent)
+            within = self._extent(stated, item.at("count"), size, inner)
+        return in_elements(self._context, extent, size, item, within)
 
     def _string(self, item: Effective) -> Text | Octets:
         extent, byte_bits = self._length(item), item.setting.layout.byte_bits
@@ -311,7 +349,8 @@ class FieldBuilder:
     def _case_struct(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Struct:
         """A case that is no struct, or not always one, becomes one of a single field."""
         effective = self._effective(item, loc, setting).syntax
-        if effective.fields is None or (effective.count or effective.when) is not None:
+        is_bare = (effective.count or effective.when) is None and effective.size is None
+        if effective.fields is None or not is_bare:
             inner = replace(setting, owner=f"{setting.owner}_value", position=0)
             field = self.field("value", item, loc, inner)
             struct = Struct(name=setting.owner, fields=(field,))

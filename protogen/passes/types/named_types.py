@@ -21,6 +21,7 @@ from protogen.model.types import (
     Extent,
     Field,
     Fill,
+    Fixed,
     Octets,
     Struct,
     Switch,
@@ -147,10 +148,14 @@ def joined_struct(one: Struct, other: Struct) -> Struct | None:
 
 
 def _field(one: Field, other: Field) -> Field | None:
-    type_ = _type(one.type, other.type)
+    type_, region = _type(one.type, other.type), one.region
+    if region is not None and other.region is not None:
+        joined = _extent(region, other.region)
+        region = joined if isinstance(joined, Fixed | Counted) else None
+        other = replace(other, region=one.region) if region is not None else other
     if type_ is None or replace(other, type=one.type, position=one.position) != one:
         return None
-    return replace(one, type=type_)
+    return replace(one, type=type_, region=region)
 
 
 def _type(one: Type, other: Type) -> Type | None:

@@ -9,6 +9,7 @@ from protogen.model.types import Array, BitOrder, Field, Type, is_integer
 from protogen.passes.context import Context
 from protogen.passes.types.declared import Effective
 from protogen.passes.types.setting import Setting
+from protogen.passes.types.sized_arrays import is_sized_array
 
 
 def check_packing(context: Context, name: str, item: Effective) -> bool:
@@ -33,7 +34,7 @@ def check_packing(context: Context, name: str, item: Effective) -> bool:
 
 def _can_pack(context: Context, name: str, item: Effective) -> None:
     syntax, loc = item.syntax, item.at("packed")
-    if syntax.fields is None and syntax.count is None:
+    if syntax.fields is None and syntax.count is None and not is_sized_array(syntax):
         what = "a switch" if syntax.switch is not None else "a single value"
         text = f"`packed` is for arrays and structs of integers, and `{name}` is {what}"
         hint = "make a packed struct of it and its neighbours"
@@ -51,7 +52,7 @@ def _is_packable(item: Effective) -> bool:
     syntax = item.syntax
     if syntax.fields is not None or syntax.switch is not None or syntax.when is not None:
         return False
-    is_counted = syntax.count is None or _is_fixed(item)
+    is_counted = _is_fixed(item) if syntax.count is not None else syntax.size is None
     return is_counted and syntax.type not in ("float32", "float64", "ascii", "bytes")
 
 
@@ -65,7 +66,8 @@ def packed_elements(context: Context, item: Effective, setting: Setting) -> Sett
     if order is None or item.syntax.fields is not None or not _is_fixed(item):
         if order is not None and item.syntax.fields is None:
             text = "the number of packed integers is always the same, and 1 at least"
-            context.error("PG221", item.at("count"), text)
+            key = "count" if item.syntax.count is not None else "size"
+            context.error("PG221", item.at(key), text)
         return setting
     return _packed(setting, order)
 

@@ -14,6 +14,7 @@ from protogen.problems.catalogue.messages import MESSAGE_CODES
 from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.parts import PART_CODES
 from protogen.problems.catalogue.silences import SILENCE_CODES
+from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
 from protogen.problems.catalogue.virtual_parts import VIRTUAL_PART_CODES
@@ -26,6 +27,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *TERMINATOR_CODES,
     *VIRTUAL_PART_CODES,
     *SILENCE_CODES,
+    *SIZED_ARRAY_CODES,
     *EXPRESSION_CODES,
     *FRAME_CODES,
     *FRAMING_CODES,

@@ -11,12 +11,14 @@ from construct import Construct, Container
 
 from protogen.runtime.constructs.pieces import (
     Around,
+    Count,
     Extent,
     PayloadError,
     Piece,
     bytes_left,
     extent_of,
     fixed_extent,
+    read,
     said,
 )
 from protogen.runtime.payload.formula import Formula
@@ -224,6 +226,47 @@ class When(Around):
 
     def _sizeof(self, context: Any, path: str) -> int:
         raise construct.SizeofError(f"the size depends on {self._condition}", path=path)
+
+
+class Region(Around):
+    """A piece that takes just so many bytes; its end is the end for all that is inside."""
+
+    def __init__(self, size: Extent, subcon: Construct) -> None:
+        super().__init__(subcon)
+        self._size = size
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
+        start = stream.tell()
+        inside = io.BytesIO(read(stream, extent_of(self._size, context, path), path))
+        try:
+            parsed = self.subcon._parsereport(inside, context, path)
+        except PayloadError as error:
+            error.offset += start
+            error.missing = 0  # More bytes behind the region would not help.
+            raise
+        left = bytes_left(inside)
+        if left:
+            problem = f"{left} of the bytes that {self._said} says are left over"
+            raise PayloadError("size", path, start + inside.tell(), problem)
+        return parsed
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
+        inside = io.BytesIO()
+        built = self.subcon._build(obj, inside, context, path)
+        size, data = extent_of(self._size, context, path), inside.getvalue()
+        if len(data) != size:
+            says = "" if isinstance(self._size, int) else f", as {self._said} says"
+            problem = f"needs exactly {size} bytes{says}, not {len(data)}"
+            raise PayloadError("size", path, stream.tell(), problem)
+        stream.write(data)
+        return built
+
+    @property
+    def _said(self) -> Any:
+        return self._size.by if isinstance(self._size, Count) else self._size
+
+    def _sizeof(self, context: Any, path: str) -> int:
+        return fixed_extent(self._size, path)
 
 
 class Whole(Around):

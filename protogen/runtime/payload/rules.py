@@ -415,6 +415,8 @@ class SeveralRule(Rule, Generic[ConstT]):
         exactly, says = self.size, ""
         if isinstance(exactly, str | Formula):
             exactly, says = number_of(exactly, scope.__getitem__), f", as {self.size} says"
+        if exactly is not None and exactly < 0:
+            raise EncodeError("", f"has {count} {what}, and {self.size} is no number of them")
         if exactly is not None and count != exactly:
             raise EncodeError("", f"needs exactly {exactly} {what}{says}, not {count}")
         _check_most(count, self.greatest, what)

@@ -195,8 +195,9 @@ class FieldSyntax(Syntax):
     )
     size: Extent | None = Field(
         None,
-        description="Bytes of an ascii or bytes field: a number, the earlier field or expression "
-        "that gives it, or fill (to the end of the payload).",
+        description="Bytes of an ascii or bytes field, of an array instead of a count of its "
+        "elements, or of the region that a struct or switch fills: a number, the earlier field or "
+        "expression that gives it, or fill (to the end of the payload).",
     )
     until: UntilRef | None = Field(
         None,

@@ -17,6 +17,7 @@ from protogen.model.expressions import (
     Number,
     Operand,
     Printer,
+    Quotient,
 )
 from protogen.model.payload_plan import Formula
 from protogen.model.types import Integer
@@ -91,6 +92,12 @@ class CPrinter(Printer):
             return self.floored(arithmetic.operator, arithmetic.left, arithmetic.right)
         number = self.inside(arithmetic.left, Level.SIGN)
         return f"({_below_zero(arithmetic.operator, number, self.numeral(arithmetic.right))})"
+
+    def quotient(self, quotient: Quotient) -> str:
+        """Elements in so many bytes, or -1; a number of one type with a sign."""
+        number, size = self.inside(quotient.operand, Level.SIGN), Number(quotient.size)
+        divisor, zero, none = map(self.numeral, (size, Number(0), Number(-1)))
+        return f"({number} % {divisor} == {zero} ? {number} / {divisor} : {none})"
 
     def floored(self, operator: ArithmeticOperator, left: Expression, right: Number) -> str:
         """A quotient that is rounded down, or what remains of it, of what may be negative."""

@@ -208,7 +208,8 @@ def _constructor(fields: tuple[Field, ...], scope: _Scope) -> Constructor:
 
 def _counted(item: Computed) -> str:
     """The number that tells how many elements or bytes a field has."""
-    count, (_, factor, offset) = f"_rt.count_of(self.{attribute(item.field)})", item.line
+    count, (_, factor, offset, size) = f"_rt.count_of(self.{attribute(item.field)})", item.line
+    count = f"{count} * {size}" if size > 1 else count
     if factor < 0:
         count = f"{offset} - {count}"
     elif offset:

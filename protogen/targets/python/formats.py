@@ -35,6 +35,8 @@ def field_format(field: Field, names: Names) -> str:
     found = _checked(field.type, names)
     if field.const is not None:
         found = call("_c.Fixed", _any_size(field.type, names), constant(field))
+    if field.region is not None:
+        found = call("_c.Region", extent(field.region), found)
     return found if field.when is None else call("_c.When", formula(field.when), found)
 
 

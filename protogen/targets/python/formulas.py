@@ -10,6 +10,7 @@ from protogen.model.expressions import (
     Membership,
     Operand,
     Printer,
+    Quotient,
     operands,
     plain_name,
 )
@@ -39,6 +40,11 @@ class _PythonPrinter(Printer):
         """A number that is one of some."""
         values = tuple_of(map(self.text, membership.values))
         return f"{self.inside(membership.operand, Level.SUM)} in {values}"
+
+    def quotient(self, quotient: Quotient) -> str:
+        """Elements in so many bytes, or -1."""
+        number, size = self.inside(quotient.operand, Level.SIGN), quotient.size
+        return f"(-1 if {number} % {size} else {number} // {size})"
 
 
 def in_python(expression: Expression, whole: Callable[[Operand], str]) -> str:

@@ -25,6 +25,7 @@ from protogen.model.payload_plan import (
     OptionalStep,
     RecordStep,
     Reference,
+    RegionStep,
     RepeatStep,
     RestStep,
     packed_numbers,
@@ -36,7 +37,7 @@ from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import loaded
 from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, faults_in, number_in
-from protogen.targets.c.payload.walk import is_unfit, out_of_bounds, times, type_of
+from protogen.targets.c.payload.walk import amount, is_unfit, out_of_bounds, times, type_of
 from protogen.targets.c.spelling import hexadecimal, integer_type, unsigned
 
 
@@ -510,6 +511,24 @@ class Checker(CheckedWalk):
             return
         with self._joined(step.known_size):
             super().optional(step, place)
+
+    def region(self, step: RegionStep, place: str) -> None:
+        """What takes just so many bytes: inside of it, `size` is where they end."""
+        self._settle()
+        bytes_ = amount(self.count(step.region))
+        self._require(0, bytes_)
+        whole = self.variable("whole")
+        self.lines.add(f"const size_t {whole} = size;", f"size = at + {bytes_};")
+        before = self._fixed, self._needs, self._ended
+        self._fixed = self._needs = False
+        self._secured = 0
+        with self.branch():
+            self.step(step.step, place)
+            self._settle()
+        self._refuse("at != size", "SIZE")
+        self._fixed, self._needs, self._ended = before
+        self.lines.add(f"size = {whole};")
+        self._offset = self._secured = 0
 
     @contextmanager
     def _joined(self, size: int | None) -> Iterator[None]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
@@ -13,6 +14,7 @@ from protogen.model.payload_plan import (
     NumberStep,
     PayloadPlan,
     RecordStep,
+    RegionStep,
     RepeatStep,
     RestStep,
 )
@@ -51,6 +53,8 @@ class Load(PlacedWalk):
         self._lengths = 0  # Variables for the lengths of texts.
         self.reads_size = False
         """True once something was read whose end the payload's size tells."""
+        self.moves_size = False
+        """True once `size` was the end of something else."""
 
     def pointed(self, plan: PayloadPlan, base: str) -> None:
         """Take a record that lies where there is an `at` already; what counts is in it."""
@@ -142,6 +146,18 @@ class Load(PlacedWalk):
         self.lines.add(f"{member} = ({counting_type(count.greatest)}){found};")
         self.lines.add(f"{self.helpers.copy()}({place}, {self.address()}, {member});")
         self.skip(f"1U + {member}")
+
+    @contextmanager
+    def inside(self, end: str, step: RegionStep) -> Iterator[None]:
+        """Inside of a region, `size` is where it ends."""
+        self.reads_size = self.moves_size = True
+        whole = self.variable("whole")
+        if not step.is_last:
+            self.lines.add(f"const size_t {whole} = size;")
+        self.lines.add(f"size = (size_t)({end} - payload);")
+        yield
+        if not step.is_last:
+            self.lines.add(f"size = {whole};")
 
     def _left(self) -> str:
         """The number of bytes that are left."""

@@ -23,22 +23,29 @@ from protogen.targets.c.payload.walk import Walk, times
 
 
 class Measure(Walk):
-    """Adds to a variable `size`, which starts as `known`."""
+    """Adds to a variable, which starts as `known`."""
 
-    def __init__(self, helpers: Helpers, lines: Lines) -> None:
+    def __init__(self, helpers: Helpers, lines: Lines, variable: str = "size") -> None:
         super().__init__(helpers, lines)
+        self._sum = variable
         self.known = 0
         """Bytes that were not added yet, because they are always the same."""
+
+    def whole(self, step: AnyStep, place: str, around: Walk) -> None:
+        """Add what a step takes where another walk has come to."""
+        self.follow(around)
+        self.step(step, place)
+        self._settle()
 
     def _add(self, size: int | str) -> None:
         if isinstance(size, int):
             self.known += size
         else:
-            self.lines.add(f"size += {size};")
+            self.lines.add(f"{self._sum} += {size};")
 
     def _settle(self) -> None:
         if self.known:
-            self.lines.add(f"size += {self.known};")
+            self.lines.add(f"{self._sum} += {self.known};")
         self.known = 0
 
     def step(self, step: AnyStep, place: str) -> None:
@@ -57,7 +64,7 @@ class Measure(Walk):
         size = digits.size(self.helpers, place)
         if digits.absent:
             with self.lines.block(f"if ({place} != {digits.absent})"):
-                self.lines.add(f"size += {size};")
+                self.lines.add(f"{self._sum} += {size};")
         else:
             self._add(size)
 

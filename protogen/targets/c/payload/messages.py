@@ -256,7 +256,8 @@ class _Codec:
         load = Load(self._printer.helpers, lines)
         load.message(self._item.plan)
         if self.fixed is not None and load.reads_size:
-            lines.put_first(f"const size_t size = {self.fixed}U;")
+            kind = "size_t" if load.moves_size else "const size_t"
+            lines.put_first(f"{kind} size = {self.fixed}U;")
         if not self._item.plan.holds_values:
             lines.add("message->unused = 0U;")
         return self._function("load", lines)

@@ -9,10 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from protogen.model.payload_plan import ChooseStep, NumberStep, OptionalStep, RepeatStep
+from protogen.model.payload_plan import (
+    ChooseStep,
+    NumberStep,
+    OptionalStep,
+    RegionStep,
+    RepeatStep,
+)
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.payload.walk import Walk, times
+from protogen.targets.c.payload.walk import Walk, amount, times
 
 
 class PlacedWalk(Walk):
@@ -115,6 +121,23 @@ class PlacedWalk(Walk):
         """A step that may be there; behind it, `at` stands where it has ended."""
         with self._joined(step, is_known=isinstance(step.condition, int)):
             super().optional(step, place)
+
+    def region(self, step: RegionStep, place: str) -> None:
+        """What takes just so many bytes; behind it, `at` stands where they end."""
+        bytes_ = amount(self.count(step.region))
+        self.settle()
+        end = self.variable("region_end")
+        self.lines.add(f"{self._pointer}const {end} = at + {bytes_};")
+        with self.branch(), self.inside(end, step):
+            self.step(step.step, place)
+        if not step.is_last:
+            self.lines.add(f"at = {end};")
+            self.settled()
+
+    @contextmanager
+    def inside(self, end: str, step: RegionStep) -> Iterator[None]:
+        """Surroundings of what is printed for a region that ends there."""
+        yield
 
     @contextmanager
     def _joined(self, step: ChooseStep | OptionalStep, *, is_known: bool) -> Iterator[None]:

@@ -16,6 +16,7 @@ from protogen.model.payload_plan import (
     IntegerStep,
     OptionalStep,
     RecordStep,
+    RegionStep,
     RepeatStep,
     held_step,
 )
@@ -107,7 +108,7 @@ class Records:
                 self._member(lines, step.element, name + _places(step.count))
             case ChooseStep():
                 self._union(lines, step, name)
-            case OptionalStep():
+            case OptionalStep() | RegionStep():
                 self._member(lines, step.step, name)
             case ConstantStep():
                 raise AssertionError("constants have no member")

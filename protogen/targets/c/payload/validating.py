@@ -13,6 +13,7 @@ from protogen.model.payload_plan import (
     IntegerStep,
     NumberStep,
     PayloadPlan,
+    RegionStep,
     RepeatStep,
     RestStep,
 )
@@ -20,8 +21,9 @@ from protogen.model.sizes import SizeSet
 from protogen.model.types import Text, counting_bits
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.measuring import Measure
 from protogen.targets.c.payload.walk import Walk, amount, is_unfit, out_of_bounds
-from protogen.targets.c.spelling import constant, hexadecimal
+from protogen.targets.c.spelling import constant, hexadecimal, unsigned
 
 
 def can_be_refused(plan: PayloadPlan, sizes: SizeSet) -> bool:
@@ -132,6 +134,19 @@ class Validate(Walk):
             self._refuse(_outside(element, found))
         elif element.is_refusable:
             self.elements(step, place, count)
+
+    def region(self, step: RegionStep, place: str) -> None:
+        """What takes just so many bytes."""
+        size = amount(self.count(step.region))
+        self.step(step.step, place)
+        fixed = step.step.sizes.fixed
+        if fixed is not None:
+            self._refuse(f"{size} != {unsigned(fixed)}" if size != unsigned(fixed) else "")
+            return
+        content = self.variable("content")
+        self.lines.add(f"size_t {content} = 0U;")
+        Measure(self.helpers, self.lines, content).whole(step.step, place, self)
+        self._refuse(f"{content} != {size}")
 
     def rest(self, step: RestStep, place: str) -> None:
         """The bytes of a value without a case."""

@@ -21,6 +21,7 @@ from protogen.model.payload_plan import (
     PayloadPlan,
     RecordStep,
     Reference,
+    RegionStep,
     RepeatStep,
     RestStep,
 )
@@ -111,6 +112,11 @@ class Walk:
         self._records: list[str] = []  # What the members of each record around begin with.
         self._locals = set(RESERVED | _PARAMETERS)
 
+    def follow(self, other: Walk) -> None:
+        """Be where another walk has come to."""
+        self._loops, self._records = other._loops, [*other._records]
+        self._locals = other._locals
+
     def message(self, plan: PayloadPlan) -> None:
         """Walk over all steps of a message."""
         self.record(plan.steps, "message->")
@@ -139,6 +145,8 @@ class Walk:
                 self.choose(step, place)
             case OptionalStep():
                 self.optional(step, place)
+            case RegionStep():
+                self.region(step, place)
 
     def _several(self, step: BytesStep | RepeatStep, place: str) -> None:
         """Walk over bytes or elements, where there are any."""
@@ -324,6 +332,10 @@ class Walk:
         with self.lines.block(f"if ({condition})"), self.branch():
             self.step(step.step, place)
             self.end_branch(step)
+
+    def region(self, step: RegionStep, place: str) -> None:
+        """A step that takes just so many bytes."""
+        self.step(step.step, place)
 
     @contextmanager
     def branch(self) -> Iterator[None]:

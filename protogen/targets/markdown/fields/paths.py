@@ -12,6 +12,7 @@ from protogen.model.payload_plan import (
     NumberStep,
     OptionalStep,
     RecordStep,
+    RegionStep,
     RepeatStep,
 )
 from protogen.model.types import Field
@@ -63,7 +64,7 @@ def _inside(step: AnyStep, path: Path) -> Iterator[tuple[Path, Field]]:
             yield from named_fields(step.steps, path)
         case RepeatStep():
             yield from _inside(step.element, path.element())
-        case OptionalStep():
+        case OptionalStep() | RegionStep():
             yield from _inside(step.step, path)
         case ChooseStep():
             for case in step.cases:

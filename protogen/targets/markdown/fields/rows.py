@@ -15,6 +15,7 @@ from protogen.model.payload_plan import (
     IntegerStep,
     OptionalStep,
     RecordStep,
+    RegionStep,
     RepeatStep,
     packed_numbers,
     without_constant,
@@ -104,7 +105,7 @@ class _PayloadRows:
                 yield from self._inside(inner, first, path)
             case ChooseStep() as choice:
                 yield from self._choice(choice, place, path)
-            case OptionalStep(step=inner):
+            case OptionalStep(step=inner) | RegionStep(step=inner):
                 yield from self._inside(inner, place, path)
 
     def _packed_fields(self, steps: Sequence[AnyStep], path: Path) -> Iterator[Row]:

@@ -14,6 +14,7 @@ from protogen.model.payload_plan import (
     NumberStep,
     OptionalStep,
     RecordStep,
+    RegionStep,
     RepeatStep,
 )
 from protogen.model.types import Integer, NumberType, Text
@@ -44,6 +45,14 @@ def type_text(step: AnyStep) -> str:
             return "struct" + _packed(step)
         case OptionalStep():
             return f"{type_text(step.step)}, if {code(step.expression.text)}"
+        case RegionStep():
+            return f"{type_text(step.step)}, in {_region(step.region)}"
+
+
+def _region(region: Count) -> str:
+    if region.expression is not None:
+        return f"{code(region.expression.text)} bytes"
+    return plural(region.known or 0, "byte")
 
 
 def _packed(step: RecordStep | RepeatStep) -> str:

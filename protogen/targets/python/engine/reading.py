@@ -19,6 +19,7 @@ from protogen.model.payload_plan import (
     IntegerStep,
     OptionalStep,
     RecordStep,
+    RegionStep,
     RepeatStep,
     RestStep,
     without_constant,
@@ -242,8 +243,8 @@ class _Reader(Converter, Raw):
                 return self._array(step)
             case ChooseStep():
                 return self._choose(step)
-            case OptionalStep():
-                return self._optional(step)
+            case OptionalStep() | RegionStep():
+                return self._held(step)
             case BytesStep() if not step.count.is_fixed:
                 return self._variable_string(step)
             case IntegerStep() if step.type.is_free:
@@ -367,6 +368,24 @@ class _Reader(Converter, Raw):
             self._constant(found, step.step)
             self.lines.add(f"{value} = {found}")
             self._move_to(self.place.text)
+        return value
+
+    def _held(self, step: OptionalStep | RegionStep) -> str:
+        return self._optional(step) if isinstance(step, OptionalStep) else self._region(step)
+
+    def _region(self, step: RegionStep) -> str:
+        """Read what ends where so many bytes do: there, `data` have their end."""
+        value, end, whole = self.lines.local(), self.lines.local("end"), self.lines.local("whole")
+        self.lines.add(f"{end} = {self.place.text} + {self._count(step.region)}")
+        self.lines.refuse_if(f"{end} > len(data)")
+        self.lines.add(f"{whole} = data")
+        self.lines.add(f"data = data[:{end}]")
+        sizes, self.sizes = self.sizes, None
+        self.lines.add(f"{value} = {self._value(step.step)}")
+        self.lines.refuse_if(f"{self.place.text} != {end}")
+        self.sizes = sizes
+        self.lines.add(f"data = {whole}")
+        self._move_to(end)
         return value
 
     def _case(self, target: str, step: AnyStep) -> None:

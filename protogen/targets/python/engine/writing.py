@@ -19,6 +19,7 @@ from protogen.model.payload_plan import (
     IntegerStep,
     OptionalStep,
     RecordStep,
+    RegionStep,
     RepeatStep,
     RestStep,
     without_constant,
@@ -206,7 +207,8 @@ class _Writer(Raw):
             value = self.lines.local()
             self.lines.add(f"{value} = {source}.{attribute(step.name)}")
             bare = without_constant(step)
-            if isinstance(bare, IntegerStep | RecordStep):
+            inner = bare.step if isinstance(bare, RegionStep) else bare
+            if isinstance(inner, IntegerStep | RecordStep):
                 self.raw[step.name] = value
             self._value(value, bare, step.field)
             if isinstance(step, ConstantStep):
@@ -259,8 +261,8 @@ class _Writer(Raw):
                 self._array(value, step, item)
             case ChooseStep():
                 self._choose(value, step)
-            case OptionalStep():
-                self._optional(value, step)
+            case OptionalStep() | RegionStep():
+                self._held(value, step)
 
     def _integer(self, value: str, step: IntegerStep, item: Field | None) -> None:
         type_ = step.type
@@ -421,6 +423,19 @@ class _Writer(Raw):
         with self.lines.block("else:"):
             self.lines.refuse_if(f"{value} is not None")
             self.lines.add(f'{data} = b""')
+        self._bytes.piece(data)
+
+    def _held(self, value: str, step: OptionalStep | RegionStep) -> None:
+        if isinstance(step, OptionalStep):
+            self._optional(value, step)
+        else:
+            self._region(value, step)
+
+    def _region(self, value: str, step: RegionStep) -> None:
+        self._bytes.flush()
+        data = self.lines.local()
+        self.lines.add(f"{data} = {self._apart(value, step.step, step.field)}")
+        self._counted(data, step.region)
         self._bytes.piece(data)
 
     # --- arrays -----------------------------------------------------------------------------------
