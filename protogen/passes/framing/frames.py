@@ -48,6 +48,7 @@ from protogen.passes.framing.part_digits import (
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.part_values import number_of, text_bounds, text_type
 from protogen.passes.framing.transparencies import transparency_of
+from protogen.passes.framing.wire_counts import check_wire_length, check_wire_sum
 from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width
 from protogen.problems import hint_for
@@ -61,7 +62,7 @@ _NUMBER = _TYPE | {"range", "unprotected"}
 _ROLES: dict[str, frozenset[str]] = {
     "literal": frozenset({"literal", "unprotected", "type"}),
     "id": _NUMBER | {"id", "size"},
-    "counts": _NUMBER | {"counts"},
+    "counts": _NUMBER | {"counts", "over"},
     "counter": _NUMBER | {"counter", "default"},
     "algorithm": _TYPE | {"algorithm", "covers", "over", "when"},
     "type": _NUMBER | {"size", "default"},
@@ -133,6 +134,7 @@ class FrameBuilder:
     def _check(self, frame: Frame) -> None:
         """Check what can only be asked when all parts are there."""
         _check_checksums(self._context, frame, self._loc)
+        check_wire_length(self._context, frame, self._loc)
         self._check_identity(frame)
         length = frame.length
         if length is not None and stated_range(frame) is None:
@@ -199,7 +201,8 @@ class FrameBuilder:
         if role == "id":
             return IdentityPart(**given)
         if role == "counts":
-            return LengthPart(**given, counts=self._counted(part.name, item))
+            over_wire = item.over == "wire"
+            return LengthPart(**given, counts=self._counted(part.name, item), over_wire=over_wire)
         kind = CounterPart if role == "counter" else ValuePart
         return kind(**given, default=self._default(item, part))
 
@@ -414,6 +417,7 @@ def _check_checksums(context: Context, frame: Frame, loc: Loc) -> None:
         if part.over_wire and _holds_cobs(frame, part):
             text = "bytes that COBS makes belong to no single part, so none can be summed up"
             context.error("PG131", (*loc, part.name, "over"), text)
+        check_wire_sum(context, frame, part, loc)
 
 
 def _circle(frame: Frame, name: str) -> list[str]:

@@ -15,6 +15,7 @@ from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.parts import PART_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
+from protogen.problems.catalogue.wire_counts import WIRE_COUNT_CODES
 
 SCHEMA_CODES: tuple[Code, ...] = (
     *KEY_AND_NAME_CODES,
@@ -29,4 +30,5 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *FRAME_SIZE_CODES,
     *MESSAGE_CODES,
     *PART_CODES,
+    *WIRE_COUNT_CODES,
 )

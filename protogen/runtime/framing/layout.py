@@ -97,6 +97,8 @@ class Layout:
         self.stuffed = tuple(
             index for index, part in enumerate(self.parts) if part.name in spec.stuffed
         )
+        self.counts_wire = self.length is not None and self.length.over_wire
+        """True if the length counts stuffed bytes, so that only their end tells the payload's."""
 
     @cached_property
     def texts(self) -> tuple[tuple[int, Characters], ...]:
@@ -142,6 +144,21 @@ class Layout:
             for name in part.covers
         ]
         return b"".join(pieces)
+
+    def region_end(self, part: LengthPart, value: int) -> int | None:
+        """Wire bytes up to the end of what is stuffed, by a length over the wire.
+
+        None if no frame has that length.
+        """
+        least = self.counted(part, 0)
+        if not max(part.least, least) <= value <= part.greatest:
+            return None
+        return value - least + sum(part.size for part in self.parts[: self.stuffed[-1] + 1])
+
+    @cached_property
+    def behind_region(self) -> int:
+        """Bytes between what is stuffed and the end."""
+        return sum(part.size for part in self.parts[self.stuffed[-1] + 1 :])
 
     def counted(self, part: LengthPart, payload: int) -> int:
         """The value of a length part for a payload of that size."""

@@ -64,6 +64,7 @@ class EngineFrame:
             and not any(part.over_wire for part in self.checksums)
             and self.tail == self.checksums
             and self.plan.is_regular
+            and not (self.plan.length is not None and self.plan.length.over_wire)
         )
 
     @property
