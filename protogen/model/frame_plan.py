@@ -173,6 +173,13 @@ class LengthPlan(msgspec.Struct, frozen=True, kw_only=True):
     region_end: int | None = None
     """Where it counts bytes on the wire: how many there are up to the end of what is stuffed, in a
     frame of the value `base`."""
+    most: int | None = None
+    """Where it counts bytes on the wire: the greatest value that a frame has."""
+
+    @property
+    def greatest(self) -> int:
+        """The greatest value that a receiver takes."""
+        return self.part.greatest if self.most is None else self.most
 
     @property
     def over_wire(self) -> bool:

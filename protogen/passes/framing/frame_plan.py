@@ -165,11 +165,17 @@ class _Planner:
             return None
         base = counted_size(self._frame, part, empty=True)
         optional = counted_size(self._frame, part, empty=False) - base
-        end = None
-        if part.over_wire:
-            last = max(self._names.index(name) for name in self._stuffed)
-            end = sum(item.size for item in self._frame.parts[: last + 1])
-        return LengthPlan(part=part, base=base, optional=optional, region_end=end)
+        if not part.over_wire:
+            return LengthPlan(part=part, base=base, optional=optional)
+        last = max(self._names.index(name) for name in self._stuffed)
+        others = sum(item.size for item in self._frame.parts if item.name not in part.counts)
+        return LengthPlan(
+            part=part,
+            base=base,
+            optional=optional,
+            region_end=sum(item.size for item in self._frame.parts[: last + 1]),
+            most=min(part.greatest, self._framing.greatest - others),
+        )
 
     # --- start and end ----------------------------------------------------------------------------
 

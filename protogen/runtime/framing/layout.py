@@ -151,7 +151,8 @@ class Layout:
         None if no frame has that length.
         """
         least = self.counted(part, 0)
-        if not max(part.least, least) <= value <= part.greatest:
+        others = sum(item.size for item in self.spec.parts if item.name not in part.counts)
+        if not least <= value <= min(part.greatest, self.spec.greatest - others):
             return None
         return value - least + sum(part.size for part in self.parts[: self.stuffed[-1] + 1])
 

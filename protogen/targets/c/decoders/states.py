@@ -40,7 +40,7 @@ class PushStates(ReceivedFrame, frozen=True, dict=True):
     def searches(self) -> bool:
         """True if a delimiter is looked for inside candidates, from the start or later."""
         return self.plan.end_is_unique or (
-            self.can_open and self.plan.start is not StartRule.ANYWHERE
+            self.seeks_end and self.plan.start is not StartRule.ANYWHERE
         )
 
     @property
@@ -165,6 +165,11 @@ class PushStates(ReceivedFrame, frozen=True, dict=True):
     def start_decides(self) -> bool:
         """True if a candidate may be over with its start."""
         return self.plan.start is StartRule.SET or self.plan.least <= self.start_size
+
+    @property
+    def counts_passed(self) -> bool:
+        """True if it matters how many bytes on the wire are part of a candidate's content."""
+        return self.wire_ends or self.counts_wire
 
     @property
     def wire_ends(self) -> bool:
