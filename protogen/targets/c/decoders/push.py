@@ -431,7 +431,7 @@ class PushDecoder(PushStates, frozen=True, dict=True):
             "held": "0" if self.searches and self.holds_delimiter else "",
             "end_left": "0" if self.awaits_end else "",
             "passed": "0" if self.counts_passed else "",
-            "stop": "0" if self.counts_wire else "",
+            "stop": "0" if self.length_over_wire else "",
             "region": f"{self.protocol_upper}_BEFORE" if self.crosses_region else "",
             "node": "0" if stuffing is not None else "",
             "code": "0" if stuffing is not None and stuffing.is_cobs else "",

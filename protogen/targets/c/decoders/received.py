@@ -185,7 +185,7 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         region, stuffing = self.plan.region, self.stuffing
         if region is None or stuffing is None:
             return False
-        if self.counts_wire:
+        if self.length_over_wire:
             return False
         may_not_fit = stuffing.is_cobs or region.lenient
         return region.reaches_end and (self.plan.end_is_unique or not may_not_fit)
@@ -315,7 +315,7 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     def can_open(self) -> bool:
         """True if the payload of some frame has no size until its end is seen."""
         plan = self.plan
-        if self.counts_wire:
+        if self.length_over_wire:
             return True
         is_kept_whole = plan.store is not Store.CONTENT or plan.end_begins_start
         if not self.all_events and not is_kept_whole and plan.identity_is_early:
@@ -324,14 +324,14 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         return plan.opens
 
     @property
-    def counts_wire(self) -> bool:
+    def length_over_wire(self) -> bool:
         """True if the length counts stuffed bytes, so that the end of these is known, no sizes."""
         return self.plan.length is not None and self.plan.length.over_wire
 
     @property
     def seeks_end(self) -> bool:
         """True if some frame ends where something is found that is looked for."""
-        return self.can_open and not self.counts_wire
+        return self.can_open and not self.length_over_wire
 
     @property
     def simple(self) -> bool:

@@ -169,7 +169,7 @@ class PushStates(ReceivedFrame, frozen=True, dict=True):
     @property
     def counts_passed(self) -> bool:
         """True if it matters how many bytes on the wire are part of a candidate's content."""
-        return self.wire_ends or self.counts_wire
+        return self.wire_ends or self.length_over_wire
 
     @property
     def wire_ends(self) -> bool:

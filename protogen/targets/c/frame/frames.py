@@ -189,7 +189,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         """True if bytes are stuffed one by one, because they are summed or sent so."""
         if self._stuffing is None or self.is_cobs:
             return False
-        return self.sums_stuffed or self.decoder.counts_wire or self.decoder.name in streaming
+        return self.sums_stuffed or self.decoder.length_over_wire or self.decoder.name in streaming
 
     @property
     def sums_stuffed(self) -> bool:
@@ -235,7 +235,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         A length that counts what is stuffed comes behind all but these.
         """
         plain = [item for item in self.plan.placed if not isinstance(item.part, ChecksumPart)]
-        if self.decoder.counts_wire:
+        if self.decoder.length_over_wire:
             plain.sort(key=lambda item: isinstance(item.part, LengthPart))
         left = [item for item in self.plan.placed if isinstance(item.part, ChecksumPart)]
         done: list[PlacedPart] = []
@@ -272,7 +272,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
             ByteStore(f"{item.offset + index}U{less}", value) for index, value in enumerate(values)
         )
         checksum = next((c for c in self.decoder.checksums if c.name == part.name), None)
-        counts = isinstance(part, LengthPart) and self.decoder.counts_wire
+        counts = isinstance(part, LengthPart) and self.decoder.length_over_wire
         return Step(item.in_head, stores, checksum, counts=counts)
 
     # --- byte by byte -----------------------------------------------------------------------------
