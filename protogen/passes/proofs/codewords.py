@@ -128,7 +128,7 @@ class Inserted(msgspec.Struct, frozen=True):
     byte: int
 
     def sent(self, word: bytes, seen: int) -> tuple[bytes, int]:
-        """What is sent of a word behind `seen` bytes of the sequence, and how many are seen then."""
+        """Bytes sent for a word behind `seen` bytes of the sequence, and how many are seen then."""
         found = bytearray()
         for byte in word:
             found.append(byte)

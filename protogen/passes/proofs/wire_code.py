@@ -114,7 +114,9 @@ def segments(frame: Frame, payload: ByteSet, delimiters: Iterable[str]) -> list[
                 result.append(Segment(words, 1, None))
             continue
         found = _part_segments(part, payload, code if stuffed else _plain(), own)
-        result.extend(replace(item, inserts=inserts) if stuffed and inserts else item for item in found)
+        result.extend(
+            replace(item, inserts=inserts) if stuffed and inserts else item for item in found
+        )
     return _joined(result)
 
 

@@ -97,8 +97,11 @@ class Layout:
         self.stuffed = tuple(
             index for index, part in enumerate(self.parts) if part.name in spec.stuffed
         )
-        self.counts_wire = self.length is not None and self.length.over_wire
+
+    @cached_property
+    def counts_wire(self) -> bool:
         """True if the length counts stuffed bytes, so that only their end tells the payload's."""
+        return self.length is not None and self.length.over_wire
 
     @cached_property
     def texts(self) -> tuple[tuple[int, Characters], ...]:

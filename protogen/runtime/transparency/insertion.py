@@ -80,9 +80,7 @@ class _InsertionUnstuffer:
 
     __slots__ = ("_byte", "_following", "_seen", "_sequence")
 
-    def __init__(
-        self, sequence: bytes, byte: int, following: tuple[dict[int, int], ...]
-    ) -> None:
+    def __init__(self, sequence: bytes, byte: int, following: tuple[dict[int, int], ...]) -> None:
         self._sequence = sequence
         self._byte = byte
         self._following = following

@@ -280,9 +280,7 @@ Substituted = Annotated[
 ]
 """What something else stands for on the wire: a byte, or several that follow each other."""
 Substitutions = Annotated[
-    tuple[
-        tuple[Substituted, Annotated[Octets, BeforeValidator(_to_sequence), at_most(16)]], ...
-    ],
+    tuple[tuple[Substituted, Annotated[Octets, BeforeValidator(_to_sequence), at_most(16)]], ...],
     BeforeValidator(
         _table,
         json_schema_input_type=dict[str, OctetsForm | list[ByteForm] | ByteForm | _SequenceForm],
