@@ -16,6 +16,7 @@ from protogen.model.frame import (
     Encoding,
     Escape,
     Frame,
+    Insertion,
     LengthPart,
     LiteralPart,
     NumberPart,
@@ -119,8 +120,8 @@ class _Frames:
             yield self._range(old, new)
         if isinstance(old, LengthPart) and isinstance(new, LengthPart):
             counts = [renamed.get(name, name) for name in old.counts]
-            if counts != list(new.counts):
-                words = named(_listed(old.counts), _listed(new.counts))
+            if (counts, old.over_wire) != (list(new.counts), new.over_wire):
+                words = named(_counted(old), _counted(new))
                 yield self._change("frame-length-rule", old.name, words)
         before, after = _default(old), _default(new)
         if before != after:
@@ -239,6 +240,10 @@ def _listed(names: tuple[str, ...]) -> str:
     return ", ".join(names)
 
 
+def _counted(part: LengthPart) -> str:
+    return f"{_listed(part.counts)}{' on the wire' if part.over_wire else ''}"
+
+
 def _coverage(part: ChecksumPart) -> str:
     wire = " on the wire" if part.over_wire else ""
     empty = ", absent without a payload" if part.when_payload else ""
@@ -275,4 +280,6 @@ def _encoding(item: Encoding) -> str:
         case Substitution():
             pairs = (f"{byte:02X} as {other.hex(' ').upper()}" for byte, other in item.table)
             return f"{', '.join(pairs)}"
+        case Insertion():
+            return f"{item.byte:02X} put in behind {item.sequence.hex(' ').upper()}"
     return type(item).__name__.lower()

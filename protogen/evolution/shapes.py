@@ -8,7 +8,7 @@ from typing import Any
 
 from protogen.copying import field_names, is_record
 from protogen.model.expressions import Expression
-from protogen.model.frame import Encoding, Escape, Substitution
+from protogen.model.frame import Encoding, Escape, Insertion, Substitution
 from protogen.model.meanings import Enum, Flags
 from protogen.model.types import Struct
 
@@ -39,6 +39,8 @@ def encoding_shape(encoding: Encoding) -> Hashable:
         return "substitution", frozenset(encoding.table)
     if isinstance(encoding, Escape):
         return "escape", encoding.byte, frozenset(encoding.of), encoding.xor
+    if isinstance(encoding, Insertion):
+        return "insertion", encoding.sequence, encoding.byte
     return type(encoding).__name__
 
 

@@ -112,6 +112,8 @@ class LengthPart(NumberPart, frozen=True, kw_only=True):
     """The number of unstuffed bytes of some parts; it may count itself."""
 
     counts: tuple[str, ...]
+    over_wire: bool = False
+    """True if it counts them as they are on the wire, stuffing included."""
 
 
 class CounterPart(NumberPart, frozen=True, kw_only=True):
@@ -186,6 +188,17 @@ class Substitution(msgspec.Struct, frozen=True, kw_only=True):
     table: tuple[tuple[int, bytes], ...]
 
 
+class Insertion(msgspec.Struct, frozen=True, kw_only=True):
+    """Wherever some bytes follow each other, one more is put in behind them.
+
+    They do not end as they begin, and with the byte behind them they end with no beginning of
+    themselves: so nothing is seen of them when it was put in, and none overlaps another.
+    """
+
+    sequence: bytes
+    byte: int
+
+
 class Escape(msgspec.Struct, frozen=True, kw_only=True):
     """A byte of `of` is written as the escape byte and itself XOR `xor` (0xFF inverts it)."""
 
@@ -206,7 +219,7 @@ class Cobs(msgspec.Struct, frozen=True, kw_only=True):
     """Consistent overhead byte stuffing: the region holds no zero byte."""
 
 
-Encoding = Substitution | Escape | Base16 | Cobs
+Encoding = Substitution | Insertion | Escape | Base16 | Cobs
 
 
 class Transparency(msgspec.Struct, frozen=True, kw_only=True):

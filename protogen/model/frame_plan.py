@@ -22,6 +22,7 @@ from protogen.model.frame import (
     Escape,
     Frame,
     IdentityPart,
+    Insertion,
     LengthPart,
     Part,
     ValuePart,
@@ -194,6 +195,21 @@ class LengthPlan(msgspec.Struct, frozen=True, kw_only=True):
     """Value for an empty payload."""
     optional: int
     """Bytes that it counts besides, where the payload is not empty."""
+    region_end: int | None = None
+    """Where it counts bytes on the wire: how many there are up to the end of what is stuffed, in a
+    frame of the value `base`."""
+    most: int | None = None
+    """Where it counts bytes on the wire: the greatest value that a frame has."""
+
+    @property
+    def greatest(self) -> int:
+        """The greatest value that a receiver takes."""
+        return self.part.greatest if self.most is None else self.most
+
+    @property
+    def over_wire(self) -> bool:
+        """True if it counts stuffed bytes, so that only their end tells the payload's size."""
+        return self.region_end is not None
 
     def counted(self, payload: int) -> int:
         """Value for a payload of that size."""
@@ -232,10 +248,15 @@ class StuffedRegion(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def longest(self) -> int:
-        """Wire bytes that one byte of content takes at most; 1 for COBS."""
+        """Wire bytes that one byte of content takes at most; 1 where several bytes tell."""
         if isinstance(self.encoding, Base16):
             return 2
         return max((len(sequence) for _, sequence in self.codes), default=1)
+
+    @property
+    def insertion(self) -> Insertion | None:
+        """What puts in a byte behind others, if that is the encoding."""
+        return self.encoding if isinstance(self.encoding, Insertion) else None
 
     @property
     def escape(self) -> Escape | None:
@@ -345,7 +366,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     def size_known_at(self) -> int | None:
         """Bytes of content that tell the payload's size; None if they are not all in the head."""
         if self.length is not None:
-            return self.part(self.length.part.name).end
+            return None if self.length.over_wire else self.part(self.length.part.name).end
         if not self.identity:
             return 0 if self.groups and all(g.fixed is not None for g in self.groups) else None
         return self.part(self.identity[-1].name).end if self.identity_is_early else None
@@ -363,6 +384,8 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
             return content + len(self.end_bytes)
         if isinstance(self.region.encoding, Cobs):
             return content + len(self.end_bytes) + content // FULL_GROUP + 1
+        if self.region.insertion is not None:
+            return content + len(self.end_bytes) + content // len(self.region.insertion.sequence)
         return self.region.longest * content + len(self.end_bytes)
 
     # --- parts ------------------------------------------------------------------------------------
@@ -417,7 +440,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
 
         None where a receiver need not look at both before the whole frame is there.
         """
-        if self.length is None or not self.rescans or not self.groups:
+        if self.length is None or self.length.over_wire or not self.rescans or not self.groups:
             return None
         if self.identity and not self.identity_is_early:
             return None
@@ -480,9 +503,9 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
 
     @property
     def opens(self) -> bool:
-        """True if the size of some payload is not known before the frame's end is seen."""
+        """True if the size of some payload is not known before the end of its bytes."""
         if self.length is not None:
-            return False
+            return self.length.over_wire
         if self.identity:
             return True  # An unknown identity tells no size.
         return (bool(self.end_bytes) or self.ends_idle) and self.has_open_groups
@@ -514,6 +537,8 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     @property
     def ends_at_start(self) -> bool:
         """True if some frame ends where the next starts, and nothing else tells."""
+        if self.length is not None:
+            return False
         has_end = bool(self.end_bytes) or self.ends_idle
         return self.opens and not has_end and self.start is not StartRule.ANYWHERE
 

@@ -189,9 +189,8 @@ _PART_RULES = (
         _none_of(("range", "unprotected")),
     ),
     *(_bounded(f"uint{bits}", 0, 2**bits - 1) for bits in (8, 16, 32)),
-    _together(
-        "These are for a checksum.", {key: ["algorithm"] for key in ("covers", "over", "when")}
-    ),
+    _where(_with("over"), "This is for a checksum or a length.", _any_of(("algorithm", "counts"))),
+    _together("These are for a checksum.", {key: ["algorithm"] for key in ("covers", "when")}),
 )
 
 _MESSAGE_RULES = (

@@ -16,20 +16,24 @@ from schema_fuzzing import forms
 
 BYTE = st.integers(0, 255)
 KINDS = (
-    "none", "none", "none", "substitute", "substitute", "escape-invert", "escape-none",
-    "escape-xor", "base16", "cobs", "slip", "hdlc",
+    "none", "none", "none", "substitute", "substitute", "insertion", "insertion", "escape-invert",
+    "escape-none", "escape-xor", "base16", "cobs", "slip", "hdlc",
 )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """A transparency. `codewords` None: COBS, which does not work byte by byte."""
+    """A transparency. `codewords` None: COBS, which does not work byte by byte.
+
+    With `inserted`, each byte stands for itself, and the last of these behind the others.
+    """
 
     kind: str
     data: Any
     codewords: Mapping[int, bytes] | None
     clean: tuple[int, ...]
     """Bytes that it is meant to keep out of its region."""
+    inserted: bytes = b""
 
 
 def plain() -> dict[int, bytes]:
@@ -46,6 +50,8 @@ def codes(draw: st.DrawFn) -> Code | None:
             return None
         case "substitute":
             return draw(_substitution())
+        case "insertion":
+            return draw(_insertion())
         case "escape-invert" | "escape-none" | "escape-xor":
             return draw(_escape(kind.removeprefix("escape-")))
         case "base16":
@@ -80,6 +86,21 @@ def _escape(draw: st.DrawFn, transform: str) -> Code:
     }
     clean = tuple(member for member in of if member != byte) or (byte,)
     return Code(f"escape-{transform}", data, {**plain(), **words}, clean)
+
+
+@st.composite
+def _insertion(draw: st.DrawFn) -> Code:
+    """A sequence of which no end is a beginning, and a byte that does not begin it again."""
+    first, *others = draw(st.lists(BYTE, min_size=2, max_size=4, unique=True))
+    repeated = bytes((first,) * draw(st.integers(1, 2)))
+    sequence = repeated + bytes(others[:2])
+    byte = draw(st.sampled_from([sequence[-1], *others, draw(BYTE)]))
+    byte = others[0] if byte == first else byte
+    stuffed = sequence + bytes((byte,))
+    written = stuffed.hex(" ")
+    value = draw(st.sampled_from([written, written.upper(), {"hex": written}, [*stuffed]]))
+    data = {"substitute": {sequence.hex(" ").upper(): value}}
+    return Code("insertion", data, plain(), tuple(sequence), stuffed)
 
 
 @st.composite

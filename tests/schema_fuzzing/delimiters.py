@@ -21,6 +21,8 @@ class Stretch:
     optional: bool = False
     repeated: bool = False
     own: bool = False
+    inserted: bytes = b""
+    """A sequence and the byte that is put in behind it, also where words side by side make it."""
 
 
 class Delimited:
@@ -31,8 +33,14 @@ class Delimited:
         self._free: list[set[int]] = [set()]
         self._own_sizes: list[int] = []
         state = 0
+        seen: dict[int, int] = {}
         for stretch in _joined(stretches):
+            if stretch.inserted:
+                seen = self._append_inserted(stretch, seen or {0: state})
+                continue
+            state, seen = self._left(seen, state), {}
             state = self._append(stretch, state)
+        self._left(seen, state)
 
     def holds(self, literal: bytes) -> bool:
         """True if the literal can occur outside of the delimiters' own places."""
@@ -94,6 +102,47 @@ class Delimited:
         if stretch.optional:
             self._free[start].add(end)
         return end
+
+    def _left(self, seen: dict[int, int], state: int) -> int:
+        """The state behind a region, whatever was seen of a sequence at its end."""
+        if not seen:
+            return state
+        end = self._new()
+        for reached in seen.values():
+            self._free[reached].add(end)
+        return end
+
+    def _append_inserted(self, stretch: Stretch, seen: dict[int, int]) -> dict[int, int]:
+        """Add words; states by how much of the sequence was seen."""
+        sequence, byte = stretch.inserted[:-1], stretch.inserted[-1]
+        ends = {size: self._new() for size in range(len(sequence))}
+        if stretch.repeated or stretch.optional:
+            for size, state in seen.items():
+                self._free[state].add(ends[size])
+        starts = ends if stretch.repeated else seen
+        for size, state in starts.items():
+            for word in stretch.words:
+                self._walk_inserted(word, sequence, byte, size, state, ends)
+        return ends
+
+    def _walk_inserted(
+        self, word: bytes, sequence: bytes, byte: int, size: int, state: int, ends: dict[int, int]
+    ) -> None:
+        for index, value in enumerate(word):
+            spelled = sequence[:size] + bytes((value,))
+            size = max(n for n in range(len(spelled) + 1) if spelled.endswith(sequence[:n]))
+            is_last = index == len(word) - 1
+            is_whole = size == len(sequence)
+            target = ends[size] if is_last and not is_whole else self._new()
+            self._edges[state].setdefault(value, set()).add((target, None))
+            state = target
+            if is_whole:
+                size = 0
+                target = ends[0] if is_last else self._new()
+                self._edges[state].setdefault(byte, set()).add((target, None))
+                state = target
+        if not word:
+            self._free[state].add(ends[size])
 
     def _walk(self, word: bytes, states: dict[bytes, int], end: int, place: int | None) -> None:
         """Add a word; words with the same beginning share its states."""

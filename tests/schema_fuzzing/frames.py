@@ -15,6 +15,9 @@ from schema_fuzzing.delimiters import Delimited, Stretch
 from schema_fuzzing.parts import Maker, PartPlan
 
 STARTS = ("literal", "literal", "two literals", "choice", "set", "none")
+_BYTE_BY_BYTE = (
+    "substitute", "insertion", "escape-invert", "escape-none", "escape-xor", "slip", "hdlc",
+)  # fmt: skip
 ENDS = ("literal", "two literals", "none", "none")
 _EVERY_COBS_BYTE = frozenset(bytes((byte,)) for byte in range(1, 256))
 
@@ -107,7 +110,10 @@ class FramePlan:
             words = plain()
             if inside and self.code is not None and self.code.codewords is not None:
                 words = dict(self.code.codewords)
-            yield from _stretches_of(part, words, payload, own=index in own)
+            own_place = index in own
+            for stretch in _stretches_of(part, words, payload, own=own_place):
+                inserted = self.code.inserted if inside and self.code is not None else b""
+                yield replace(stretch, inserted=inserted)
 
     def with_unprotected(self, payload: frozenset[int], decision: str) -> FramePlan:
         """The frame with `unprotected` on the delimiters that can occur in the data."""
@@ -152,7 +158,7 @@ class FramePlan:
 
 
 def _with_least(part: PartPlan, least: int, slack: int) -> PartPlan:
-    if part.role != "length" or "range" not in part.data:
+    if part.role != "length" or "range" not in part.data or "over" in part.data:
         return part
     assert part.type is not None
     counted, greatest = part.bounds
@@ -225,15 +231,20 @@ class _Drawing:
         opening, closing = self._delimiters()
         parts = [*opening, *self._head, self._maker.payload(), *self._tail, *closing]
         region = self._region(parts, len(opening), len(closing))
-        parts, room = self._with_length(parts)
+        parts, room = self._with_length(parts, region)
         parts = self._with_covers(parts, region)
-        lenient = self._code is not None and self._draw(forms.one_in(6))
-        plan = FramePlan(tuple(parts), self._code, region, lenient, room)
+        lenient = self._may_be_lenient(parts) and self._draw(forms.one_in(6))
+        spare = self._spare(parts, region, room)
+        plan = FramePlan(tuple(parts), self._code, region, lenient, room, spare=spare)
         if self._is_idle:
             idle = {"idle": self._draw(st.sampled_from(["4 ms", "500us", "1.75 ms", "2 s"]))}
             plan = replace(plan, silence=PartPlan(self._maker.name(), "silence", idle))
             return self._limited(plan)
         return self._limited(plan) if self._draw(forms.one_in(4)) else plan
+
+    def _may_be_lenient(self, parts: list[PartPlan]) -> bool:
+        counts_wire = any(part.role == "length" and "over" in part.data for part in parts)
+        return self._code is not None and not self._code.inserted and not counts_wire
 
     # -- delimiters --------------------------------------------------------------------------
 
@@ -368,6 +379,9 @@ class _Drawing:
         if self._start != "set" and self._draw(st.booleans()):
             return Region(first, last, written=False)
         payload = next(i for i, part in enumerate(parts) if part.role == "payload")
+        length = next((i for i, part in enumerate(parts) if part.role == "length"), payload)
+        if self._code.codewords is not None and length < payload and self._draw(forms.one_in(3)):
+            return Region(self._draw(st.integers(length + 1, payload)), payload, written=True)
         earliest = first + (self._start == "set")
         first = self._draw(st.integers(min(earliest, payload), payload))
         if self._has_length:
@@ -378,19 +392,46 @@ class _Drawing:
 
     # -- lengths -----------------------------------------------------------------------------
 
-    def _with_length(self, parts: list[PartPlan]) -> tuple[list[PartPlan], int | None]:
+    def _may_count_wire(self, parts: list[PartPlan], place: int, region: Region | None) -> bool:
+        """True if a length can count what is sent: the payload is stuffed, it and sums are not."""
+        if self._code is None or self._code.kind not in _BYTE_BY_BYTE or region is None:
+            return False
+        inside = parts[region.first : region.last + 1]
+        roles = {part.role for part in inside}
+        is_optional = any(part.optional for part in parts)
+        return (
+            place < region.first and "payload" in roles and not ("checksum" in roles or is_optional)
+        )
+
+    def _spare(self, parts: list[PartPlan], region: Region | None, room: int | None) -> int | None:
+        """A payload that a length over the wire can surely state; None where it counts none."""
+        length = next((part for part in parts if part.role == "length"), None)
+        if length is None or "over" not in length.data or region is None or room is None:
+            return None
+        assert self._code is not None
+        others = sum(part.size for part in parts[region.first : region.last + 1])
+        if self._code.inserted:
+            return max(0, (room + others) * 2 // 3 - others)
+        longest = max(len(word) for word in (self._code.codewords or {}).values())
+        return max(0, (room + others) // longest - others)
+
+    def _with_length(
+        self, parts: list[PartPlan], region: Region | None
+    ) -> tuple[list[PartPlan], int | None]:
         """The length part with its type, now that it is known what it can count."""
         place = next((i for i, part in enumerate(parts) if part.role == "length"), None)
         if place is None:
             return parts, None
         itself = self._draw(st.booleans())
+        counts_wire = self._may_count_wire(parts, place, region) and self._draw(st.booleans())
+        stuffed = range(region.first, region.last + 1) if counts_wire and region else ()
         others = [
-            part for part in parts
+            part for index, part in enumerate(parts)
             if part.role not in ("payload", "length") and not part.optional
-            and self._draw(st.booleans())
+            and (index in stuffed or self._draw(st.booleans()))
         ]  # fmt: skip
         counted = sum(part.size for part in others)
-        type_, keys = self._maker.type(least_greatest=counted + 18)
+        type_, keys = self._maker.type(least_greatest=counted + (72 if counts_wire else 18))
         counted += type_.size if itself else 0
         names = {part.name for part in others} | {"payload"}
         names |= {parts[place].name} if itself else set()
@@ -398,8 +439,11 @@ class _Drawing:
         keys["counts"] = self._draw(forms.run([n for n in every if n in names], every))
         greatest = type_.greatest
         if greatest > 1000 or self._draw(st.booleans()):
-            greatest = min(greatest, counted + self._draw(st.sampled_from([8, 20, 60, 300])))
+            rooms = [60, 300] if counts_wire else [8, 20, 60, 300]
+            greatest = min(greatest, counted + self._draw(st.sampled_from(rooms)))
             keys["range"] = [0, greatest]
+        if counts_wire:
+            keys["over"] = "wire"
         keys.update(self._draw(forms.about()))
         values = type_.bytes_between(0, greatest)
         bounds = (counted, greatest)
@@ -410,12 +454,14 @@ class _Drawing:
 
     def _limited(self, plan: FramePlan) -> FramePlan:
         """The frame with a greatest size, which has room for some payload."""
-        spare = min(self._draw(st.integers(4, 40)), 1000 if plan.room is None else plan.room)
+        spare = min(self._draw(st.integers(4, 40)), 1000 if plan.surely is None else plan.surely)
         least, greatest = _around(plan)
         each_least, each_greatest = _lengths(_words(plan, "payload"), frozenset(range(256)))
         limit = greatest + spare * each_greatest
         if plan.code is not None and plan.code.codewords is None:
             limit += (greatest + spare) // 254
+        if plan.code is not None and plan.code.inserted:
+            limit += (greatest + spare) // 2
         room = (limit - least) // each_least
         room = room if plan.room is None else min(room, plan.room)
         return replace(plan, limit=limit, room=room, spare=spare)
@@ -454,8 +500,12 @@ class _Drawing:
         return [name for name in every if name in chosen]
 
     def _may_be_over_wire(self, places: set[int], region: Region | None) -> bool:
-        """COBS bytes belong to no part, so that none can be covered."""
-        if region is None or self._code is None or self._code.codewords is not None:
+        """COBS bytes belong to no part, so that none can be covered; of sequences all, or none."""
+        if region is None or self._code is None:
+            return True
+        if self._code.inserted and places >= {*range(region.first, region.last + 1)}:
+            return True
+        if self._code.codewords is not None and not self._code.inserted:
             return True
         return places.isdisjoint(range(region.first, region.last + 1))
 

@@ -21,6 +21,7 @@ from protogen.model.frame import (
     Encoding,
     Escape,
     Frame,
+    Insertion,
     LengthPart,
     LiteralPart,
     NumberPart,
@@ -234,14 +235,21 @@ class _Assembly:
             case ChecksumPart():
                 return number_bytes(part.type, self._checksum(part))
             case LengthPart():
-                counted = [other for other in self._present() if other.name in part.counts]
-                return number_bytes(part.type, sum(self._size(other) for other in counted))
+                return number_bytes(part.type, self._length(part))
             case NumberPart():
                 value = self._numbers[part.name]
                 if isinstance(value, str):
                     return value.encode("latin-1").ljust(part.type.size, b"\0")
                 return number_bytes(part.type, value)
         raise AssertionError(part)
+
+    def _length(self, part: LengthPart) -> int:
+        """Bytes that it counts; on the wire, of which all that is stuffed is counted."""
+        stuffed = self._covered() if part.over_wire else set()
+        counted = [other for other in self._present() if other.name in part.counts]
+        region = b"".join(self._content(other) for other in counted if other.name in stuffed)
+        plain = sum(self._size(other) for other in counted if other.name not in stuffed)
+        return plain + (len(self._encoded(region)) if part.over_wire else 0)
 
     def _size(self, part: Part) -> int:
         match part:
@@ -276,6 +284,8 @@ def encoded(encoding: Encoding, region: bytes) -> bytes:
         case Substitution():
             table = dict(encoding.table)
             return b"".join(table.get(byte, bytes((byte,))) for byte in region)
+        case Insertion():
+            return _inserted(encoding, region)
         case Escape():
             return b"".join(
                 bytes((encoding.byte, byte ^ encoding.xor))
@@ -287,6 +297,18 @@ def encoded(encoding: Encoding, region: bytes) -> bytes:
             return region.hex().upper().encode()
         case Cobs():
             return _cobs(region)
+
+
+def _inserted(encoding: Insertion, region: bytes) -> bytes:
+    """A byte behind each sequence, looked for behind the one before."""
+    found = b""
+    begun = 0
+    for byte in region:
+        found += bytes((byte,))
+        if found[begun:].endswith(encoding.sequence):
+            found += bytes((encoding.byte,))
+            begun = len(found)
+    return found
 
 
 def _cobs(region: bytes) -> bytes:

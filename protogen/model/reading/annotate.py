@@ -190,7 +190,8 @@ class _Frame:
         if part.type.is_text:
             meaning = quoted(str(part.shown(value)))
         if isinstance(part, LengthPart):
-            meaning = f"bytes of {', '.join(part.counts)}"
+            where = " on the wire" if part.over_wire else ""
+            meaning = f"bytes of {', '.join(part.counts)}{where}"
         elif isinstance(part, IdentityPart):
             meaning = " ".join(filter(None, (meaning, self._names_of(part))))
         return row.reads(value, meaning, fault)
@@ -238,7 +239,7 @@ class _Frame:
         """As the length part says, else what the parts behind it leave."""
         behind = self._parts[self._parts.index(part) + 1 :]
         length = self._sender.plan.length
-        if length is None or length.part.name not in self._numbers:
+        if length is None or length.over_wire or length.part.name not in self._numbers:
             return self._size_without_length(behind)
         stated = length.payload(self._numbers[length.part.name]) or 0
         return min(stated, self._cursor.left)

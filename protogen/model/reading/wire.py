@@ -6,7 +6,15 @@ from collections.abc import Iterator
 
 import msgspec
 
-from protogen.model.frame import Base16, Cobs, Encoding, Escape, LiteralPart, Substitution
+from protogen.model.frame import (
+    Base16,
+    Cobs,
+    Encoding,
+    Escape,
+    Insertion,
+    LiteralPart,
+    Substitution,
+)
 from protogen.model.frame_plan import FramePlan
 from protogen.runtime import transparency as stuffing
 
@@ -96,6 +104,8 @@ def _transparency(encoding: Encoding, lenient: bool) -> stuffing.Transparency:
     match encoding:
         case Substitution(table=table):
             return stuffing.Substitution(dict(table), lenient)
+        case Insertion(sequence=sequence, byte=byte):
+            return stuffing.Insertion(sequence, byte)
         case Escape(byte=byte, of=of, xor=xor):
             return stuffing.Escape(byte, frozenset(of), xor, lenient)
         case Base16():

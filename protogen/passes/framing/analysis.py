@@ -26,7 +26,7 @@ from protogen.model.sizes import SizeSet
 from protogen.passes.context import Context
 from protogen.passes.draft import Draft
 from protogen.passes.framing import framing_words
-from protogen.passes.framing.capacity import GREATEST_FRAME, amount, payload_range
+from protogen.passes.framing.capacity import GREATEST_FRAME, amount, payload_range, wire_limit
 from protogen.passes.framing.delimiters import delimiters_of, judge_delimiters
 from protogen.passes.framing.silences import character_time
 from protogen.passes.proofs import wire_sizes
@@ -250,7 +250,8 @@ class _Analysis:
         payload = self._payload_sizes(start)
         wire = wire_sizes.WireSizes(frame, self._payload)
         longest = wire.frame(payload).greatest
-        greatest = longest if frame.limit is None else min(longest, frame.limit)
+        limit = wire_limit(frame)
+        greatest = longest if limit is None else min(longest, limit)
         if greatest > GREATEST_FRAME:
             if self._too_large:
                 return None  # Which was said of the message.
@@ -310,7 +311,7 @@ class _Analysis:
 
     def _message(self, wire: wire_sizes.WireSizes, message: Message) -> MessageFraming:
         sizes = wire.message(message, self._sendable(message.sizes))
-        limit = self.frame.limit
+        limit = wire_limit(self.frame)
         if limit is None:
             return self._framing_of(message, sizes)
         fits = self._carried is not None and message.sizes.least <= self._carried.greatest

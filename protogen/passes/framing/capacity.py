@@ -26,6 +26,16 @@ def counted_size(frame: Frame, length: LengthPart, *, empty: bool) -> int:
     return sum(part.size for part in counted if not (empty and part.is_optional))
 
 
+def wire_limit(frame: Frame) -> int | None:
+    """Wire bytes that no frame exceeds by what bounds it, or by a length over the wire."""
+    length = frame.length
+    if length is None or not length.over_wire:
+        return frame.limit
+    others = sum(part.size for part in frame.parts if part.name not in length.counts)
+    stated = length.greatest + others
+    return stated if frame.limit is None else min(stated, frame.limit)
+
+
 def payload_range(frame: Frame) -> SizeSet | None:
     """The payload sizes that a length part or a greatest size of frames leaves; None for any.
 

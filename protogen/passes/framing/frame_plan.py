@@ -15,6 +15,7 @@ from protogen.model.frame import (
     Encoding,
     Escape,
     Frame,
+    Insertion,
     LiteralPart,
     Part,
     PayloadPart,
@@ -169,7 +170,17 @@ class _Planner:
             return None
         base = counted_size(self._frame, part, empty=True)
         optional = counted_size(self._frame, part, empty=False) - base
-        return LengthPlan(part=part, base=base, optional=optional)
+        if not part.over_wire:
+            return LengthPlan(part=part, base=base, optional=optional)
+        last = max(self._names.index(name) for name in self._stuffed)
+        others = sum(item.size for item in self._frame.parts if item.name not in part.counts)
+        return LengthPlan(
+            part=part,
+            base=base,
+            optional=optional,
+            region_end=sum(item.size for item in self._frame.parts[: last + 1]),
+            most=min(part.greatest, self._framing.greatest - others),
+        )
 
     # --- start and end ----------------------------------------------------------------------------
 
@@ -301,6 +312,10 @@ class _Planner:
         early = {item.part.name for item in self._head}
         told = [*self._frame.identity, *filter(None, [self._frame.length])]
         cuts_region = region is not None and region.behind and region.before < self._head_size
+        if region is not None and region.insertion is not None:
+            return False
+        if self._frame.length is not None and self._frame.length.over_wire:
+            return False
         return (
             self._is_regular
             and self._end_is_told
@@ -321,11 +336,16 @@ class _Planner:
         return alone and self._unique_end
 
     def _streams(self) -> bool:
-        """A checksum in front of what it covers, and the codes of COBS, tell what follows."""
+        """What follows is told by checksums in front of it, by COBS, and by lengths over the wire.
+
+        So is what is put in behind several bytes, of which a sender would have to remember some.
+        """
         transparency = self._frame.transparency
         if transparency is not None:
             over_wire = any(part.over_wire for part in self._frame.checksums)
-            if over_wire or isinstance(transparency.encoding, Cobs):
+            if over_wire or isinstance(transparency.encoding, Cobs | Insertion):
+                return False
+            if self._frame.length is not None and self._frame.length.over_wire:
                 return False
         return all(self._checksum(part).is_behind for part in self._frame.checksums)
 
@@ -336,7 +356,7 @@ def _codes(encoding: Encoding) -> tuple[tuple[int, bytes], ...]:
             return tuple(sorted(dict(table).items()))
         case Escape(byte=escape, of=of, xor=xor):
             return tuple((byte, bytes((escape, byte ^ xor))) for byte in sorted(set(of)))
-        case Base16() | Cobs():
+        case Insertion() | Base16() | Cobs():
             return ()
 
 

@@ -51,6 +51,7 @@ from protogen.passes.framing.part_values import number_of, text_bounds, text_typ
 from protogen.passes.framing.silences import check_silence, silence_of
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.framing.virtual_parts import check_virtual_parts, sent_run
+from protogen.passes.framing.wire_counts import check_wire_length, check_wire_sum
 from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width
 from protogen.problems import hint_for
@@ -65,7 +66,7 @@ _ROLES: dict[str, frozenset[str]] = {
     "virtual": _TYPE | {"virtual", "size", "default"},
     "literal": frozenset({"literal", "unprotected", "type"}),
     "id": _NUMBER | {"id", "size"},
-    "counts": _NUMBER | {"counts"},
+    "counts": _NUMBER | {"counts", "over"},
     "counter": _NUMBER | {"counter", "default"},
     "algorithm": _TYPE | {"algorithm", "covers", "over", "when"},
     "type": _NUMBER | {"size", "default"},
@@ -144,6 +145,7 @@ class FrameBuilder:
         """Check what can only be asked when all parts are there."""
         _check_checksums(self._context, frame, self._loc)
         check_virtual_parts(self._context, frame, self._loc)
+        check_wire_length(self._context, frame, self._loc)
         self._check_identity(frame)
         check_silence(self._context, self._written, frame)
         length = frame.length
@@ -219,7 +221,8 @@ class FrameBuilder:
         if role == "id":
             return IdentityPart(**given)
         if role == "counts":
-            return LengthPart(**given, counts=self._counted(part.name, item))
+            over_wire = item.over == "wire"
+            return LengthPart(**given, counts=self._counted(part.name, item), over_wire=over_wire)
         kind = CounterPart if role == "counter" else ValuePart
         return kind(**given, default=self._default(item, part))
 
@@ -442,6 +445,7 @@ def _check_checksums(context: Context, frame: Frame, loc: Loc) -> None:
         if part.over_wire and _holds_cobs(frame, part):
             text = "bytes that COBS makes belong to no single part, so none can be summed up"
             context.error("PG131", (*loc, part.name, "over"), text)
+        check_wire_sum(context, frame, part, loc)
 
 
 def _circle(frame: Frame, name: str) -> list[str]:

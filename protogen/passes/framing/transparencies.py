@@ -6,7 +6,15 @@ from collections import Counter
 from collections.abc import Mapping
 from itertools import pairwise
 
-from protogen.model.frame import Base16, Cobs, Encoding, Escape, Substitution, Transparency
+from protogen.model.frame import (
+    Base16,
+    Cobs,
+    Encoding,
+    Escape,
+    Insertion,
+    Substitution,
+    Transparency,
+)
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.virtual_parts import sent_names, sent_run
@@ -84,12 +92,37 @@ class _Reader:
             return SLIP if item.preset == "slip" else HDLC
         return Base16() if item.encoding == "base16-upper" else Cobs()
 
-    def _substitution(self, table: tuple[tuple[int, bytes], ...]) -> Substitution:
-        for byte, count in Counter(byte for byte, _ in table).items():
+    def _substitution(self, table: tuple[tuple[int | bytes, bytes], ...]) -> Encoding | None:
+        single = tuple((byte, word) for byte, word in table if isinstance(byte, int))
+        several = [(run, word) for run, word in table if isinstance(run, bytes)]
+        if several:
+            return self._insertion(*several[0], is_alone=len(table) == 1)
+        for byte, count in Counter(byte for byte, _ in single).items():
             if count > 1:
                 text = f"the byte {byte:02X} stands in the table twice"
                 self._context.error_at_key("PG138", (*self._loc, "substitute"), text)
-        return Substitution(table=table)
+        return Substitution(table=single)
+
+    def _insertion(self, run: bytes, word: bytes, *, is_alone: bool) -> Insertion | None:
+        """What puts a byte in behind some others, if that can be undone."""
+        code, hint = "PG247", f"write `{_hex(run)}: {_hex(run)} XX`, with one byte behind it"
+        if not is_alone:
+            text, hint = "a sequence of several bytes stands in a table alone", "keep that one"
+        elif len(word) != len(run) + 1 or not word.startswith(run):
+            text = f"{_hex(word)} is not {_hex(run)} and one byte more"
+        elif self._item.lenient:
+            text = "a receiver that takes a sequence alone could not tell it from a stuffed one"
+            hint = "remove `lenient`"
+        elif ending := _beginning_in(run, run[1:]):
+            code, text = "PG248", f"{_hex(run)} begins and ends with {_hex(ending)}"
+            hint = "choose a sequence that can't overlap itself"
+        elif ending := _beginning_in(run, word[1:]):
+            code, text = "PG248", f"{_hex(word)} ends with {_hex(ending)}, which begins the next"
+            hint = "choose another byte to put in"
+        else:
+            return Insertion(sequence=run, byte=word[-1])
+        self._context.error_at_key(code, (*self._loc, "substitute"), text, hint)
+        return None
 
     def _escape(self, item: EscapeSyntax) -> Escape:
         if item.byte not in item.of:
@@ -107,6 +140,12 @@ class _Reader:
             case _:
                 xor = item.transform.xor
         return Escape(byte=item.byte, of=tuple(sorted(set(item.of))), xor=xor)
+
+
+def _beginning_in(run: bytes, data: bytes) -> bytes:
+    """The longest beginning of a sequence that the data ends with; empty if there is none."""
+    sizes = range(min(len(run), len(data)), 0, -1)
+    return next((run[:size] for size in sizes if data.endswith(run[:size])), b"")
 
 
 def _between_literals(parts: Mapping[str, PartSyntax]) -> tuple[str, ...]:

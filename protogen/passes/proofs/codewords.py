@@ -121,17 +121,39 @@ def prefix_clash(code: Code) -> tuple[int, int] | None:
 # --- occurrence of a literal --------------------------------------------------------------------
 
 
+class Inserted(msgspec.Struct, frozen=True):
+    """A byte that is put in behind each sequence of others, none of which ends as it begins."""
+
+    sequence: bytes
+    byte: int
+
+    def sent(self, word: bytes, seen: int) -> tuple[bytes, int]:
+        """Bytes sent for a word behind `seen` bytes of the sequence, and how many are seen then."""
+        found = bytearray()
+        for byte in word:
+            found.append(byte)
+            begun = self.sequence[:seen] + bytes((byte,))
+            endings = (begun[place:] for place in range(len(begun)))
+            seen = len(next(filter(self.sequence.startswith, endings), b""))
+            if seen == len(self.sequence):
+                found.append(self.byte)
+                seen = 0
+        return bytes(found), seen
+
+
 class Segment(msgspec.Struct, frozen=True):
     """A stretch of a frame: `least` to `greatest` words, each any of `words`.
 
     `greatest` None is no limit. `own` marks the place where a literal is meant to stand: an
-    occurrence that is exactly one word of an own segment does not count.
+    occurrence that is exactly one word of an own segment does not count. In segments side by side
+    with `inserts`, a byte is put in behind sequences, wherever one word ends and another begins.
     """
 
     words: frozenset[bytes]
     least: int = 1
     greatest: int | None = 1
     own: bool = False
+    inserts: Inserted | None = None
 
 
 def occurs(
@@ -144,8 +166,10 @@ def occurs(
 
     Exact for every `least` and `greatest`, though no more words of a segment are searched than the
     literal has bytes, m: an occurrence touches at most m words that are not empty, and any more
-    words can be put before or behind it. So the time does not depend on how many words a
-    segment may have, only on m, the number of segments, and the sizes of their sets of words.
+    words can be put before or behind it. What is put in behind a sequence of n bytes follows from
+    the n - 1 bytes in front of it, which may be as many words more. So the time does not depend on
+    how many words a segment may have, only on m and n, the number of segments, and the sizes of
+    their sets of words.
 
     Raises ValueError for an empty literal, which would occur everywhere.
     """
@@ -172,11 +196,15 @@ def _without_empty_word(segment: Segment) -> Segment:
 
 
 class _State(NamedTuple):
-    """Behind `taken` words of a segment; the last `matched` bytes begin the literal."""
+    """Behind `taken` words of a segment; the last `matched` bytes begin the literal.
+
+    Of a sequence that a byte is put in behind, `seen` bytes are there.
+    """
 
     segment: int
     taken: int
     matched: int
+    seen: int
 
 
 class _Step(NamedTuple):
@@ -196,12 +224,13 @@ class _Taking(NamedTuple):
     word: bytes
     matched: int
     hit: int | None
+    seen: int
 
 
 class _Hit(NamedTuple):
     """An occurrence behind the words in `trail`, each with its segment's number.
 
-    It ends behind `end` bytes of the last of these words.
+    It ends behind `end` bytes of the last of these words, as it is sent.
     """
 
     trail: list[tuple[int, bytes]]
@@ -214,11 +243,14 @@ class _Search:
     def __init__(self, literal: bytes, chain: Sequence[Segment]) -> None:
         self._literal = literal
         self._chain = chain
+        inserted = [segment.inserts for segment in chain if segment.inserts is not None]
+        behind = max((len(item.sequence) - 1 for item in inserted), default=0)
+        self._enough = len(literal) + behind  # More words than this change nothing, see `occurs`.
         self._origins: dict[_State, tuple[_State, bytes]] = {}
 
     def first_hit(self) -> _Hit | None:
         """Return the occurrence that is reached with the fewest steps."""
-        queue = deque([_State(0, 0, 0)])
+        queue = deque([_State(0, 0, 0, 0)])
         while queue:
             state = queue.popleft()
             for step in self._steps(state):
@@ -230,14 +262,15 @@ class _Search:
         return None
 
     def _steps(self, state: _State) -> Iterator[_Step]:
-        number, taken, matched = state
-        segment = self._chain[number]
-        enough = len(self._literal)  # More words than this change nothing, see `occurs`.
+        number, taken, matched, seen = state
+        segment, enough = self._chain[number], self._enough
         if taken >= min(segment.least, enough) and number + 1 < len(self._chain):
-            yield _Step(_State(number + 1, 0, matched))
+            kept = seen if self._chain[number + 1].inserts == segment.inserts else 0
+            yield _Step(_State(number + 1, 0, matched, kept))
         if taken < enough and (segment.greatest is None or taken < segment.greatest):
-            for taking in _takings(self._literal, segment.words, segment.own)[matched]:
-                yield _Step(_State(number, taken + 1, taking.matched), taking.word, taking.hit)
+            for taking in _takings(self._literal, segment, seen)[matched]:
+                following = _State(number, taken + 1, taking.matched, taking.seen)
+                yield _Step(following, taking.word, taking.hit)
 
     def _trail(self, state: _State) -> list[tuple[int, bytes]]:
         """Return the words that led to a state, each with its segment's number."""
@@ -250,31 +283,41 @@ class _Search:
         return trail[::-1]
 
 
+def _takings(literal: bytes, segment: Segment, seen: int) -> tuple[list[_Taking], ...]:
+    """Return, for each matched length, a short word for each outcome of taking a word."""
+    return _cached_takings(literal, segment.words, segment.own, segment.inserts, seen)
+
+
 # Calls for the frames of one schema share their literals and most of their sets of words.
 @lru_cache(maxsize=256)
-def _takings(literal: bytes, words: frozenset[bytes], own: bool) -> tuple[list[_Taking], ...]:
-    """Return, for each matched length, a short word for each outcome of taking a word."""
+def _cached_takings(
+    literal: bytes, words: frozenset[bytes], own: bool, inserts: Inserted | None, seen: int
+) -> tuple[list[_Taking], ...]:
     automaton = _automaton(literal)
     ordered = sorted(words, key=_by_length)
+    sent = {word: (word, 0) if inserts is None else inserts.sent(word, seen) for word in ordered}
 
     def outcomes(matched: int) -> list[_Taking]:
-        found: dict[tuple[int, bool], _Taking] = {}
-        for word in ordered:
-            taking = _take(word, matched, automaton, own and word == literal)
-            found.setdefault((taking.matched, taking.hit is None), taking)
+        found: dict[tuple[int, bool, int], _Taking] = {}
+        for word, (wire, behind) in sent.items():
+            is_own = own and word == literal
+            reached, hit = _matched(wire, matched, automaton, is_own)
+            found.setdefault((reached, hit is None, behind), _Taking(word, reached, hit, behind))
         return list(found.values())
 
     return tuple(map(outcomes, range(len(literal) + 1)))
 
 
-def _take(word: bytes, matched: int, automaton: Sequence[Sequence[int]], own: bool) -> _Taking:
+def _matched(
+    word: bytes, matched: int, automaton: Sequence[Sequence[int]], own: bool
+) -> tuple[int, int | None]:
     """Read a word up to the first occurrence that ends in it; `own`: not the word itself."""
     whole = len(automaton) - 1
     for length, byte in enumerate(word, 1):
         matched = automaton[matched][byte]
         if matched == whole and not (own and length == len(word)):
-            return _Taking(word, matched, length)
-    return _Taking(word, matched, None)
+            return matched, length
+    return matched, None
 
 
 def _automaton(literal: bytes) -> list[list[int]]:
@@ -300,11 +343,24 @@ def _witness(literal: bytes, chain: Sequence[Segment], hit: _Hit) -> tuple[bytes
     words = _words_by_segment(len(chain), hit.trail)
     padding = [_padding(segment, len(taken)) for segment, taken in zip(chain, words, strict=True)]
     # The words that are still missing stand where they don't touch the occurrence.
-    head = b"".join(padding[number] + b"".join(words[number]) for number in range(last))
-    tail = b"".join(padding[last:])
-    through = head + b"".join(words[last])
-    end = len(through) - len(words[last][-1]) + hit.end
-    return through + tail, end - len(literal)
+    *before, touched = words[last]
+    head = [(number, padding[number] + b"".join(words[number])) for number in range(last)]
+    head.append((last, b"".join(before)))
+    tail = list(enumerate(padding))[last:]
+    sent = _sent(chain, [*head, (last, touched), *tail])
+    end = sum(map(len, sent[: len(head)])) + hit.end
+    return b"".join(sent), end - len(literal)
+
+
+def _sent(chain: Sequence[Segment], words: Iterable[tuple[int, bytes]]) -> list[bytes]:
+    """Return what is sent of words, each with its segment's number."""
+    found, inserts, seen = [], None, 0
+    for number, word in words:
+        seen = seen if chain[number].inserts == inserts else 0
+        inserts = chain[number].inserts
+        wire, seen = (word, 0) if inserts is None else inserts.sent(word, seen)
+        found.append(wire)
+    return found
 
 
 def _words_by_segment(segments: int, trail: Iterable[tuple[int, bytes]]) -> list[list[bytes]]:
@@ -315,6 +371,11 @@ def _words_by_segment(segments: int, trail: Iterable[tuple[int, bytes]]) -> list
 
 
 def _padding(segment: Segment, taken: int) -> bytes:
-    """Return the words that a segment needs behind those taken; short ones."""
-    shortest = min(segment.words, key=_by_length, default=b"")
+    """Return the words that a segment needs behind those taken; short ones.
+
+    They have nothing of a sequence that a byte is put in behind, if there are such words.
+    """
+    sequence = frozenset(segment.inserts.sequence if segment.inserts else ())
+    words = sorted(segment.words, key=_by_length)
+    shortest = next(filter(sequence.isdisjoint, words), words[0] if words else b"")
     return shortest * max(0, segment.least - taken)

@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import groupby
 
 import msgspec
 
 from protogen.model.checksums import checksum_of
-from protogen.model.frame import ChecksumPart, Frame, LengthPart, NumberPart, Part, PayloadPart
+from protogen.model.frame import (
+    ChecksumPart,
+    Frame,
+    Insertion,
+    LengthPart,
+    NumberPart,
+    Part,
+    PayloadPart,
+)
 from protogen.model.payload_plan import constant_bytes
 from protogen.model.types import Field
 from protogen.passes.framing.capacity import counted_size
@@ -67,7 +76,7 @@ def _part(
     if isinstance(part, PayloadPart):
         return payload
     value = identity.get(part.name)
-    if isinstance(part, LengthPart):
+    if isinstance(part, LengthPart) and not part.over_wire:
         value = _stated(frame, part, sum(stretch.count for stretch in payload))
     if isinstance(part, NumberPart) and value is not None:
         return known_bytes(part.encode(value))
@@ -112,9 +121,13 @@ def known_bytes(data: bytes) -> tuple[Stretch, ...]:
 def checksum_bytes(frame: Frame, part: ChecksumPart, plain: Mapping[str, bytes]) -> bytes:
     """The unstuffed bytes of a checksum over these contents of parts."""
     present = [name for name in part.covers if name in plain]
-    covered = b"".join(
-        _on_wire(frame, name, plain[name]) if part.over_wire else plain[name] for name in present
-    )
+    covered = b"".join(plain[name] for name in present)
+    if part.over_wire:
+        runs = groupby(present, key=frame.stuffed.__contains__)
+        covered = b"".join(
+            _on_wire(frame, b"".join(plain[name] for name in run), stuffed=stuffed)
+            for stuffed, run in runs
+        )
     return number_bytes(part, checksum_of(part.algorithm).compute(covered))
 
 
@@ -123,9 +136,12 @@ def number_bytes(part: ChecksumPart, value: int) -> bytes:
     return part.encode(value & part.type.greatest)
 
 
-def _on_wire(frame: Frame, name: str, plain: bytes) -> bytes:
-    """The bytes of one part as an encoder stuffs them; COBS was refused for such checksums."""
+def _on_wire(frame: Frame, plain: bytes, *, stuffed: bool) -> bytes:
+    """The bytes of parts as an encoder stuffs them; COBS was refused for such checksums."""
     code = code_of(frame.encoding)
-    if code is None or name not in frame.stuffed:
+    if code is None or not stuffed:
         return plain
+    if isinstance(frame.encoding, Insertion):
+        word = frame.encoding.sequence
+        return plain.replace(word, word + bytes((frame.encoding.byte,)))
     return b"".join(code[byte] for byte in plain)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import cache
 
+from protogen.copying import replace
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
@@ -16,6 +17,7 @@ from protogen.model.frame import (
     Encoding,
     Escape,
     Frame,
+    Insertion,
     LiteralPart,
     NumberPart,
     Part,
@@ -23,7 +25,7 @@ from protogen.model.frame import (
     TypedPart,
 )
 from protogen.model.numbers import Numeral
-from protogen.passes.proofs.codewords import Segment
+from protogen.passes.proofs.codewords import Inserted, Segment
 
 ByteSet = frozenset[int]
 EVERY_BYTE: ByteSet = frozenset(range(256))
@@ -32,7 +34,10 @@ SEVEN_BITS: ByteSet = frozenset(range(128))
 
 @cache
 def code_of(encoding: Encoding | None) -> Mapping[int, bytes] | None:
-    """The codeword of each byte; None for COBS, which does not work byte by byte."""
+    """The codeword of each byte; None for COBS, which does not work byte by byte.
+
+    Where a byte is put in behind several, each stands for itself.
+    """
     match encoding:
         case Substitution():
             return {**_plain(), **dict(encoding.table)}
@@ -43,7 +48,7 @@ def code_of(encoding: Encoding | None) -> Mapping[int, bytes] | None:
             return {byte: f"{byte:02X}".encode() for byte in range(256)}
         case Cobs():
             return None
-        case None:
+        case Insertion() | None:
             return _plain()
 
 
@@ -97,7 +102,9 @@ def _digits(form: Numeral, least: int, greatest: int) -> tuple[ByteSet, ...]:
 def segments(frame: Frame, payload: ByteSet, delimiters: Iterable[str]) -> list[Segment]:
     """The frame as it can stand on the wire; the parts called `delimiters` are its own literals."""
     transparency, code = frame.transparency, code_of(frame.encoding)
-    own = frozenset(delimiters)
+    own, inserts = frozenset(delimiters), None
+    if isinstance(frame.encoding, Insertion):
+        inserts = Inserted(frame.encoding.sequence, frame.encoding.byte)
     result: list[Segment] = []
     for part in frame.parts:
         stuffed = part.name in frame.stuffed
@@ -106,7 +113,10 @@ def segments(frame: Frame, payload: ByteSet, delimiters: Iterable[str]) -> list[
                 words = frozenset(bytes((byte,)) for byte in range(1, 256))
                 result.append(Segment(words, 1, None))
             continue
-        result.extend(_part_segments(part, payload, code if stuffed else _plain(), own))
+        found = _part_segments(part, payload, code if stuffed else _plain(), own)
+        result.extend(
+            replace(item, inserts=inserts) if stuffed and inserts else item for item in found
+        )
     return _joined(result)
 
 
@@ -149,4 +159,5 @@ def wire_bytes(frame: Frame, payload: ByteSet) -> Iterable[tuple[Part, ByteSet]]
         elif code is None:
             yield part, EVERY_BYTE - {0}
         else:
-            yield part, frozenset(byte for value in values for byte in code[value])
+            more = {frame.encoding.byte} if isinstance(frame.encoding, Insertion) else set()
+            yield part, frozenset(byte for value in values for byte in code[value]) | more

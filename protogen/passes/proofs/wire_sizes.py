@@ -2,7 +2,8 @@
 
 Stuffed byte by byte, a frame takes what each of its bytes takes at best or at worst. The greatest
 size is never too small and the least never too great, as a decoder relies on both. They are exact,
-but where several stuffed checksums, or one wider than a byte, depend on many bytes.
+but where several stuffed checksums, or one wider than a byte, depend on many bytes, and where a
+byte is put in behind several others.
 """
 
 from __future__ import annotations
@@ -10,7 +11,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import partial
 
-from protogen.model.frame import Base16, ChecksumPart, Escape, Frame, LengthPart
+from protogen.model.frame import (
+    Base16,
+    ChecksumPart,
+    Cobs,
+    Escape,
+    Frame,
+    Insertion,
+    LengthPart,
+)
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Field
@@ -32,11 +41,15 @@ class WireSizes:
         self._covered = frame.stuffed
         self._encoding = frame.encoding
         self._lenient = frame.transparency is not None and frame.transparency.lenient
-        self._by_byte = code_of(self._encoding)
-        """The codeword of each byte; None for COBS."""
+        self._by_byte = None if self._adds else code_of(self._encoding)
+        """The codeword of each byte; None where bytes are added to all of a region."""
         self._payload_name = frame.payload.name
         self._checksums = {sign: Together(frame, partial(self._price, sign)) for sign in (1, -1)}
         self._known: dict[tuple[ByteSet, int], int] = {}
+
+    @property
+    def _adds(self) -> bool:
+        return isinstance(self._encoding, Cobs | Insertion)
 
     @property
     def overhead(self) -> SizeSet:
@@ -96,7 +109,7 @@ class WireSizes:
         first = self._contents(sizes[0], identity, fields)
         best = self._worth(first, sign)
         if self._by_byte is None:
-            return best  # COBS: more data never take less.
+            return best  # More data never take less.
         ceiling = self._ceiling(first, sign)
         for size in sizes[1:]:
             # Each byte that is farther off is worth as much less as a byte of the payload is.
@@ -134,7 +147,7 @@ class WireSizes:
     def _apart(self, contents: Contents, sign: int) -> int:
         """Worth of the frame, if a checksum can be anything whatever it covers."""
         if self._by_byte is None:
-            return sign * self._with_cobs(contents, worst=sign > 0)
+            return sign * self._with_added(contents, worst=sign > 0)
         return sum(self._part(name, stretches, sign) for name, stretches in contents.items())
 
     def _part(self, name: str, stretches: Iterable[Stretch], sign: int) -> int:
@@ -176,12 +189,14 @@ class WireSizes:
     def _price(self, sign: int, part: str, value: int) -> int:
         return self._value(value, sign) if part in self._covered else sign
 
-    # -- COBS -----------------------------------------------------------------------------------
+    # -- bytes that are added ---------------------------------------------------------------------
 
-    def _with_cobs(self, contents: Contents, *, worst: bool) -> int:
+    def _with_added(self, contents: Contents, *, worst: bool) -> int:
         sizes = {name: sum(s.count for s in stretches) for name, stretches in contents.items()}
         covered = self._covered & sizes.keys()
         inside = sum(sizes[name] for name in covered)
+        if isinstance(self._encoding, Insertion):
+            return sum(sizes.values()) + worst * (inside // len(self._encoding.sequence))
         return sum(sizes.values()) + (self._codes(inside, worst=worst) if covered else 0)
 
     def _codes(self, inside: int, *, worst: bool) -> int:

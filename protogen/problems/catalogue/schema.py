@@ -18,6 +18,7 @@ from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
 from protogen.problems.catalogue.virtual_parts import VIRTUAL_PART_CODES
+from protogen.problems.catalogue.wire_counts import WIRE_COUNT_CODES
 
 SCHEMA_CODES: tuple[Code, ...] = (
     *KEY_AND_NAME_CODES,
@@ -35,4 +36,5 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *FRAME_SIZE_CODES,
     *MESSAGE_CODES,
     *PART_CODES,
+    *WIRE_COUNT_CODES,
 )

@@ -214,6 +214,9 @@ class _Assembly:
 
     def _length(self, part: LengthPart) -> int:
         value = self._layout.counted(part, len(self._payload))
+        if part.over_wire:
+            stuffed = [name for name in self._parts if name in self._layout.spec.stuffed]
+            value += len(self._on_wire(stuffed)) - len(self._content(stuffed))
         if not part.least <= value <= part.greatest:
             problem = f"makes {part.name} {value}, which is not in {part.least}..{part.greatest}"
             raise EncodeError("payload", problem)

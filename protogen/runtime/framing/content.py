@@ -51,6 +51,8 @@ class Content:
         self._is_measuring = False
         self.limit: int | None = None
         """Bytes that the content has at most, as soon as that is known."""
+        self.region_end: int | None = None
+        """Wire bytes up to the end of what is stuffed, where the length says that."""
         self._next = -1  # Where the part that is due ends.
         self._literal = b""  # What its bytes have to be.
         self._clear_bits = False  # Whether their most significant bit has to be clear.
@@ -81,6 +83,8 @@ class Content:
 
     def close(self) -> None:
         """Take the end of the content. Raises Rejected where the frame can't end here."""
+        if self.payload_size is None and self._layout.counts_wire:
+            raise Rejected("length", "the frame ends before its length says")
         if self.payload_size is None:
             self._close_open()
         elif not self.is_full:
@@ -148,6 +152,11 @@ class Content:
 
     def _read_length(self, part: LengthPart) -> None:
         value = self.numbers[part.name]
+        if part.over_wire:
+            self.region_end = self._layout.region_end(part, value)
+            if self.region_end is None:
+                raise Rejected("length", f"{part.name} is {value}")
+            return
         size = self._layout.counted_payload(part, value)
         if size is None:
             raise Rejected("length", f"{part.name} is {value}")
@@ -181,18 +190,24 @@ class Content:
         if self.payload_size is not None:
             self._next = len(self.bytes) + self.payload_size
             self._clear_bits = self._sender.frame.seven_bit
-        elif self._layout.end or self._layout.ends_idle or self._group is None:
+        elif self._ends_elsewhere or self._group is None:
             self._open_payload()
         else:
             self._is_measuring = True
             self._clear_bits = self._sender.frame.seven_bit
             self._measure()
 
+    @property
+    def _ends_elsewhere(self) -> bool:
+        """True if something else than the message tells where its payload ends."""
+        layout = self._layout
+        return bool(layout.end) or layout.ends_idle or layout.counts_wire
+
     def _open_payload(self) -> None:
         self.is_open = True
         # With parts behind the payload, its last bytes can't be told from theirs yet.
         self._clear_bits = self._sender.frame.seven_bit and not self._layout.tail
-        if self._group is not None:
+        if self._group is not None and not self._layout.counts_wire:
             tail = self._layout.tail_size(self._group.greatest)
             self.limit = self._layout.head_size + self._group.greatest + tail
 
@@ -219,10 +234,20 @@ class Content:
 
     # --- the end of an open payload -------------------------------------------------------------
 
-    def _close_open(self) -> None:
+    def close_counted(self) -> None:
+        """Take the end of all content, where the length says that it is."""
+        self._close_open("length", "the length leaves no room for all parts")
+        self.limit = len(self.bytes)
+        self.is_full = True
+
+    def _close_open(
+        self,
+        reason: Reason = "truncated",
+        problem: str = "the frame ends before all of its parts are there",
+    ) -> None:
         size = self._layout.payload_size(len(self.bytes)) if self.is_open else None
         if size is None:
-            raise Rejected("truncated", "the frame ends before all of its parts are there")
+            raise Rejected(reason, problem)
         self.payload_size = size
         payload, *tail = list(self._layout.slices(size))[self._layout.payload_index :]
         if self._sender.frame.seven_bit and not self._slice(payload).isascii():

@@ -38,6 +38,8 @@ def judge_of(sender: SenderSpec[Any, Any]) -> Judge | None:
     is_told = layout.length is not None or layout.early_identity
     if not (sums_alone and is_told) or layout.has_wire_checksum or layout.shares_delimiter:
         return None
+    if layout.counts_wire:
+        return None
     if not isinstance(frame.start, StartMark):
         return None
     if not frame.start.protected:

@@ -43,9 +43,10 @@ class IdentityPart(NamedTuple):
 
 
 class LengthPart(NamedTuple):
-    """The number of bytes of the parts that it `counts`, before any stuffing.
+    """The number of bytes of the parts that it `counts`, before any stuffing or on the wire.
 
     The payload is one of them; the length itself may be. `least` and `greatest` bound its value.
+    On the wire, it counts all parts that are stuffed, and stands in front of them.
     """
 
     name: str
@@ -53,6 +54,7 @@ class LengthPart(NamedTuple):
     counts: tuple[str, ...]
     least: int
     greatest: int
+    over_wire: bool = False
 
     @property
     def size(self) -> int:

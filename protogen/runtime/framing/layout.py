@@ -102,6 +102,9 @@ class Layout:
     def ends_idle(self) -> bool:
         """True if a silence ends a frame, and no byte."""
         return self.spec.silence is not None
+    def counts_wire(self) -> bool:
+        """True if the length counts stuffed bytes, so that only their end tells the payload's."""
+        return self.length is not None and self.length.over_wire
 
     @cached_property
     def texts(self) -> tuple[tuple[int, Characters], ...]:
@@ -157,6 +160,22 @@ class Layout:
             for name in part.covers
         ]
         return b"".join(pieces)
+
+    def region_end(self, part: LengthPart, value: int) -> int | None:
+        """Wire bytes up to the end of what is stuffed, by a length over the wire.
+
+        None if no frame has that length.
+        """
+        least = self.counted(part, 0)
+        others = sum(item.size for item in self.spec.parts if item.name not in part.counts)
+        if not least <= value <= min(part.greatest, self.spec.greatest - others):
+            return None
+        return value - least + sum(part.size for part in self.parts[: self.stuffed[-1] + 1])
+
+    @cached_property
+    def behind_region(self) -> int:
+        """Bytes between what is stuffed and the end."""
+        return sum(part.size for part in self.parts[self.stuffed[-1] + 1 :])
 
     def counted(self, part: LengthPart, payload: int) -> int:
         """The value of a length part for a payload of that size."""

@@ -193,6 +193,16 @@ class Candidate:
             raise self._content.surplus()
         else:
             self._accept(byte)
+        if self._content.region_end is not None:
+            self._reach(self._content.region_end)
+
+    def _reach(self, region_end: int) -> None:
+        """Do what is due where the length says that something ends."""
+        if self._passed == region_end:
+            self._finish_region()
+        if self._passed == region_end + self._layout.behind_region:
+            self._content.close_counted()
+            self._cross()
 
     def _unstuff(self, unstuffer: Unstuffer, byte: int) -> None:
         try:
@@ -221,7 +231,7 @@ class Candidate:
             self._cross_region()
         if self._content.is_full and not self._empty_left:
             self._meet_full()
-        elif self._content.is_open and not self._delimiters:
+        elif self._content.is_open and not (self._delimiters or self._layout.counts_wire):
             self._open()
 
     def _open(self) -> None:

@@ -15,6 +15,7 @@ result gives the region back. What a `lenient` one accepts beyond that is said w
 """
 
 from protogen.runtime.transparency.encodings import Base16Upper, Cobs
+from protogen.runtime.transparency.insertion import Insertion
 from protogen.runtime.transparency.regions import Transparency, TransparencyError, Unstuffer
 from protogen.runtime.transparency.substitution import Escape, Substitution, replacing_order
 
@@ -22,6 +23,7 @@ __all__ = [
     "Base16Upper",
     "Cobs",
     "Escape",
+    "Insertion",
     "Substitution",
     "Transparency",
     "TransparencyError",

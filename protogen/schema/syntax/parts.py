@@ -192,7 +192,9 @@ class Part(Syntax):
         "gives its value under `parts`, unless the part has a default.",
     )
     counts: PartRun | None = Field(
-        None, description="The part is the length in bytes of these parts, unstuffed."
+        None,
+        description="The part is the length in bytes of these parts, unstuffed unless it says "
+        "`over: wire`.",
     )
     counter: OnlyTrue | None = Field(
         None, description="The part counts frames; encoders advance it by one and wrap."
@@ -206,7 +208,8 @@ class Part(Syntax):
     covers: PartRun | None = Field(None, description="The parts that the checksum covers.")
     over: Literal["content", "wire"] | None = Field(
         None,
-        description="Checksum over unstuffed bytes (content, the default) or as on the wire.",
+        description="Checksum over unstuffed bytes, or their number (content, the default), or as "
+        "they are on the wire.",
     )
     when: Annotated[Literal["payload"], Ref(Kind.PART)] | None = Field(
         None,
@@ -266,13 +269,36 @@ def _table(value: Any) -> Any:
     raise ValueError("expected a mapping of bytes to what stands for them")
 
 
+_SEQUENCE = re.compile(r"[0-9A-Fa-f]{2}( [0-9A-Fa-f]{2})+")
+_SequenceForm = Annotated[str, Field(pattern=f"^{_SEQUENCE.pattern}$")]
+"""The written form of several bytes in a table: FF FF FD."""
+
+
+def _to_sequence(value: Any) -> Any:
+    """Read `FF FF FD` as bytes, and leave all else."""
+    if isinstance(value, str) and _SEQUENCE.fullmatch(value):
+        return bytes.fromhex(value)
+    return value
+
+
+def _is_sequence(value: Any) -> str:
+    return "bytes" if isinstance(_to_sequence(value), bytes) else "byte"
+
+
+Substituted = Annotated[
+    Annotated[ByteNumber, Tag("byte")]
+    | Annotated[bytes, BeforeValidator(_to_sequence), at_most(8), Tag("bytes")],
+    Discriminator(_is_sequence),
+]
+"""What something else stands for on the wire: a byte, or several that follow each other."""
 Substitutions = Annotated[
-    tuple[tuple[ByteNumber, Annotated[Octets, at_most(16)]], ...],
+    tuple[tuple[Substituted, Annotated[Octets, BeforeValidator(_to_sequence), at_most(16)]], ...],
     BeforeValidator(
-        _table, json_schema_input_type=dict[str, OctetsForm | list[ByteForm] | ByteForm]
+        _table,
+        json_schema_input_type=dict[str, OctetsForm | list[ByteForm] | ByteForm | _SequenceForm],
     ),
 ]
-"""Byte to the bytes that stand for it on the wire."""
+"""Byte, or several, to the bytes that stand for it on the wire."""
 
 
 _Preset = Literal["slip", "hdlc"]
@@ -286,7 +312,9 @@ class TransparencySyntax(Syntax):
         description="The run of parts that is stuffed; without it all between the outer literals.",
     )
     substitute: Substitutions | None = Field(
-        None, description="Substitution table: byte to the bytes that stand for it."
+        None,
+        description="Substitution table: byte to the bytes that stand for it; or several bytes, "
+        "such as FF FF FD, to the same and one more.",
     )
     escape: EscapeSyntax | None = Field(None, description="An escape byte and its transform.")
     encoding: Literal["base16-upper", "cobs"] | None = Field(

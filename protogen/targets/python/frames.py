@@ -12,6 +12,7 @@ from protogen.model.frame import (
     Encoding,
     Escape,
     IdentityPart,
+    Insertion,
     LengthPart,
     LiteralPart,
     NumberPart,
@@ -41,7 +42,9 @@ def part(item: Part) -> str:
             return call("_rt.IdentityPart", name, number(item))
         case LengthPart():
             counts = f"counts={tuple_of(map(text, item.counts))}"
-            return call("_rt.LengthPart", name, number(item), counts, **_bounds(item))
+            wire = "True" if item.over_wire else None
+            given = {**_bounds(item), "over_wire": wire}
+            return call("_rt.LengthPart", name, number(item), counts, **given)
         case CounterPart() | ValuePart():
             kind = "_rt.CounterPart" if isinstance(item, CounterPart) else "_rt.ValuePart"
             default = None if item.default is None else str(item.default)
@@ -158,6 +161,9 @@ def encoding(encoding: Encoding, lenient: str | None = None) -> str:
         case Substitution():
             table = mapping({f"0x{key:02X}": octets(value) for key, value in encoding.table})
             return call("_transparency.Substitution", table, lenient=lenient)
+        case Insertion():
+            given = f"0x{encoding.byte:02X}"
+            return call("_transparency.Insertion", octets(encoding.sequence), given)
         case Escape():
             of = ", ".join(f"0x{byte:02X}" for byte in encoding.of)
             given = f"frozenset({{{of}}})"

@@ -65,7 +65,12 @@ def members_of(view: DecoderView) -> tuple[Member, ...]:
         (push.decides_later, "extra", extra),
         (plan.measures, "due", "Bytes of content at which the payload is measured again."),
         (view.ends_at_start, "open_from", open_from),
-        (push.wire_ends, "passed", "Bytes on the wire that are part of the candidate's content."),
+        (
+            push.counts_passed,
+            "passed",
+            "Bytes on the wire that are part of the candidate's content.",
+        ),
+        (view.length_over_wire, "stop", "Those up to the end of the stuffed region; 0: not known."),
     )
     states = (
         (is_push, "state", "Seeking, taking, failed or lost."),

@@ -231,7 +231,7 @@ class PushDecoder(PushStates, frozen=True, dict=True):
         assert stuffing is not None
         refused, fine = f"{upper}_{stuffing.reason}", f"{upper}_NO_REASON"
         if not stuffing.is_cobs:
-            return f"decoder->node == 0U ? {fine} : {refused}"
+            return f"decoder->node {stuffing.is_whole} ? {fine} : {refused}"
         if stuffing.lenient:
             return f"cut ? {refused} : {fine}"
         return f"(cut || {self._flag('NEEDLESS')} != 0U) ? {refused} : {fine}"
@@ -257,7 +257,7 @@ class PushDecoder(PushStates, frozen=True, dict=True):
         """True if something is done between two parts."""
         if self.plan.ends_idle:
             return False
-        refuses = self.can_open and self.plan.start is StartRule.ANYWHERE
+        refuses = self.seeks_end and self.plan.start is StartRule.ANYWHERE
         return self.crosses_region or refuses or not self.plan.end_is_unique
 
     @property
@@ -380,6 +380,12 @@ class PushDecoder(PushStates, frozen=True, dict=True):
         return bool(self.plan.seven_bit and self.plan.tail_size) or self.checks_tail
 
     @property
+    def behind_region(self) -> int:
+        """Bytes between the stuffed region and the end."""
+        assert self.plan.region is not None
+        return self.plan.region.behind
+
+    @property
     def tail_is_there(self) -> str:
         """The condition that no part is absent."""
         optional = self.optional_tail
@@ -426,7 +432,8 @@ class PushDecoder(PushStates, frozen=True, dict=True):
             "shared": "0" if self.plan.shares_delimiter else "",
             "held": "0" if self.searches and self.holds_delimiter else "",
             "end_left": "0" if self.awaits_end else "",
-            "passed": "0" if self.wire_ends else "",
+            "passed": "0" if self.counts_passed else "",
+            "stop": "0" if self.length_over_wire else "",
             "region": f"{self.protocol_upper}_BEFORE" if self.crosses_region else "",
             "node": "0" if stuffing is not None else "",
             "code": "0" if stuffing is not None and stuffing.is_cobs else "",

@@ -186,6 +186,8 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         region, stuffing = self.plan.region, self.stuffing
         if region is None or stuffing is None:
             return False
+        if self.length_over_wire:
+            return False
         may_not_fit = stuffing.is_cobs or region.lenient
         return region.reaches_end and (self.plan.end_is_unique or not may_not_fit)
 
@@ -323,12 +325,24 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     def can_open(self) -> bool:
         """True if the payload of some frame has no size until its end is seen."""
         plan = self.plan
+        if self.length_over_wire:
+            return True
         is_kept_whole = plan.store is not Store.CONTENT or plan.end_begins_start
         if not self.all_events and not is_kept_whole and plan.identity_is_early:
             # What nobody asked for is given up at once: no frame can start inside of it.
             has_end = bool(plan.end_bytes) or plan.ends_idle
             return plan.length is None and has_end and plan.has_open_groups
         return plan.opens
+
+    @property
+    def length_over_wire(self) -> bool:
+        """True if the length counts stuffed bytes, so that the end of these is known, no sizes."""
+        return self.plan.length is not None and self.plan.length.over_wire
+
+    @property
+    def seeks_end(self) -> bool:
+        """True if some frame ends where something is found that is looked for."""
+        return self.can_open and not self.length_over_wire
 
     @property
     def simple(self) -> bool:
@@ -338,7 +352,7 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def ends_at_start(self) -> bool:
         """True if some frame ends where the next starts, and nothing else tells."""
-        return self.can_open and self.plan.ends_at_start
+        return self.seeks_end and self.plan.ends_at_start
 
     @property
     def known_from(self) -> int:

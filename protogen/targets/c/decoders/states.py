@@ -42,7 +42,7 @@ class PushStates(ReceivedFrame, frozen=True, dict=True):
         if self.plan.ends_idle:
             return False
         return self.plan.end_is_unique or (
-            self.can_open and self.plan.start is not StartRule.ANYWHERE
+            self.seeks_end and self.plan.start is not StartRule.ANYWHERE
         )
 
     @property
@@ -172,6 +172,11 @@ class PushStates(ReceivedFrame, frozen=True, dict=True):
     def start_decides(self) -> bool:
         """True if a candidate may be over with its start."""
         return self.plan.start is StartRule.SET or self.plan.least <= self.start_size
+
+    @property
+    def counts_passed(self) -> bool:
+        """True if it matters how many bytes on the wire are part of a candidate's content."""
+        return self.wire_ends or self.length_over_wire
 
     @property
     def wire_ends(self) -> bool:

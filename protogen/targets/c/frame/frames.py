@@ -69,6 +69,8 @@ class Step(msgspec.Struct, frozen=True):
     """Flags of the writer for its bytes, where they differ from those before."""
     virtual: VirtualView | None = None
     """A part that is summed here and not sent."""
+    counts: bool = False
+    """True if it is the length part, and counts what is stuffed."""
 
 
 class Half(msgspec.Struct, frozen=True):
@@ -209,7 +211,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         """True if bytes are stuffed one by one, because they are summed or sent so."""
         if self._stuffing is None or self.is_cobs:
             return False
-        return self.sums_stuffed or self.decoder.name in streaming
+        return self.sums_stuffed or self.decoder.length_over_wire or self.decoder.name in streaming
 
     @property
     def sums_stuffed(self) -> bool:
@@ -227,6 +229,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         checksum = self.decoder.checksums[0]
         is_alone = len(self.plan.tail) == 1 and checksum.at.place.side is not Side.HEAD
         plain = is_alone and not checksum.optional and not checksum.over_wire
+        plain = plain and not self._stuffing.inserts
         fits = plain and self.decoder.region_to_end and self._covers_region(checksum)
         return checksum if fits else None
 
@@ -249,8 +252,13 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
 
     @cached_property
     def steps(self) -> tuple[Step, ...]:
-        """The parts in the order in which they can be filled: checksums behind what they cover."""
+        """The parts in the order in which they can be filled: checksums behind what they cover.
+
+        A length that counts what is stuffed comes behind all but these.
+        """
         plain = [item for item in self.plan.placed if not isinstance(item.part, ChecksumPart)]
+        if self.decoder.length_over_wire:
+            plain.sort(key=lambda item: isinstance(item.part, LengthPart))
         left = [item for item in self.plan.placed if isinstance(item.part, ChecksumPart)]
         done: list[PlacedPart] = []
         while left:
@@ -286,7 +294,8 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
             ByteStore(f"{item.offset + index}U{less}", value) for index, value in enumerate(values)
         )
         checksum = next((c for c in self.decoder.checksums if c.name == part.name), None)
-        return Step(item.in_head, stores, checksum)
+        counts = isinstance(part, LengthPart) and self.decoder.length_over_wire
+        return Step(item.in_head, stores, checksum, counts=counts)
 
     # --- byte by byte -----------------------------------------------------------------------------
 
@@ -342,7 +351,7 @@ def _covered(item: PlacedPart) -> set[str]:
 
 _WORDS = (
     "byte capacity code content due frame from full high index length literal low message payload "
-    "put result size sum tail to user wire writer"
+    "put result seen size sum tail to user wire writer"
 )
 _LOCAL = frozenset(_WORDS.split())
 """Names of the functions' own variables."""

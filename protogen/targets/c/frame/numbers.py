@@ -161,6 +161,8 @@ class LengthView(msgspec.Struct, frozen=True):
     """Bytes that it counts only where there is a payload."""
     payload: int
     """The greatest payload."""
+    region_end: int | None = None
+    """Where it counts stuffed bytes: how many there are up to their end, for the value `base`."""
 
     @property
     def type(self) -> str:
@@ -190,6 +192,14 @@ class LengthView(msgspec.Struct, frozen=True):
         return " || ".join(found)
 
     @property
+    def leads_nowhere(self) -> str:
+        """The condition that no frame has a `length` that counts stuffed bytes."""
+        found = [f"length < {self.base}U"] if self.base else []
+        if self.greatest < (1 << self.bits) - 1:
+            found.append(f"length > {self.greatest}U")
+        return " || ".join(found) or "false"
+
+    @property
     def impossible(self) -> str:
         """The condition of the same where nothing wraps: `size` still counts the other parts."""
         found = []
@@ -211,9 +221,10 @@ def length_of(plan: FramePlan) -> LengthView | None:
     held = part.type.width if is_digits else part.type.byte_bits * part.type.size
     return LengthView(
         least=part.least,
-        greatest=min(part.greatest, (1 << held) - 1),
+        greatest=min(plan.length.greatest, (1 << held) - 1),
         bits=held,
         base=plan.length.base,
         optional=plan.length.optional,
         payload=plan.payload.greatest,
+        region_end=plan.length.region_end,
     )

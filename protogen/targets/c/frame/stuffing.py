@@ -6,8 +6,9 @@ from enum import Enum, auto
 
 import msgspec
 
-from protogen.model.frame import Base16, Cobs, Escape, Substitution
+from protogen.model.frame import Base16, Cobs, Escape, Insertion, Substitution
 from protogen.model.frame_plan import StuffedRegion
+from protogen.runtime.transparency.insertion import followed
 from protogen.targets.c.frame.expressions import byte
 
 
@@ -20,6 +21,8 @@ class StuffingKind(Enum):
     """A sequence that no byte has stands for itself."""
     LENIENT_ESCAPE = auto()
     """Any byte may stand behind the escape."""
+    INSERTION = auto()
+    """A byte stands behind each sequence of some others."""
     BASE16 = auto()
     COBS = auto()
 
@@ -67,6 +70,11 @@ class Stuffing(msgspec.Struct, frozen=True):
     nodes: tuple[Node, ...]
     longest: int
     """Bytes of the longest sequence."""
+    sequence: bytes = b""
+    """What a byte is put in behind."""
+    inserted: int = 0
+    following: tuple[dict[int, int], ...] = ()
+    """How much of that is there behind so much of it and a byte; nothing for those left out."""
     escape: int = 0
     escaped: tuple[int, ...] = ()
     xor: int = 0
@@ -75,6 +83,16 @@ class Stuffing(msgspec.Struct, frozen=True):
     def is_cobs(self) -> bool:
         """True if the bytes that follow decide what a byte is on the wire."""
         return self.kind is StuffingKind.COBS
+
+    @property
+    def inserts(self) -> bool:
+        """True if the bytes in front decide what a byte is on the wire."""
+        return self.kind is StuffingKind.INSERTION
+
+    @property
+    def is_whole(self) -> str:
+        """The value of `node` where nothing of a sequence is held, as a comparison."""
+        return f"!= {len(self.sequence)}U" if self.inserts else "== 0U"
 
     @property
     def reason(self) -> str:
@@ -99,7 +117,10 @@ def stuffing_of(region: StuffedRegion | None) -> Stuffing | None:
         lenient=region.lenient,
         codes=codes,
         nodes=_nodes(codes),
-        longest=region.longest,
+        longest=2 if region.insertion else region.longest,
+        sequence=region.insertion.sequence if region.insertion else b"",
+        inserted=region.insertion.byte if region.insertion else 0,
+        following=followed(region.insertion.sequence) if region.insertion else (),
         escape=escape.byte if escape else 0,
         escaped=tuple(sorted(escape.of)) if escape else (),
         xor=escape.xor if escape else 0,
@@ -110,6 +131,8 @@ def _kind(region: StuffedRegion) -> StuffingKind:
     match region.encoding:
         case Base16():
             return StuffingKind.BASE16
+        case Insertion():
+            return StuffingKind.INSERTION
         case Cobs():
             return StuffingKind.COBS
         case Escape() if region.lenient:

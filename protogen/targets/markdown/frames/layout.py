@@ -179,7 +179,10 @@ def part_sizes(part: Part, payload: SizeSet) -> SizeSet:
 def length_values(frame: Frame, part: LengthPart, payload: SizeSet) -> SizeSet:
     """Return what the length part can hold in front of such a payload."""
     counted = (part_sizes(frame.part(name), payload) for name in part.counts)
-    return sum(counted, start=_NOTHING)
+    found = sum(counted, start=_NOTHING)
+    if not part.over_wire:
+        return found
+    return SizeSet.between(found.least, max(found.greatest, part.greatest))
 
 
 def wire_scale(frame: Frame, part: Part) -> int:

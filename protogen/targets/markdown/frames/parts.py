@@ -17,6 +17,7 @@ from protogen.model.frame import (
     Escape,
     Frame,
     IdentityPart,
+    Insertion,
     LengthPart,
     LiteralPart,
     NumberPart,
@@ -201,7 +202,8 @@ def _unmarked(decision: str) -> str:
 def _jobs(part: NumberPart) -> tuple[str, ...]:
     match part:
         case LengthPart():
-            return (f"Number of bytes of {part_names(part.counts)}.",)
+            over = ", as they are on the wire" if part.over_wire else ""
+            return (f"Number of bytes of {part_names(part.counts)}{over}.",)
         case CounterPart():
             return ("Counts frames and wraps.", _default(part))
         case ChoicePart():
@@ -303,6 +305,9 @@ def _rule(encoding: Encoding, region: str) -> str:
     match encoding:
         case Substitution():
             return f"In {region}, these bytes are replaced on the wire"
+        case Insertion():
+            more = code(hex_bytes(bytes([encoding.byte])))
+            return f"In {region}, {more} is put in wherever these bytes follow each other"
         case Escape():
             return f"In {region}, {_escape_rule(encoding)}"
         case Base16():
@@ -326,21 +331,24 @@ def _escape_rule(escape: Escape) -> str:
 
 
 def transparency_table(transparency: Transparency) -> Table | None:
-    """Return the table of the bytes that are replaced, where single bytes are."""
+    """Return the table of the bytes that something else stands for, where there are some."""
     rows = _replacements(transparency.encoding)
     if not rows:
         return None
-    cells = ((code(hex_bytes(bytes([byte]))), code(hex_bytes(wire))) for byte, wire in rows)
+    cells = ((code(hex_bytes(data)), code(hex_bytes(wire))) for data, wire in rows)
     return table(("Data", "On the wire"), cells)
 
 
-def _replacements(encoding: Encoding) -> tuple[tuple[int, bytes], ...]:
+def _replacements(encoding: Encoding) -> tuple[tuple[bytes, bytes], ...]:
     match encoding:
         case Substitution():
-            return encoding.table
+            return tuple((bytes([byte]), wire) for byte, wire in encoding.table)
+        case Insertion():
+            word = encoding.sequence
+            return ((word, word + bytes([encoding.byte])),)
         case Escape():
             return tuple(
-                (byte, bytes([encoding.byte, byte ^ encoding.xor])) for byte in encoding.of
+                (bytes([byte]), bytes([encoding.byte, byte ^ encoding.xor])) for byte in encoding.of
             )
         case _:
             return ()
