@@ -102,8 +102,13 @@ def compare_frames(name: str, peer: Peer, drawn: Iterable[Case]) -> None:
         assert peer.values(case, ours) == case.values, case
 
 
-def compare_recovery(name: str, endpoint: str, peer: Peer, drawn: Iterable[Case]) -> None:
-    """Of a stream with damaged bytes, no frame is lost that the peer finds."""
+def compare_recovery(
+    name: str, endpoint: str, peer: Peer, drawn: Iterable[Case], shared: bytes = b""
+) -> None:
+    """Of a stream with damaged bytes, no frame is lost that the peer finds.
+
+    `shared` is the delimiter that may both end a frame and begin the next one.
+    """
     engine = engine_of(name)
     dice = Random(name)
     drawn = [case for case in drawn if endpoint_of(name, case) == endpoint]
@@ -111,7 +116,7 @@ def compare_recovery(name: str, endpoint: str, peer: Peer, drawn: Iterable[Case]
     dice.shuffle(frames)
     data = damaged(b"".join(frames), dice)
     sent = Counter(frames)
-    ours = Counter(found(engine, drawn[0].sender, data)) & sent
+    ours = Counter(found(engine, drawn[0].sender, data, shared)) & sent
     theirs = Counter(peer.found(endpoint, data)) & sent
     assert theirs <= ours, [frame.hex(" ") for frame in theirs - ours]
     assert len(frames) / 10 < ours.total() < len(frames)
@@ -123,10 +128,11 @@ def damaged(data: bytes, dice: Random) -> bytes:
     return bytes(byte ^ dice.randrange(1, 256) if dice.random() < ERRORS else byte for byte in data)
 
 
-def found(engine: PythonEngine, sender: str, data: bytes) -> Iterator[bytes]:
+def found(engine: PythonEngine, sender: str, data: bytes, shared: bytes = b"") -> Iterator[bytes]:
     """Yield the frames of known messages that we find in a stream, in all forms of the endpoint."""
     at = 0
     for event in engine.events(sender, [data]):
         if event.kind == "message":
-            yield data[at : at + event.size]
+            frame = data[at : at + event.size]
+            yield frame if frame.startswith(shared) else shared + frame
         at += event.size
