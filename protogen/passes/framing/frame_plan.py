@@ -172,7 +172,8 @@ class _Planner:
         optional = counted_size(self._frame, part, empty=False) - base
         if not part.over_wire:
             return LengthPlan(part=part, base=base, optional=optional)
-        last = max(self._names.index(name) for name in self._stuffed)
+        names = [item.name for item in self._frame.parts]
+        last = max(names.index(name) for name in self._stuffed)
         others = sum(item.size for item in self._frame.parts if item.name not in part.counts)
         return LengthPlan(
             part=part,

@@ -102,6 +102,8 @@ class Layout:
     def ends_idle(self) -> bool:
         """True if a silence ends a frame, and no byte."""
         return self.spec.silence is not None
+
+    @cached_property
     def counts_wire(self) -> bool:
         """True if the length counts stuffed bytes, so that only their end tells the payload's."""
         return self.length is not None and self.length.over_wire
