@@ -148,15 +148,15 @@ class Load(PlacedWalk):
         self.skip(f"1U + {member}")
 
     @contextmanager
-    def inside(self, end: str, step: RegionStep) -> Iterator[None]:
+    def inside(self, size: str, step: RegionStep) -> Iterator[None]:
         """Inside of a region, `size` is where it ends."""
         self.reads_size = self.moves_size = True
-        whole = self.variable("whole")
-        if not step.is_last:
+        whole = "" if step.is_last else self.variable("whole")
+        if whole:
             self.lines.add(f"const size_t {whole} = size;")
-        self.lines.add(f"size = (size_t)({end} - payload);")
+        self.lines.add(f"size = (size_t)(at - payload) + {size};")
         yield
-        if not step.is_last:
+        if whole:
             self.lines.add(f"size = {whole};")
 
     def _left(self) -> str:

@@ -126,17 +126,18 @@ class PlacedWalk(Walk):
         """What takes just so many bytes; behind it, `at` stands where they end."""
         bytes_ = amount(self.count(step.region))
         self.settle()
-        end = self.variable("region_end")
-        self.lines.add(f"{self._pointer}const {end} = at + {bytes_};")
-        with self.branch(), self.inside(end, step):
+        end = "" if step.is_last else self.variable("region_end")
+        if end:
+            self.lines.add(f"{self._pointer}const {end} = at + {bytes_};")
+        with self.branch(), self.inside(bytes_, step):
             self.step(step.step, place)
-        if not step.is_last:
+        if end:
             self.lines.add(f"at = {end};")
             self.settled()
 
     @contextmanager
-    def inside(self, end: str, step: RegionStep) -> Iterator[None]:
-        """Surroundings of what is printed for a region that ends there."""
+    def inside(self, size: str, step: RegionStep) -> Iterator[None]:
+        """Surroundings of what is printed for a region of so many bytes, which begins at `at`."""
         yield
 
     @contextmanager
