@@ -42,6 +42,13 @@ HABITS = [
     ("names alone", VALUE, "{type: uint8, values: [a, b]}", "each name has its number: `{a: 0, b:"),
     ("nothing tells", "uint8, id: true}", "uint8}", "`kind: {type: uint8, id: true}`"),
     ("a brace", VALUE, "{type: uint16}}", "there is one `}` too many"),
+    (
+        "a comma in a text",
+        VALUE,
+        "{type: uint16, doc: between the pins, behind the fuse, in volts}",
+        '`doc: "between the pins, behind the fuse, in volts"`',
+    ),
+    ("a key without a value", VALUE, "{type: uint16, big}", "keys are type, fields"),
     ("a comment", VALUE, "{type: uint16, doc: see # 5}", "a `#` behind a space begins a comment"),
     ("messages in a list", MESSAGES, "messages:\n  - reading\n", "leave out the `-`: `messages:`"),
     ("not indented", "  reading:\n", "reading:\n", "indent it, if it belongs to `messages`"),

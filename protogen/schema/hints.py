@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from itertools import takewhile
 from typing import Any
 
 from protogen.problems import hint_for
@@ -42,6 +43,10 @@ _KEYS: Mapping[str, Sequence[tuple[str, str]]] = {
 """Keys of other languages, with ours: the first that is a key at the place is meant."""
 _HEXADECIMAL = re.compile(r"(?:0[xX])?([0-9A-Fa-f]+)[hH]?")
 _LONG_BYTES = 255
+_PROSE = frozenset(("doc", "title", "summary", "note", "section")) | frozenset(
+    ("question", "document", "choice", "because", "why")
+)
+"""Keys whose values are sentences."""
 
 
 def key_hint(word: str, known: Sequence[str]) -> str | None:
@@ -134,3 +139,18 @@ def indent_hint(around: Any, key: str, mappings: Sequence[str]) -> str | None:
         return None
     empty = [name for name in mappings if name in around and not around[name]]
     return f"indent it, if it belongs to `{empty[0]}`" if len(empty) == 1 else None
+
+
+def comma_hint(around: Any, key: str) -> str | None:
+    """How to write a text between braces that commas have cut into a text and keys."""
+    if not isinstance(around, dict) or around.get(key, "") is not None:
+        return None
+    names = [str(name) for name in around]
+    first = names.index(key)
+    while first and around.get(names[first]) is None:
+        first -= 1
+    text = around.get(names[first])
+    if names[first] not in _PROSE or not isinstance(text, str):
+        return None
+    pieces = takewhile(lambda name: around.get(name) is None, names[first + 1 :])
+    return f'a comma ends a text: `{names[first]}: "{", ".join((text, *pieces))}"`'

@@ -92,6 +92,7 @@ def _report(detail: ErrorDetails, data: Any, find: Find, problems: Problems) -> 
             text = f"`{loc[-1]}` is no key here"
             around = _at(data, loc[:-1])
             hint = hints.indent_hint(around, str(loc[-1]), _mappings_at(loc[:-1]))
+            hint = hint or hints.comma_hint(around, str(loc[-1]))
             hint = hint or hints.key_hint(str(loc[-1]), known) or _key_hint(str(loc[-1]), known)
             problems.add("PG100", find(loc, key=True), text, hint)
         case "missing":
