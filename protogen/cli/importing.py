@@ -95,6 +95,8 @@ def mavlink(
     from protogen.importing.mavlink.schemas import import_dialects
 
     imported = import_dialects(read_dialects(definitions), Wire(wire))
+    if not imported.schemas:
+        raise UsageError(f"`{definitions}` defines no message")
     _write(imported, output, force=force, quiet=quiet)
     return CLEAN
 

@@ -31,12 +31,13 @@ from protogen.importing.remarks import DefinitionError, Imported, Kind, Remark, 
 from protogen.importing.schema_text import joined, schema_text
 from protogen.importing.writing import SUFFIX
 from protogen.passes.types.type_names import COMMON_NAMES
+from protogen.problems.span import Span
 
 
 def import_dialects(dialects: Dialects, wire: Wire) -> Imported:
     """Return a schema of each file, those in front that others extend."""
     run = _Import(dialects, wire)
-    schemas = [run.schema(file) for file in dialects.by_file]
+    schemas = [schema for file in dialects.by_file if (schema := run.schema(file)) is not None]
     remarks = sorted(set(run.remarks), key=lambda remark: (remark.span, remark.reason))
     return Imported(tuple(schemas), len(dialects.by_file), 0, tuple(remarks))
 
@@ -58,25 +59,31 @@ class _Import:
         self._dialects = dialects
         self._wire = wire
         self._known: dict[str, _Known] = {}
-        self._names: dict[str, str] = {}
+        """What the schemas say, by file."""
 
-    def schema(self, file: str) -> Schema:
-        """Return the schema of a file; those of the files that it includes are made already."""
-        name = unique(snake_case(_stem(file)), self._names.values())
-        self._names[file] = name
+    def schema(self, file: str) -> Schema | None:
+        """Return the schema of a file; those of the files that it includes are made already.
+
+        Returns None if there is no message in it.
+        """
         base = self._base(file)
         known = None if base is None else self._known[base]
         above = set() if base is None else set(self._dialects.closure(base))
-        files = [item for item in self._dialects.closure(file) if item not in above]
+        name = unique(snake_case(_stem(file)), [item.name for item in self._known.values()])
         part = _Part(name, known, self._wire, self.remarks)
-        for item in files:
-            part.add(self._dialects.by_file[item])
+        for item in self._dialects.closure(file):
+            if item not in above:
+                part.add(self._dialects.by_file[item])
+        if part.is_empty:
+            reason = f"it has no message for MAVLink {self._wire}"
+            self.remarks.append(Remark(Kind.LEFT_OUT, Path(file).name, reason, Span.of_file(file)))
+            return None
         self._known[file] = part.known()
         return part.schema(self._dialects.by_file[file])
 
     def _base(self, file: str) -> str | None:
         """Return the included file whose schema the one of a file extends."""
-        included = self._dialects.included[file]
+        included = [item for item in self._dialects.included[file] if item in self._known]
         if not included:
             return None
         return max(included, key=lambda item: len(self._dialects.closure(item)))
@@ -108,6 +115,11 @@ class _Part:
             self._check(message)
             if self._fits(message):
                 self._messages.append((message, dialect))
+
+    @property
+    def is_empty(self) -> bool:
+        """True if there is no message in the schema, and none that it extends."""
+        return self._base is None and not self._messages
 
     def known(self) -> _Known:
         """Return what is known to a schema that extends this one."""
@@ -164,7 +176,7 @@ class _Part:
             base = f"{self._base.name}{SUFFIX}"
             root = {"protocol": self._name, "extends": base, **about}
         root |= {"types": self._types} if self._types else {}
-        root |= {"messages": messages} if messages or self._base is None else {}
+        root |= {"messages": messages} if messages else {}
         root |= {"decisions": decisions()} if self._base is None else {}
         text = schema_text(root, self._head(dialect))
         return Schema(self._name, text, len(messages), len(self._types))
