@@ -104,8 +104,12 @@ class Enums:
             has_flags = enum.is_bitmask and greatest > 1
             types = EnumTypes(enum, file, prefix, has_flags, {}, {}, [], Counter())
             self.by_name[enum.name] = types
+        is_new = not types.entries
         for entry, number in _numbered(enum, types):
             self._add_entry(types, entry, number)
+            if entry.value is None and not is_new:
+                reason = f"it has no value, and is {number} behind those of other files"
+                self._remark(Kind.CHANGED, types, entry, reason)
 
     def _add_entry(self, types: EnumTypes, entry: Entry, number: int) -> None:
         for other in types.entries.values():
@@ -225,18 +229,24 @@ def can_name(types: EnumTypes, number: str) -> bool:
     return number in INTEGERS and not (types.has_flags and INTEGERS[number].startswith("s"))
 
 
-def _numbered(enum: Enum, types: EnumTypes) -> Iterable[tuple[Entry, int]]:
-    """Yield entries with their numbers; one without is greater by one than all so far."""
-    before = max((item.number for item in types.entries.values()), default=0)
-    greatest = 0
+def _numbered(enum: Enum, types: EnumTypes) -> list[tuple[Entry, int]]:
+    """Return entries with their numbers, as mavgen finds them.
+
+    One without is greater by one than all so far, and than all that other files have, if the
+    numbers of this one lie among those.
+    """
+    numbers: list[int] = []
     for entry in enum.entries:
-        number = entry.value
-        if number is None:
-            number = greatest + 1
-            if number <= before:
-                number = before + 1
-        greatest = max(greatest, number)
-        yield entry, number
+        follows = max([0, *numbers]) + 1
+        numbers.append(follows if entry.value is None else entry.value)
+    others = [item.number for item in types.entries.values()]
+    if others and numbers and min(numbers) <= max(others) and max(numbers) >= min(others):
+        greatest = max(others)
+        for index, entry in enumerate(enum.entries):
+            if entry.value is None and numbers[index] <= greatest:
+                greatest += 1
+                numbers[index] = greatest
+    return list(zip(enum.entries, numbers, strict=True))
 
 
 def _is_bit(number: int) -> bool:

@@ -136,7 +136,7 @@ class _Field:
         least = self._number(low) if low else bounds[0]
         greatest = self._number(high) if high else bounds[1]
         if least is None or greatest is None or _value(least) > _value(greatest):
-            said = " ".join(filter(None, (f"from {low}" * bool(low), f"to {high}" * bool(high))))
+            said = " ".join(filter(None, (f"from {low}" * bool(low), f"up to {high}" * bool(high))))
             self._remark(f"its values {said}, which a schema can't say of a {self._spec.type}")
             return {}
         return {"range": [least, greatest]}

@@ -212,7 +212,7 @@ class _Part:
         lines = [f"MAVLink {self._wire}, made by `protogen import mavlink`."]
         others = [Path(item.file).name for item in self._dialects if item is not dialect]
         if others:
-            lines += ["", f"With what {', '.join(others)} define."]
+            lines += ["", f"What {', '.join(others)} defines is in it, too."]
         files = {item.file for item in self._dialects}
         missing = [
             f"{item.name}: {item.reason}."

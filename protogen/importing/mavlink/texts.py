@@ -7,7 +7,10 @@ import re
 from protogen.importing.mavlink.spec import Entry, Life, Param
 from protogen.importing.schema_text import joined, paragraphs
 
-_SENTENCE = re.compile(r"(.{10,120}?[.!])\s+(?=[A-Z])")
+LONGEST_SUMMARY = 120
+"""Characters of a sentence that sums up a message."""
+
+_END = re.compile(r"[.!](?=\s+[A-Z])")
 _ABBREVIATION = re.compile(r"(?:\b(?:e\.g|i\.e|etc|vs|approx|incl|max|min|no)|\b[A-Z])\.$", re.I)
 _NO_PARAMETER = frozenset({"", "empty", "reserved", "unused"})
 _FACTS = (
@@ -26,11 +29,11 @@ _KINDS = {"deprecated": "Deprecated", "superseded": "Superseded", "wip": "Work i
 def summary_and_doc(text: str) -> tuple[str, str]:
     """Return the first sentence of a description, and the rest of it."""
     text = paragraphs(text)
-    found = _SENTENCE.match(text)
-    is_sentence = found is not None and not _ABBREVIATION.search(found[1])
-    if found is not None and is_sentence and found[1].count("(") == found[1].count(")"):
-        return found[1], text[found.end() :].lstrip()
-    if len(text) <= 120 and "\n" not in text:
+    for found in _END.finditer(text, 0, LONGEST_SUMMARY):
+        first = text[: found.end()]
+        if first.count("(") == first.count(")") and not _ABBREVIATION.search(first):
+            return first, text[found.end() :].lstrip()
+    if len(text) <= LONGEST_SUMMARY and "\n" not in text:
         return text, ""
     return "", text
 
