@@ -20,6 +20,8 @@ GREATEST_SIZE = 16 * 1024 * 1024
 GREATEST_DEPTH = 32
 """The most elements that may lie in each other."""
 
+_CHARACTERS = (errors.XML_ERROR_INVALID_TOKEN, errors.XML_ERROR_UNDEFINED_ENTITY)
+
 
 class Element(msgspec.Struct):
     """Element of a file: its name, its attributes, its text and the elements in it."""
@@ -95,7 +97,9 @@ class _Reader:
     def _mistake(self, error: ExpatError) -> DefinitionError:
         cause = errors.messages.get(error.code, str(error))
         hint = None
-        if self._open:
+        if cause in _CHARACTERS:
+            hint = "in a text, & is &amp; and < is &lt;; other characters are those of the encoding"
+        elif self._open:
             inner = self._open[-1]
             hint = f"`{inner.tag}` of line {inner.span.line} is open here"
         elif self._root is None:

@@ -281,6 +281,6 @@ def _check_unique(items: Iterable[Message | FieldSpec | Entry], what: str) -> No
     seen: dict[str, Span] = {}
     for item in items:
         if item.name in seen:
-            message = f"there is a {what} `{item.name}` already, in line {seen[item.name].line}"
+            message = f"the {what} `{item.name}` is there already, in line {seen[item.name].line}"
             raise DefinitionError(item.span, message, "each has a name of its own")
         seen[item.name] = item.span
