@@ -121,7 +121,7 @@ class TestSummary:
             "left out: LEVEL.water_sign (tides.xml:71:7): "
             "the names of WATER_FLAGS, as a bitmask has no sign",
             "left out: LEVEL.tide_part (tides.xml:72:7): "
-            "its values up to 3, which a schema can't say of a float",
+            "its values up to 3, which a schema can't say of it",
             "left out: LEVEL.tide_part (tides.xml:72:7): the names of TIDE, as it is no integer",
             "left out: FLOOD (tides.xml:75:5): it has 256 bytes, and a payload has 255 at most",
             "3 files of definitions read",

@@ -16,7 +16,7 @@ import msgspec
 from protogen.importing.mavlink.identifiers import common_prefix, identifier, short_name
 from protogen.importing.mavlink.spec import Entry, Enum
 from protogen.importing.mavlink.texts import entry_text, life_text
-from protogen.importing.names import says_all, unique
+from protogen.importing.names import LONGEST_NAME, says_all, unique
 from protogen.importing.remarks import DefinitionError, Kind, Remark
 from protogen.importing.schema_text import joined, paragraphs
 from protogen.problems import hint_for
@@ -180,8 +180,9 @@ class Enums:
             needed = [_smallest(types)]
         for number in needed:
             kind = INTEGERS[number]
-            name = unique(base, taken, "type") if not types.variants else f"{base}_{kind}"
-            types.variants[number] = Variant(unique(name, taken), kind, is_used=False)
+            wide = f"{base[: LONGEST_NAME - len(kind) - 1].rstrip('_')}_{kind}"
+            name = unique(wide, taken) if types.variants else unique(base, taken, "type")
+            types.variants[number] = Variant(name, kind, is_used=False)
         for number in types.uses:
             types.variants[number].is_used = True
         return changed
@@ -261,14 +262,20 @@ def _fits(number: int, kind: str) -> bool:
 
 
 def _fits_all(types: EnumTypes, number: str) -> bool:
-    return all(_fits(item.number, INTEGERS[number]) for item in types.entries.values())
+    return all(_fits(item, INTEGERS[number]) for item in _numbers(types))
 
 
 def _smallest(types: EnumTypes) -> str:
     """Return the narrowest type that holds all entries; the widest one if there is none."""
-    is_signed = any(item.number < 0 for item in types.entries.values())
+    is_signed = any(number < 0 for number in _numbers(types))
     kinds = [f"{'' if is_signed else 'u'}int{bits}_t" for bits in (8, 16, 32, 64)]
     return next((kind for kind in kinds if _fits_all(types, kind)), kinds[-1])
+
+
+def _numbers(types: EnumTypes) -> list[int]:
+    """Return the numbers that a type has names for."""
+    numbers = [item.number for item in types.entries.values()]
+    return list(filter(_is_bit, numbers)) if types.has_flags else numbers
 
 
 def _key(kind: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -61,7 +61,8 @@ class _Field:
             data = self._characters()
         else:
             data = self._type()
-            data |= self._unit() | self._default() | self._range() | self._special(data["type"])
+            data |= self._unit() | self._range()
+            data |= self._default(data.get("range", ())) | self._special()
         if self._get("instance") == "true":
             self._docs.append("Tells several of the same kind apart.")
         doc = joined(self._docs)
@@ -116,17 +117,25 @@ class _Field:
             data["unit"] = unit.unit
         return data
 
-    def _default(self) -> dict[str, Any]:
+    def _default(self, bounds: Sequence[Any]) -> dict[str, Any]:
+        """Return the default; `bounds` are those of the range, if it has one."""
         if self._spec.is_version:
             return {"default": self._version}
         written = self._get("default")
         if not written:
             return {}
-        number = self._number(written)
+        number, count = self._number(written), self._spec.count
+        reason = ""
         if number is None:
-            self._remark(f"the default `{written}`, which is no {self._spec.type}")
+            reason = f", which is no {self._spec.type}"
+        elif bounds and not _value(bounds[0]) <= _value(number) <= _value(bounds[1]):
+            reason = ", which is out of its range"
+        elif count is not None and not self._is_integer:
+            reason = ", as an array of no integers has none"
+        if reason:
+            self._remark(f"the default `{written}`{reason}")
             return {}
-        return {"default": number}
+        return {"default": number if count is None else [number] * count}
 
     def _range(self) -> dict[str, Any]:
         low, high = self._get("minValue"), self._get("maxValue")
@@ -135,13 +144,14 @@ class _Field:
         bounds = _bounds(INTEGERS[self._spec.type]) if self._is_integer else (None, None)
         least = self._number(low) if low else bounds[0]
         greatest = self._number(high) if high else bounds[1]
-        if least is None or greatest is None or _value(least) > _value(greatest):
+        is_said = least is not None and greatest is not None and not self._spec.is_version
+        if not is_said or _value(least) > _value(greatest):
             said = " ".join(filter(None, (f"from {low}" * bool(low), f"up to {high}" * bool(high))))
-            self._remark(f"its values {said}, which a schema can't say of a {self._spec.type}")
+            self._remark(f"its values {said}, which a schema can't say of it")
             return {}
         return {"range": [least, greatest]}
 
-    def _special(self, kind: str) -> dict[str, Any]:
+    def _special(self) -> dict[str, Any]:
         """Return the value without a reading; what is none goes to the docs."""
         written = self._get("invalid")
         found = _NAN.fullmatch(written)
