@@ -529,6 +529,8 @@ SENT_BY_THE_REFERENCE = {
     ("separated_line", "receiver"),
     ("digit_parts", "station"),
     ("digit_lengths", "station"),
+    ("mavlink_like", "craft_signed"),
+    ("virtual_behind", "station"),
 }
 """Behind the payload stands something that is no checksum."""
 CUT_BY_THE_REFERENCE = {

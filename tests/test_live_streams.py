@@ -114,6 +114,9 @@ AWAITED_BY_THE_REFERENCE = {
     ("separated_line", "receiver"),  # Behind the payload stands something that is no checksum.
     ("digit_parts", "station"),
     ("digit_lengths", "station"),
+    ("mavlink_like", "craft_signed"),
+    ("virtual_behind", "station"),
+    ("virtual_parts", "station"),  # Where frames begin behind an end.
     ("slip", "station"),
     ("told_numbers", "station"),
     ("told_presence", "station"),

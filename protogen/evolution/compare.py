@@ -62,6 +62,7 @@ def _changes(
             yield from compare_frames(sender, other)
             yield from _overloads(sender, other, messages)
             yield from _identities(sender, other, new, messages)
+            yield from _virtual(sender, other, messages)
     yield from _messages(old, new, endpoints, messages)
 
 
@@ -212,6 +213,21 @@ class _Owners:
             found = [name for item, own in known if item.meet(identities) for name in own]
         several = (item for item in self._several if item.told_by.meet(identities) is not None)
         return [*found, *(item.name for item in several)]
+
+
+def _virtual(old: Sender, new: Sender, messages: dict[str, str]) -> Iterator[Change]:
+    """Other values of what is not sent, in parts of one name."""
+    after = {message.name: message for message in new.messages}
+    for part in old.frame.virtual:
+        same = new.frame.virtual_part(part.name)
+        for message in old.messages if same is not None else ():
+            other = after.get(messages.get(message.name, ""))
+            if other is None or same is None:
+                continue
+            values = message.virtual_value(part), other.virtual_value(same)
+            if None not in values and values[0] != values[1]:
+                words = f"{part.name} {named(*(str(part.shown(value or 0)) for value in values))}"
+                yield replace(_change("message-virtual", message, words), sender=old.name)
 
 
 def _overloads(old: Sender, new: Sender, messages: dict[str, str]) -> Iterator[Change]:

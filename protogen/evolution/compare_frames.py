@@ -22,7 +22,9 @@ from protogen.model.frame import (
     PartType,
     Substitution,
     Transparency,
+    TypedPart,
     ValuePart,
+    VirtualPart,
 )
 from protogen.model.protocol import Sender
 from protogen.passes.framing.capacity import payload_range
@@ -53,12 +55,12 @@ class _Frames:
     def compare(self, old: Frame, new: Frame) -> Iterator[Change]:
         renamed = _renamed(old, new)
         crossed = renamed if are_crossed(tuple(renamed.items())) else {}
-        before = [renamed.get(part.name, part.name) for part in old.parts]
-        after = [part.name for part in new.parts]
+        before = [renamed.get(part.name, part.name) for part in old.declared]
+        after = [part.name for part in new.declared]
         kept = [name for name in before if name in after]
         order = [name for name in after if name in before]
-        by_name = {part.name: part for part in new.parts}
-        for part, name in zip(old.parts, before, strict=True):
+        by_name = {part.name: part for part in new.declared}
+        for part, name in zip(old.declared, before, strict=True):
             if name not in by_name:
                 yield self._change("frame-part-deleted", part.name, _kind(part))
                 continue
@@ -71,7 +73,7 @@ class _Frames:
                 words = named(f"place {kept.index(name) + 1}", f"{order.index(name) + 1}")
                 yield self._change("frame-part-moved", part.name, words)
             yield from self._part(part, by_name[name], renamed)
-        for part in new.parts:
+        for part in new.declared:
             if part.name not in before:
                 yield self._change("frame-part-added", part.name, _kind(part))
         yield from self._transparency(old.transparency, new.transparency, renamed)
@@ -92,6 +94,8 @@ class _Frames:
             yield from self._number(old, new, renamed)
         elif isinstance(old, ChecksumPart) and isinstance(new, ChecksumPart):
             yield from self._checksum(old, new, renamed)
+        elif isinstance(old, VirtualPart) and isinstance(new, VirtualPart):
+            yield from self._virtual(old, new)
 
     def _number(
         self, old: NumberPart, new: NumberPart, renamed: dict[str, str]
@@ -145,6 +149,16 @@ class _Frames:
             words = named(_coverage(old), _coverage(new))
             yield self._change("frame-checksum-coverage", old.name, words)
 
+    def _virtual(self, old: VirtualPart, new: VirtualPart) -> Iterator[Change]:
+        if _layout(old.type) != _layout(new.type):
+            words = named(old.type.label, new.type.label)
+            yield self._change("frame-part-type", old.name, words)
+        before, after = (
+            "none" if part.default is None else str(part.shown(part.default)) for part in (old, new)
+        )
+        if before != after:
+            yield self._change("frame-virtual-default", old.name, named(before, after))
+
     def _transparency(
         self, old: Transparency | None, new: Transparency | None, renamed: dict[str, str]
     ) -> Iterator[Change]:
@@ -158,10 +172,10 @@ class _Frames:
 
 def _renamed(old: Frame, new: Frame) -> dict[str, str]:
     """Parts that are the same but for their names."""
-    before = {part.name for part in old.parts}
-    after = {part.name for part in new.parts}
+    before = {part.name for part in old.declared}
+    after = {part.name for part in new.declared}
     found = {}
-    for one, other in zip(old.parts, new.parts, strict=False):
+    for one, other in zip(old.declared, new.declared, strict=False):
         if one.name not in after and other.name not in before and type(one) is type(other):
             found[one.name] = other.name
     return found
@@ -207,7 +221,7 @@ def _kind(part: Part) -> str:
     name = type(part).__name__.removesuffix("Part").lower()
     if isinstance(part, ChoicePart):
         return f"one of the literals {_alternatives(part)}"
-    if isinstance(part, NumberPart | ChecksumPart):
+    if isinstance(part, TypedPart):
         return f"{name}, {part.type.label}"
     return f"{name} {part.bytes.hex(' ').upper()}" if isinstance(part, LiteralPart) else name
 

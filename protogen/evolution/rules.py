@@ -61,6 +61,13 @@ RULES: tuple[Rule, ...] = (
         "rebuild the receivers first",
     ),
     Rule("frame-part-default", _S, "a part has another default", "check the senders"),
+    Rule(
+        "frame-virtual-default",
+        _W,
+        "frames of unknown messages are verified with another value",
+        _TOGETHER,
+        by_frame=False,
+    ),
     Rule("frame-length-rule", _W, "the length counts other parts", _TOGETHER),
     Rule("frame-length-range", _W, "receivers take other lengths", "rebuild the receivers first"),
     Rule("frame-checksum-algorithm", _W, "the checksum is worked out another way", _TOGETHER),
@@ -94,6 +101,7 @@ RULES: tuple[Rule, ...] = (
     Rule("reserved-reused", _W, "what was reserved is used again", _NEW_ID, by_frame=False),
     Rule("message-sender-added", _S, "others send the message, too", "check who listens"),
     Rule("message-sender-deleted", _W, "a sender of the message is gone", "reserve its identity"),
+    Rule("message-virtual", _W, "another value of a message goes into the checksum", _BOTH),
     Rule("message-overload", _V, "messages that share an identity are told apart otherwise", _BOTH),
     Rule("message-size", _W, "payloads of other sizes are allowed", _BOTH),
     # fields

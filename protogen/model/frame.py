@@ -164,6 +164,20 @@ class ChecksumPart(TypedPart, frozen=True, kw_only=True):
         return self.when_payload
 
 
+class VirtualPart(TypedPart, frozen=True, kw_only=True):
+    """A number that goes into the checksums that cover it, and is not sent."""
+
+    place: int
+    """Parts that stand in front of it."""
+    default: int | None = None
+    """Value in frames of messages that give none, and of unknown ones; None: those have none."""
+
+    @property
+    def size(self) -> int:
+        """Bytes before stuffing: none."""
+        return 0
+
+
 class Substitution(msgspec.Struct, frozen=True, kw_only=True):
     """Each listed byte is replaced by a sequence."""
 
@@ -208,12 +222,27 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     """Parts in wire order, exactly one of which is the payload."""
 
     parts: tuple[Part, ...]
+    virtual: tuple[VirtualPart, ...] = ()
+    """The parts that are not sent."""
     transparency: Transparency | None = None
     limit: int | None = None
     """Wire bytes that no frame exceeds, where the schema bounds them."""
 
+    @cached_property
+    def declared(self) -> tuple[Part, ...]:
+        """All parts in the order of the schema, those that are not sent among them."""
+        found: list[Part] = []
+        for index, part in enumerate(self.parts):
+            found += [item for item in self.virtual if item.place == index]
+            found.append(part)
+        return (*found, *(item for item in self.virtual if item.place >= len(self.parts)))
+
+    def virtual_part(self, name: str) -> VirtualPart | None:
+        """The part of that name that is not sent; None if there is none."""
+        return next((part for part in self.virtual if part.name == name), None)
+
     def part(self, name: str) -> Part:
-        """The part called `name`; raises KeyError."""
+        """The part called `name`, of those that are sent; raises KeyError."""
         for part in self.parts:
             if part.name == name:
                 return part
@@ -261,6 +290,13 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     def identity(self) -> tuple[IdentityPart, ...]:
         """The identity parts in wire order."""
         return tuple(part for part in self.parts if isinstance(part, IdentityPart))
+
+    def key(self, identity: tuple[int, ...]) -> int:
+        """Values of the identity parts as one number, the first part in its highest bits."""
+        key = 0
+        for part, value in zip(self.identity, identity, strict=True):
+            key = key << part.type.bits | value
+        return key
 
     @cached_property
     def length(self) -> LengthPart | None:

@@ -25,6 +25,7 @@ from protogen.model.frame import (
     LengthPart,
     Part,
     ValuePart,
+    VirtualPart,
 )
 from protogen.model.identities import Identities
 from protogen.model.messages import Message
@@ -150,15 +151,37 @@ class ChecksumPlan(msgspec.Struct, frozen=True, kw_only=True):
 
     part: ChecksumPart
     placed: PlacedPart
-    covers: tuple[Run | bytes, ...]
+    covers: tuple[Run | bytes | VirtualPart, ...]
     """Runs of content in order, neighbours joined; bytes stand for a literal of the end."""
     is_behind: bool
     """True if the checksum stands behind all that it runs over."""
 
     @property
+    def virtual(self) -> tuple[VirtualPart, ...]:
+        """The parts that it runs over and that are not sent.
+
+        Each has a value that follows from the identity. Where an identity gives one of them none,
+        no frame of it can be verified: it is refused as one with a wrong checksum is.
+        """
+        return tuple(item for item in self.covers if isinstance(item, VirtualPart))
+
+    @property
     def over_stuffing(self) -> bool:
         """True if some of what it runs over is summed as it is stuffed."""
         return any(isinstance(run, Run) and run.over_stuffing for run in self.covers)
+
+
+class VirtualPlan(msgspec.Struct, frozen=True, kw_only=True):
+    """A part that is not sent, and its value for each identity."""
+
+    part: VirtualPart
+    values: tuple[tuple[Identities, int], ...]
+    """Values by the identities of messages, also of those that a small receiver does not know."""
+
+    @property
+    def count(self) -> int:
+        """Number of identities."""
+        return sum(identities.count for identities, _ in self.values)
 
 
 class LengthPlan(msgspec.Struct, frozen=True, kw_only=True):
@@ -230,6 +253,11 @@ class IdentityGroup(msgspec.Struct, frozen=True, kw_only=True):
     """Where there are several."""
 
     @property
+    def told_by(self) -> Identities:
+        """All identities that stand for these messages."""
+        return self.identities or Identities.only(self.identity)
+
+    @property
     def fixed(self) -> int | None:
         """Size of the payload, where no message has another one."""
         sizes = {message.sizes.fixed for message in self.messages}
@@ -265,6 +293,8 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     """The parts that make up the end."""
     length: LengthPlan | None
     checksums: tuple[ChecksumPlan, ...]
+    virtual: tuple[VirtualPlan, ...]
+    """The parts that are not sent, in the order of the schema."""
     region: StuffedRegion | None
     # Identities and sizes.
     groups: tuple[IdentityGroup, ...]

@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from protogen.model.frame import Frame, NumberPart
+from protogen.model.frame import Frame, NumberPart, VirtualPart
 from protogen.model.identities import Identities, Identity
 from protogen.model.origin import NOTHING, About
 from protogen.model.payload_builder import plan_of
@@ -64,6 +64,8 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     """Name in the version before, where that was another one."""
     forms: tuple[str, ...] = ()
     """The forms of frame that carry it; none are named where all of its senders' do."""
+    virtual: tuple[tuple[str, int], ...] = ()
+    """Raw values of parts that are not sent, by their names, where they are not the default."""
     about: About = NOTHING
     span: Span
 
@@ -76,6 +78,10 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     def told_by(self) -> Identities:
         """All identities that it has."""
         return self.identities or Identities.only(self.identity)
+
+    def virtual_value(self, part: VirtualPart) -> int | None:
+        """Raw value of a part that is not sent; None if nothing gives it one."""
+        return dict(self.virtual).get(part.name, part.default)
 
     def is_told_by(self, identity: Identity) -> bool:
         """True if it is one of its identities."""

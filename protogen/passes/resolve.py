@@ -18,6 +18,7 @@ from protogen.passes.framing.transparencies import check_codes
 from protogen.passes.messages.building import resolve_messages
 from protogen.passes.messages.examples import attach_examples, resolve_exchanges
 from protogen.passes.messages.identities import check_identities
+from protogen.passes.messages.virtual_values import check_shared_values
 from protogen.passes.names.checking import check_names
 from protogen.passes.names.decisions import resolve_decisions
 from protogen.passes.names.distinct import check_distinct_names
@@ -39,6 +40,7 @@ PASSES: tuple[Pass, ...] = (
     check_unused,
     check_distinct_names,
     check_identities,
+    check_shared_values,
     resolve_reserved,
     attach_examples,
     resolve_exchanges,

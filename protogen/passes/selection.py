@@ -56,12 +56,14 @@ def _sender(sender: Sender, messages: Collection[str] | None) -> Sender:
         return replace(sender, messages=())
     framing = _framing(sender.framing, left)
     overloads = tuple(_overloads(sender, {message.name for message in left}))
+    plan = plan_frame(sender.frame, framing, left, overloads)
     return replace(
         sender,
         messages=left,
         framing=framing,
         overloads=overloads,
-        plan=plan_frame(sender.frame, framing, left, overloads),
+        # What is verified does not depend on what is known: others send all messages.
+        plan=replace(plan, virtual=sender.plan.virtual),
     )
 
 

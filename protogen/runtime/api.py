@@ -24,6 +24,7 @@ from protogen.runtime.framing.frame import (
     StartSet,
     StartWords,
     ValuePart,
+    VirtualPart,
 )
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
 from protogen.runtime.identities import Identities
@@ -107,6 +108,7 @@ __all__ = [
     "UnknownEvent",
     "ValuePart",
     "Violation",
+    "VirtualPart",
     "WhenRule",
     "as_dict",
     "count_of",

@@ -24,7 +24,7 @@ _NUMERIC = ("scale", "offset", "unit", "special", "range")
 _NAMED = ("values", "flags", "bits")
 _LENGTHS = ("size", "until")
 _WRITTEN = ("digits", "code", "chars")
-_PART_ROLES = ("literal", "id", "counts", "counter", "algorithm")
+_PART_ROLES = ("literal", "id", "virtual", "counts", "counter", "algorithm")
 
 
 def _with(*keys: str) -> JsonObject:
@@ -172,6 +172,11 @@ _PART_RULES = (
         _with("algorithm"),
         "A checksum's value follows from what it covers.",
         _none_of(("range", "default")),
+    ),
+    _where(
+        _with("virtual"),
+        "What is not sent has no bounds, and no delimiter can be mistaken for it.",
+        _none_of(("range", "unprotected")),
     ),
     *(_bounded(f"uint{bits}", 0, 2**bits - 1) for bits in (8, 16, 32)),
     _together(

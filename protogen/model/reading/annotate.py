@@ -23,13 +23,15 @@ from protogen.model.frame import (
     Part,
     PayloadPart,
     TypedPart,
+    VirtualPart,
 )
+from protogen.model.identities import Identity
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.reading.dissect import Cursor, Row, dissect
 from protogen.model.reading.readings import character, quoted
 from protogen.model.reading.wire import Wire, plain, unstuff
-from protogen.model.types import codec
+from protogen.model.types import characters, codec
 from protogen.runtime.errors import ByteError
 
 __all__ = ["Row", "annotate"]
@@ -54,9 +56,14 @@ def annotate(
     """
     known = protocol.sender(sender)
     if covers is None:
-        return _Frame(known, known.frame.parts, unstuff(known.plan, data), message).rows()
-    parts = [part for part in known.frame.parts if part.name in covers]
-    return _Frame(known, parts, Wire(plain(data)), message).rows()
+        parts, wire = known.frame.declared, unstuff(known.plan, data)
+        if not known.frame.virtual:
+            return _Frame(known, parts, wire, message).rows()
+        first = _Frame(known, parts, wire, message)
+        first.rows()  # What is not sent follows from the identity, which may stand behind it.
+        return _Frame(known, parts, wire, message, first.identity).rows()
+    held = [part for part in known.frame.parts if part.name in covers]
+    return _Frame(known, held, Wire(plain(data)), message).rows()
 
 
 class _Found(msgspec.Struct, frozen=True):
@@ -70,8 +77,15 @@ class _Frame:
     """Reads the parts of one frame."""
 
     def __init__(
-        self, sender: Sender, parts: Sequence[Part], wire: Wire, message: Message | None
+        self,
+        sender: Sender,
+        parts: Sequence[Part],
+        wire: Wire,
+        message: Message | None,
+        identity: Identity | None = None,
     ) -> None:
+        """With the identity, where some other reading has found it."""
+        self._identity = identity
         self._sender = sender
         self._parts = parts
         self._wire = wire
@@ -107,6 +121,9 @@ class _Frame:
         start = len(self._rows)
         if isinstance(part, PayloadPart):
             self._rows += self._payload(part)
+        elif isinstance(part, VirtualPart):
+            self._virtual(part)
+            return
         elif self._is_absent(part):
             self._found[part.name] = _Found(b"", b"")
             return
@@ -119,6 +136,19 @@ class _Frame:
     def _is_absent(self, part: Part) -> bool:
         payload = self._found.get(self._sender.frame.payload.name)
         return part.is_optional and (payload is None or not payload.content)
+
+    def _virtual(self, part: VirtualPart) -> None:
+        """A part without bytes, which the checksums that cover it may need."""
+        message = self._given or next(iter(self._candidates()), None)
+        value = part.default if message is None else message.virtual_value(part)
+        row = self._cursor.take(0, part.name, part.type.label, subject=part, value_type=part.type)
+        if value is None:
+            self._rows.append(replace(row, meaning="not sent, and unknown"))
+            return
+        encoded = part.encode(value)
+        self._found[part.name] = _Found(encoded, encoded)
+        shown = quoted(str(characters(part.type).text(value))) if part.type.is_text else ""
+        self._rows.append(row.reads(value, " ".join(filter(None, (shown, "not sent")))))
 
     @property
     def _ended(self) -> bool:
@@ -174,6 +204,11 @@ class _Frame:
 
     def _checksum(self, part: ChecksumPart, row: Row) -> Row:
         row = replace(row, meaning=f"{part.algorithm.name} of {', '.join(part.covers)}")
+        unknown = [item.name for item in self._sender.frame.virtual if item.name in part.covers]
+        unknown = [name for name in unknown if name not in self._found]
+        if unknown and self.identity is not None:
+            text = f"the identity is unknown, and so is {unknown[0]}, which {part.name} covers"
+            return replace(row, fault=text)
         if any(name not in self._found for name in part.covers):
             return row
         pieces = [self._found[name] for name in part.covers]
@@ -227,8 +262,18 @@ class _Frame:
         return next(iter((*yielded, *fitting, *candidates)), None)
 
     def _candidates(self) -> list[Message]:
-        identity = tuple(self._numbers.get(part.name, -1) for part in self._sender.frame.identity)
+        identity = self._identity or tuple(
+            self._numbers.get(part.name, -1) for part in self._sender.frame.identity
+        )
         return [message for message in self._sender.messages if message.is_told_by(identity)]
+
+    @property
+    def identity(self) -> Identity | None:
+        """The identity that was read, or found before; None where a part of it is missing."""
+        names = [part.name for part in self._sender.frame.identity]
+        if self._identity is not None or any(name not in self._numbers for name in names):
+            return self._identity
+        return tuple(self._numbers[name] for name in names)
 
     # --- what is left -----------------------------------------------------------------------
 

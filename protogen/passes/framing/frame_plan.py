@@ -19,6 +19,7 @@ from protogen.model.frame import (
     Part,
     PayloadPart,
     Substitution,
+    VirtualPart,
 )
 from protogen.model.frame_plan import (
     ChecksumPlan,
@@ -32,6 +33,7 @@ from protogen.model.frame_plan import (
     Side,
     StartRule,
     StuffedRegion,
+    VirtualPlan,
 )
 from protogen.model.framing import AfterEnd, Anywhere, Framing, StartLiteral, StartSet
 from protogen.model.identities import Identities
@@ -53,7 +55,15 @@ def plan_frame(
     overloads: Sequence[Overload],
 ) -> FramePlan:
     """The plan of a sender's frame."""
-    return _Planner(frame, framing).plan(identity_groups(frame, messages, overloads))
+    virtual = tuple(_virtual(part, messages) for part in frame.virtual)
+    return _Planner(frame, framing).plan(identity_groups(frame, messages, overloads), virtual)
+
+
+def _virtual(part: VirtualPart, messages: Sequence[Message]) -> VirtualPlan:
+    """Values of a part that is not sent; messages that share an identity have the same."""
+    values = {message.told_by: message.virtual_value(part) for message in messages}
+    known = tuple((key, value) for key, value in values.items() if value is not None)
+    return VirtualPlan(part=part, values=known)
 
 
 def identity_groups(
@@ -74,17 +84,10 @@ def identity_groups(
 def _group(frame: Frame, identities: Identities, messages: Sequence[Message]) -> IdentityGroup:
     return IdentityGroup(
         identity=identities.first,
-        key=_key(frame, identities.first),
+        key=frame.key(identities.first),
         messages=tuple(messages),
         identities=identities if identities.count > 1 else None,
     )
-
-
-def _key(frame: Frame, identity: tuple[int, ...]) -> int:
-    key = 0
-    for part, value in zip(frame.identity, identity, strict=True):
-        key = key << part.type.bits | value
-    return key
 
 
 class _Planner:
@@ -98,7 +101,6 @@ class _Planner:
         self._end_bytes = b"" if end is None else end.bytes
         self._unique_end = end is not None and end.protected
         self._shares = self._unique_end and self._start_bytes == self._end_bytes
-        self._names = [part.name for part in frame.parts]
         self._end_literals = () if end is None else tail_literals(frame)
         self._content = frame.parts[: len(frame.parts) - len(self._end_literals)]
         self._payload_index = next(
@@ -108,7 +110,9 @@ class _Planner:
         self._tail = tuple(self._place(Side.TAIL, self._content[self._payload_index + 1 :]))
         self._head_size = sum(item.size for item in self._head)
 
-    def plan(self, groups: tuple[IdentityGroup, ...]) -> FramePlan:
+    def plan(
+        self, groups: tuple[IdentityGroup, ...], virtual: tuple[VirtualPlan, ...]
+    ) -> FramePlan:
         framing = self._framing
         return FramePlan(
             frame=self._frame,
@@ -124,6 +128,7 @@ class _Planner:
             end_literals=self._end_literals,
             length=self._length(),
             checksums=tuple(self._checksum(part) for part in self._frame.checksums),
+            virtual=virtual,
             region=self._region,
             groups=groups,
             payload=framing.payload,
@@ -231,17 +236,22 @@ class _Planner:
     def _checksum(self, part: ChecksumPart) -> ChecksumPlan:
         placed = self._placed(part.name)
         assert placed is not None
-        own = self._names.index(part.name)
+        declared = [item.name for item in self._frame.declared]
+        own = declared.index(part.name)
         return ChecksumPlan(
             part=part,
             placed=placed,
             covers=tuple(self._covers(part)),
-            is_behind=all(self._names.index(name) < own for name in part.covers),
+            is_behind=all(declared.index(name) < own for name in part.covers),
         )
 
-    def _covers(self, part: ChecksumPart) -> list[Run | bytes]:
-        found: list[Run | bytes] = []
+    def _covers(self, part: ChecksumPart) -> list[Run | bytes | VirtualPart]:
+        found: list[Run | bytes | VirtualPart] = []
         for name in part.covers:
+            virtual = self._frame.virtual_part(name)
+            if virtual is not None:
+                found.append(virtual)
+                continue
             covered = self._frame.part(name)
             if isinstance(covered, LiteralPart) and covered in self._end_literals:
                 found.append(covered.bytes)

@@ -27,6 +27,7 @@ from protogen.model.frame import (
     PartType,
     PayloadPart,
     ValuePart,
+    VirtualPart,
 )
 from protogen.model.types import ByteOrder
 from protogen.passes.context import Context, Loc, about
@@ -48,6 +49,7 @@ from protogen.passes.framing.part_digits import (
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.part_values import number_of, text_bounds, text_type
 from protogen.passes.framing.transparencies import transparency_of
+from protogen.passes.framing.virtual_parts import check_virtual_parts, sent_run
 from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width
 from protogen.problems import hint_for
@@ -59,6 +61,7 @@ PAYLOAD = "payload"
 _TYPE = frozenset({"type", "byte_order", "digits", "chars", "code"})
 _NUMBER = _TYPE | {"range", "unprotected"}
 _ROLES: dict[str, frozenset[str]] = {
+    "virtual": _TYPE | {"virtual", "size", "default"},
     "literal": frozenset({"literal", "unprotected", "type"}),
     "id": _NUMBER | {"id", "size"},
     "counts": _NUMBER | {"counts"},
@@ -125,14 +128,19 @@ class FrameBuilder:
         before += self._replaced
         if self._context.tally.errors > before or self._loc in self._context.doubtful:
             return None
-        known = tuple(part for part in parts if part is not None)
-        frame = Frame(parts=known, transparency=transparency, limit=self._written.limit)
+        frame = Frame(
+            parts=tuple(part for part in parts if part and not isinstance(part, VirtualPart)),
+            virtual=tuple(part for part in parts if isinstance(part, VirtualPart)),
+            transparency=transparency,
+            limit=self._written.limit,
+        )
         self._check(frame)
         return frame if self._context.tally.errors == before else None
 
     def _check(self, frame: Frame) -> None:
         """Check what can only be asked when all parts are there."""
         _check_checksums(self._context, frame, self._loc)
+        check_virtual_parts(self._context, frame, self._loc)
         self._check_identity(frame)
         length = frame.length
         if length is not None and stated_range(frame) is None:
@@ -195,6 +203,14 @@ class FrameBuilder:
 
     def _number(self, role: str, item: PartSyntax, part: NumberPart) -> Part:
         """The part as what its role makes of it."""
+        if role == "virtual":
+            return VirtualPart(
+                name=part.name,
+                type=part.type,
+                about=part.about,
+                place=self._parts_before(part.name),
+                default=self._default(item, part),
+            )
         given = {name: getattr(part, name) for name in field_names(type(part))}
         if role == "id":
             return IdentityPart(**given)
@@ -202,6 +218,11 @@ class FrameBuilder:
             return LengthPart(**given, counts=self._counted(part.name, item))
         kind = CounterPart if role == "counter" else ValuePart
         return kind(**given, default=self._default(item, part))
+
+    def _parts_before(self, name: str) -> int:
+        """Parts that are sent in front of the one called so."""
+        before = self._names[: self._names.index(name)]
+        return sum(not self._syntax[other].virtual for other in before)
 
     def _default(self, item: PartSyntax, part: NumberPart) -> int | None:
         loc = (*self._loc, part.name, "default")
@@ -257,7 +278,8 @@ class FrameBuilder:
             return digits_type(self._context, (*self._loc, name), item, found)
         if item.algorithm is None and found.bits < found.byte_bits:
             text = f"a part takes whole bytes, and `{item.type}` is less than one"
-            hint = f"make it `uint{found.byte_bits}`, with a `range` if its upper bits are zero"
+            hint = f"make it `uint{found.byte_bits}`"
+            hint = hint if item.virtual else f"{hint}, with a `range` if its upper bits are zero"
             self._context.error("PG105", loc, text, hint)
         if found.size > 1 and order is None:
             text = "nothing says in which order the bytes of this number are sent"
@@ -282,7 +304,9 @@ class FrameBuilder:
 
     def _counted(self, name: str, item: PartSyntax) -> tuple[str, ...]:
         loc = (*self._loc, name)
-        counts = written_out(self._context, self._names, item.counts or (), (*loc, "counts"))
+        what = "a length counts bytes"
+        place = (*loc, "counts")
+        counts = sent_run(self._context, self._syntax, item.counts or (), place, what)
         names = self._names
         if counts and PAYLOAD not in counts:
             text = "a length that does not count the payload can't tell where the frame ends"

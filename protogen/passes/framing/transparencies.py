@@ -9,7 +9,7 @@ from itertools import pairwise
 from protogen.model.frame import Base16, Cobs, Encoding, Escape, Substitution, Transparency
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
-from protogen.passes.framing.part_runs import written_out
+from protogen.passes.framing.virtual_parts import sent_names, sent_run
 from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.proofs.codewords import ambiguity, prefix_clash
 from protogen.passes.proofs.wire_code import code_of
@@ -61,8 +61,9 @@ class _Reader:
         if self._item.covers is None:
             return _between_literals(parts)
         loc = (*self._loc, "covers")
-        names = list(parts)
-        covered = written_out(self._context, names, self._item.covers, loc)
+        names = sent_names(parts)
+        what = "only bytes on the wire are stuffed"
+        covered = sent_run(self._context, parts, self._item.covers, loc, what)
         places = [names.index(name) for name in covered]
         if any(behind - place != 1 for place, behind in pairwise(places)):
             self._context.error("PG138", loc, "the parts under transparency are one run")
@@ -113,7 +114,7 @@ def _between_literals(parts: Mapping[str, PartSyntax]) -> tuple[str, ...]:
 
     A choice of literals opens a frame, if it is its first part.
     """
-    names = list(parts)
+    names = sent_names(parts)
     if names and isinstance(parts[names[0]].literal, LiteralChoice):
         del names[0]
     else:

@@ -20,6 +20,7 @@ from protogen.passes.framing.capacity import (
 )
 from protogen.passes.messages.identity_reader import IdentityReader
 from protogen.passes.messages.stated_sizes import greatest_stated, least_stated
+from protogen.passes.messages.virtual_values import virtual_values
 from protogen.passes.types.fields import FieldBuilder
 from protogen.passes.types.separators import separator_of
 from protogen.passes.types.setting import Setting
@@ -120,6 +121,7 @@ class _Resolution:
             fields=self._fields,
             sizes=sizes,
             unspecified=isinstance(syntax.fields, str),
+            virtual=virtual_values(self._context, self._name, syntax, self._frames),
             renamed_from=syntax.renamed_from,
             about=about(syntax.doc, syntax.source),
             span=self._context.find_key(self._loc),

@@ -84,14 +84,20 @@ def _settle(frame: Frame, part: ChecksumPart, found: dict[str, tuple[Stretch, ..
     """A checksum of bytes that are always the same is always the same."""
     if part.name not in found or all(stretch.known for stretch in found[part.name]):
         return
-    for name in part.covers:
-        other = frame.part(name)
-        if isinstance(other, ChecksumPart):
-            _settle(frame, other, found)
+    covering = [item for item in frame.checksums if item.name in part.covers]
+    for other in covering:
+        _settle(frame, other, found)
+    if has_virtual(frame, part):
+        return
     covered = [stretch for name in part.covers for stretch in found.get(name, ())]
     if all(stretch.known for stretch in covered):
         plain = {name: _plain(found[name]) for name in part.covers if name in found}
         found[part.name] = known_bytes(checksum_bytes(frame, part, plain))
+
+
+def has_virtual(frame: Frame, part: ChecksumPart) -> bool:
+    """True if a checksum covers what is not sent: another value for each message."""
+    return any(item.name in part.covers for item in frame.virtual)
 
 
 def _plain(stretches: Iterable[Stretch]) -> bytes:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
+from functools import partial
 from random import Random
 
 from protogen.model.frame import Base16, ChoicePart, Cobs, Frame, LiteralPart, PayloadPart
@@ -31,7 +32,8 @@ def joined_frames(
         return ""
     ends = dict(_wrong_ends(frame, end, payload))
     dice = Random(0)  # noqa: S311 - the same samples each time
-    pairs = [(_frame(frame, payload, dice), _frame(frame, payload, dice)) for _ in range(_PAIRS)]
+    some = partial(_frame, frame, payload, messages, dice)
+    pairs = [(some(), some()) for _ in range(_PAIRS)]
     joining = [
         {wrong for wrong, read in ends.items() if _checks(frame, one, read, other)}
         for one, other in pairs
@@ -88,8 +90,10 @@ def _wrong_ends(frame: Frame, end: End, payload: ByteSet) -> Iterator[tuple[byte
                 yield wrong, wrong
 
 
-def _frame(frame: Frame, payload: ByteSet, dice: Random) -> dict[str, bytes]:
-    """The parts of some frame, the end left out."""
+def _frame(
+    frame: Frame, payload: ByteSet, messages: list[Message], dice: Random
+) -> dict[str, bytes]:
+    """The parts of some frame, the end left out, and what is not sent."""
     parts: dict[str, bytes] = {}
     for part in frame.parts:
         if isinstance(part, LiteralPart):
@@ -99,6 +103,8 @@ def _frame(frame: Frame, payload: ByteSet, dice: Random) -> dict[str, bytes]:
         else:
             size = dice.randrange(3, 9) if isinstance(part, PayloadPart) else part.size
             parts[part.name] = bytes(dice.choices(sorted(payload), k=size))
+    for virtual in frame.virtual:
+        parts[virtual.name] = virtual.encode(dice.choice(messages).virtual_value(virtual) or 0)
     for checksum in frame.checksums:
         parts[checksum.name] = checksum_bytes(frame, checksum, parts)
     return parts

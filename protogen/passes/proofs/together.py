@@ -7,7 +7,7 @@ from functools import partial
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import ChecksumPart, Frame
-from protogen.passes.proofs.contents import Contents, checksum_bytes, number_bytes
+from protogen.passes.proofs.contents import Contents, checksum_bytes, has_virtual, number_bytes
 from protogen.passes.proofs.correlation import Place, Sum, most_summed, most_tried
 from protogen.passes.proofs.wire_code import ByteSet
 
@@ -35,7 +35,10 @@ class Together:
         """The most that a checksum and what it covers are worth; None where that takes too long.
 
         It is exact for sums and exclusive ors of bytes, and else where trying leads to it soon.
+        What is covered and not sent lets a checksum be anything, for one message or another.
         """
+        if has_virtual(self._frame, part):
+            return None
         covered = [name for name in part.covers if name in contents]
         if any(self._is_open(name, contents) for name in covered):
             return None

@@ -21,6 +21,7 @@ from protogen.model.frame import (
     LiteralPart,
     Part,
     PayloadPart,
+    VirtualPart,
 )
 from protogen.model.framing import Anywhere, End, Start, StartLiteral, StartSet
 from protogen.model.identities import Identities
@@ -28,6 +29,7 @@ from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.passes.framing.capacity import payload_range
 from protogen.passes.framing.framing_words import span
+from protogen.passes.proofs.contents import has_virtual
 from protogen.passes.proofs.damaged_ends import joined_frames
 from protogen.passes.proofs.wire_code import SEVEN_BITS, ByteSet
 
@@ -58,7 +60,8 @@ def _part(
         return ""
     covering = [checksum for checksum in frame.checksums if part.name in checksum.covers]
     if covering:
-        return _sometimes(part, covering, messages)
+        made_up = _made_up_for(frame, part, covering, messages)
+        return made_up or _sometimes(part, covering, messages)
     if isinstance(part, LengthPart):
         return ""  # What comes of a wrong size is asked for the frame as a whole.
     if isinstance(part, IdentityPart):
@@ -86,6 +89,33 @@ def _sometimes(part: Part, covering: list[ChecksumPart], messages: list[Message]
     if always or not empty or isinstance(part, PayloadPart):
         return ""
     return f"a wrong `{part.name}` in a frame without payload: it has no checksum"
+
+
+def _made_up_for(
+    frame: Frame, part: Part, covering: list[ChecksumPart], messages: list[Message]
+) -> str:
+    """Sentence on another identity, with which other bytes that are not sent are summed."""
+    if not isinstance(part, IdentityPart):
+        return ""
+    if not all(has_virtual(frame, item) or item.when_payload for item in covering):
+        return ""
+    covered = {name for item in covering for name in item.covers}
+    varying = [
+        virtual.name
+        for virtual in frame.virtual
+        if virtual.name in covered and _has_several_values(virtual, messages)
+    ]
+    if not varying:
+        return ""
+    names = " and ".join(f"`{name}`" for name in varying)
+    verb = "happens" if len(varying) == 1 else "happen"
+    text = f"a wrong `{part.name}` that makes it another message, whose {names} {verb}"
+    return f"{text} to make up for it"
+
+
+def _has_several_values(part: VirtualPart, messages: list[Message]) -> bool:
+    values = {message.virtual_value(part) for message in messages} | {part.default}
+    return len(values - {None}) > 1
 
 
 def _identity(frame: Frame, part: IdentityPart, end: End | None, messages: list[Message]) -> str:

@@ -15,6 +15,7 @@ from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.parts import PART_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
+from protogen.problems.catalogue.virtual_parts import VIRTUAL_PART_CODES
 
 SCHEMA_CODES: tuple[Code, ...] = (
     *KEY_AND_NAME_CODES,
@@ -22,6 +23,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *PACKING_CODES,
     *TEXT_NUMBER_CODES,
     *TERMINATOR_CODES,
+    *VIRTUAL_PART_CODES,
     *EXPRESSION_CODES,
     *FRAME_CODES,
     *FRAMING_CODES,

@@ -42,7 +42,7 @@ def encode_frame(
     layout = sender.layout
     numbers = _value_parts(layout, given, strict)
     numbers |= {part.name: value for part, value in zip(layout.identity, identity, strict=True)}
-    wire = _Assembly(layout, numbers, payload).wire()
+    wire = _Assembly(layout, numbers, payload, sender.virtual(numbers)).wire()
     if sender.frame.is_bounded and len(wire) > sender.frame.greatest:
         problem = f"makes a frame of {len(wire)} bytes, at most {sender.frame.greatest} are allowed"
         raise EncodeError("payload", problem)
@@ -71,7 +71,7 @@ def join_parts(
 
     `bytes_of` gives the bytes of some parts; what is left is made from `numbers` and `payload`.
     """
-    assembly = _Assembly(sender.layout, numbers, payload)
+    assembly = _Assembly(sender.layout, numbers, payload, sender.virtual(numbers))
     return assembly.with_bytes(bytes_of).joined()
 
 
@@ -127,8 +127,16 @@ def _how_to_give(part: ValuePart) -> str:
 class _Assembly:
     """The bytes of one frame's parts."""
 
-    def __init__(self, layout: Layout, numbers: Mapping[str, int], payload: bytes) -> None:
+    def __init__(
+        self,
+        layout: Layout,
+        numbers: Mapping[str, int],
+        payload: bytes,
+        virtual: Mapping[str, bytes],
+    ) -> None:
+        """`virtual` has the bytes of parts that are not sent, where they have a value."""
         self._layout = layout
+        self._virtual = virtual
         self._numbers = numbers
         self._payload = payload
         self._parts = {
@@ -174,6 +182,8 @@ class _Assembly:
 
     def _piece(self, name: str) -> bytes:
         """One part before stuffing. Checksums are worked out when what they cover is known."""
+        if name in self._virtual:
+            return self._virtual[name]
         if name not in self._pieces:
             self._pieces[name] = self._make(self._parts[name])
         return self._pieces[name]
@@ -193,7 +203,12 @@ class _Assembly:
         return self._numbers[part.name]
 
     def _checksum(self, part: ChecksumPart) -> int:
-        covered = [name for name in part.covers if name in self._parts]
+        known = self._parts.keys() | self._virtual.keys()
+        for virtual in self._layout.spec.virtual:
+            if virtual.name in part.covers and virtual.name not in known:
+                problem = f"has no value for an unknown identity, and {part.name} covers it"
+                raise EncodeError(virtual.name, problem)
+        covered = [name for name in part.covers if name in known]
         data = self._on_wire(covered) if part.over_wire else self._content(covered)
         return part.algorithm.compute(data)
 

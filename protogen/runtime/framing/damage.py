@@ -6,6 +6,7 @@ would say. What is not plain is left to a candidate.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -104,12 +105,23 @@ class Judge:
     def _of_whole(self, content: bytes, size: int, own: int) -> Failure | None:
         """The verdict on a content of the right size: a wrong checksum, or nothing plain."""
         places = self._places(size)
+        virtual = self._virtual(content, places)
         for part in self._layout.checksums:
-            covered = self._layout.covered(part, places, content)
-            problem = wrong_sum(part, covered, content[slice(*places[part.name])])
+            found = content[slice(*places[part.name])]
+            problem = wrong_sum(self._sender, part, (content, places, virtual), found)
             if problem is not None:
                 return Failure(own, "checksum", problem)
         return None
+
+    def _virtual(self, content: bytes, places: Mapping[str, Place]) -> Mapping[str, bytes]:
+        """The bytes of parts that are not sent; the identity stands in front of the payload."""
+        if not self._sender.frame.virtual:
+            return {}
+        numbers = {
+            part.name: part.number.decode(content[slice(*places[part.name])])
+            for part in self._layout.identity
+        }
+        return self._sender.virtual(numbers)
 
     def _places_of(self, size: int) -> dict[str, Place]:
         return {part.name: (start, end) for part, start, end in self._layout.slices(size)}

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from protogen.runtime.checksum import Checksum
+from protogen.runtime.identities import Identities, Identity
 from protogen.runtime.payload.number import Characters, Number
 from protogen.runtime.payload.numerals import Numeral
 from protogen.runtime.transparency import Transparency
@@ -125,6 +126,18 @@ class ChecksumPart(NamedTuple):
         return self.number.size
 
 
+class VirtualPart(NamedTuple):
+    """A number that goes into the checksums that cover it, and is not sent.
+
+    `values` has its value for each identity; `default` is that of unknown ones.
+    """
+
+    name: str
+    number: Number | Numeral
+    values: tuple[tuple[Identity | Identities, int], ...]
+    default: int | None = None
+
+
 NumberPart = IdentityPart | LengthPart | ValuePart | ChecksumPart
 Part = LiteralPart | PayloadPart | NumberPart
 
@@ -223,3 +236,6 @@ class FrameSpec(NamedTuple):
     """True if an encoder has to check that a decoder ends the frame where it ends."""
     is_bounded: bool = False
     """True if the schema says how long a frame can be, so that an encoder has to look."""
+    virtual: tuple[VirtualPart, ...] = ()
+    """Parts that are not sent. A frame whose identity gives one of them no value can't be verified:
+    it fails as one with a wrong checksum does."""

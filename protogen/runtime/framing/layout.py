@@ -135,10 +135,20 @@ class Layout:
         size = extra - self.tail_size(1)
         return size if size > 0 else None
 
-    def covered(self, part: ChecksumPart, places: Mapping[str, Place], data: bytes) -> bytes:
-        """The bytes that a checksum runs over, out of those of a frame without its end."""
+    def covered(
+        self,
+        part: ChecksumPart,
+        places: Mapping[str, Place],
+        data: bytes,
+        virtual: Mapping[str, bytes],
+    ) -> bytes:
+        """The bytes that a checksum runs over, out of those of a frame without its end.
+
+        `virtual` has the bytes of parts that are not sent.
+        """
+        others = {**self.end_literals, **virtual} if virtual else self.end_literals
         pieces = [
-            data[slice(*places[name])] if name in places else self.end_literals.get(name, b"")
+            data[slice(*places[name])] if name in places else others.get(name, b"")
             for name in part.covers
         ]
         return b"".join(pieces)

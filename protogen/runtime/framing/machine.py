@@ -6,12 +6,13 @@ nothing but them, so that it does not matter how they arrive.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from protogen.runtime.errors import Reason
 from protogen.runtime.framing.content import Content, Rejected
 from protogen.runtime.framing.frame import AfterEnd, Anywhere, ChecksumPart, StartMark
-from protogen.runtime.framing.layout import Slice
+from protogen.runtime.framing.layout import Place, Slice
 from protogen.runtime.framing.sender import SenderSpec
 from protogen.runtime.transparency import TransparencyError, Unstuffer
 
@@ -280,19 +281,22 @@ class Candidate:
         content = self._content
         assert content.payload_size is not None
         slices = {item.part.name: item for item in self._layout.slices(content.payload_size)}
+        virtual = self.sender.virtual(content.numbers) if self._spec.virtual else {}
         for part in self._layout.checksums:
             if part.name in slices:
-                self._check(part, slices)
+                self._check(part, slices, virtual)
         start = self._layout.head_size
         payload = bytes(content.bytes[start : start + content.payload_size])
         self._cut = Cut(self._own_size(), content.numbers, payload)
 
-    def _check(self, part: ChecksumPart, slices: dict[str, Slice]) -> None:
+    def _check(
+        self, part: ChecksumPart, slices: dict[str, Slice], virtual: Mapping[str, bytes]
+    ) -> None:
         data = bytes(self._wire if part.over_wire else self._content.bytes)
         places = {name: self._span(item, part.over_wire) for name, item in slices.items()}
         item = slices[part.name]
         found = bytes(self._content.bytes[item.start : item.end])
-        problem = wrong_sum(part, self._layout.covered(part, places, data), found)
+        problem = wrong_sum(self.sender, part, (data, places, virtual), found)
         if problem is not None:
             raise Rejected("checksum", problem)
 
@@ -304,8 +308,22 @@ class Candidate:
         return start, self._wire_ends[item.end - 1]
 
 
-def wrong_sum(part: ChecksumPart, covered: bytes, found: bytes) -> str | None:
-    """Description of a checksum that is not that of the covered bytes; None if it is."""
+_Summed = tuple[bytes, Mapping[str, Place], Mapping[str, bytes]]
+"""Bytes, the places of parts in them, and the bytes of parts that are not sent."""
+
+
+def wrong_sum(
+    sender: SenderSpec[Any, Any], part: ChecksumPart, summed: _Summed, found: bytes
+) -> str | None:
+    """Description of a checksum that is not that of the covered bytes; None if it is.
+
+    One that covers what is not sent, and not known for the frame's identity, is never right.
+    """
+    data, places, virtual = summed
+    unknown = sender.without_value(part, virtual)
+    if unknown:
+        return f"the identity is unknown, and so is {unknown}, which {part.name} covers"
+    covered = sender.layout.covered(part, places, data, virtual)
     due = part.number.encode(part.algorithm.compute(covered))
     return None if found == due else f"{part.name} is {found.hex(' ')}, not {due.hex(' ')}"
 

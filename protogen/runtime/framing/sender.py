@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any, Generic, TypeVar
 
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.framing.frame import FrameSpec, IdentityPart
+from protogen.runtime.framing.frame import ChecksumPart, FrameSpec, IdentityPart, VirtualPart
 from protogen.runtime.framing.layout import Layout
 from protogen.runtime.identities import Identities, Identity, Runs
 from protogen.runtime.payload.message import Message
@@ -50,6 +50,31 @@ class IdentityGroup(Generic[MessageT_co]):
         """The message of a payload. Raises PayloadError: size, value or encoding."""
         fitting = (message for message in self.messages if len(payload) in message.SIZES)
         return next(fitting, self.messages[0]).parse_payload(payload)
+
+
+class VirtualBytes:
+    """Bytes of a part that is not sent, by the identities of frames."""
+
+    def __init__(self, part: VirtualPart) -> None:
+        default = part.default
+        self._default = None if default is None else part.number.encode(default)
+        self._listed: dict[Identity, bytes] = {}
+        self._wide: list[tuple[Identities, bytes]] = []
+        for identity, value in part.values:
+            data = part.number.encode(value)
+            if not isinstance(identity, Identities):
+                self._listed[identity] = data
+            elif identity.count <= _LISTED:
+                self._listed |= dict.fromkeys(identity, data)
+            else:
+                self._wide.append((identity, data))
+
+    def of(self, identity: Identity) -> bytes | None:
+        """The bytes in frames of this identity; None where they are not known."""
+        found = self._listed.get(identity)
+        if found is None and self._wide:
+            found = next((data for known, data in self._wide if identity in known), None)
+        return self._default if found is None else found
 
 
 class SenderSpec(Generic[MessageT_co, PartsT_co]):
@@ -145,6 +170,24 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
     def identity(self, numbers: Mapping[str, int]) -> Identity:
         """The identity among the values of a frame's parts."""
         return tuple(numbers[part.name] for part in self.layout.identity)
+
+    def virtual(self, numbers: Mapping[str, int]) -> dict[str, bytes]:
+        """The bytes of parts that are not sent, in a frame with these numbers.
+
+        Those that have no value, because the identity is unknown, are left out.
+        """
+        identity = self.identity(numbers)
+        found = {name: value.of(identity) for name, value in self._virtual.items()}
+        return {name: data for name, data in found.items() if data is not None}
+
+    @cached_property
+    def _virtual(self) -> Mapping[str, VirtualBytes]:
+        return {part.name: VirtualBytes(part) for part in self.frame.virtual}
+
+    def without_value(self, part: ChecksumPart, virtual: Mapping[str, bytes]) -> str:
+        """The first part that a checksum covers, is not sent and has no value; empty if none."""
+        missing = (item.name for item in self.frame.virtual if item.name not in virtual)
+        return next((name for name in missing if name in part.covers), "")
 
     def read(self, numbers: Mapping[str, int], payload: bytes) -> MessageT_co | None:
         """The message of a frame's parts; None where its identity is unknown.

@@ -193,6 +193,10 @@ class MessageSyntax(Syntax):
     forms: Forms | None = Field(
         None, description="The forms of frame that carry it, where not all of its sender's do."
     )
+    parts: dict[Annotated[Name, Ref(Kind.PART)], PartValue] | None = Field(
+        None,
+        description="Values of the frame's virtual parts in frames of this message.",
+    )
     title: Text | None = Field(None, description="Name of the message in the document.")
     summary: Text | None = Field(None, description="One line that says what the message is.")
     doc: Text | None = Field(None, description="What a reader should know.")

@@ -185,6 +185,11 @@ class Part(Syntax):
         None, description="Each character is some bits of the number, the highest ones first."
     )
     id: OnlyTrue | None = Field(None, description="The part tells which message this is.")
+    virtual: OnlyTrue | None = Field(
+        None,
+        description="The part goes into the checksums that cover it and is not sent; each message "
+        "gives its value under `parts`, unless the part has a default.",
+    )
     counts: PartRun | None = Field(
         None, description="The part is the length in bytes of these parts, unstuffed."
     )
@@ -211,7 +216,9 @@ class Part(Syntax):
         description="Least and greatest value of the part; of a text, of each of its characters.",
     )
     default: PartValue | None = Field(
-        None, description="What an encoder writes where the caller gives no value."
+        None,
+        description="What an encoder writes where the caller gives no value; of a virtual part, "
+        "the value of messages that give none.",
     )
     byte_order: ByteOrder | None = Field(None, description="Byte order of this part.")
     doc: Text | None = Field(None, description="What the part means.")

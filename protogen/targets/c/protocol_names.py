@@ -12,6 +12,7 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import Struct, Switch
 from protogen.targets.c.frame.checksums import checksum_name
 from protogen.targets.c.frame.texts import claim_texts
+from protogen.targets.c.frame.virtual import function_of
 from protogen.targets.c.named import claim_fields, enum_view, flags_view
 from protogen.targets.c.payload.message_names import claim_all
 from protogen.targets.c.spelling import Names
@@ -83,7 +84,7 @@ def _members(protocol: Protocol) -> Iterator[tuple[str, Thing]]:
                     what = inside(record.name, "case", field.name, "cases", case.name)
                     yield case.name, what
     for sender in protocol.senders:
-        for item in sender.frame.parts:
+        for item in sender.frame.declared:
             yield item.name, part(sender.name, item.name)
 
 
@@ -129,6 +130,8 @@ def _of_sender(names: Names, sender: Sender, start: str) -> Iterator[tuple[NameT
         yield names.others, f"{start}_{word}"
     for word in _MACROS_OF_A_SENDER.split():
         yield names.others, f"{start}_{word}".upper()
+    for item in sender.frame.virtual if sender.plan.identity else ():
+        yield names.others, function_of(start, item)
     if any(group.identities is not None for group in sender.plan.groups):
         yield names.others, f"{start}_told"
     if sender.plan.mark_size and len(sender.plan.start_words) > 1:

@@ -17,6 +17,7 @@ from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, S
 from protogen.runtime.attributes import attribute
 from protogen.targets.escape import paragraphs, python_comment
 from protogen.targets.python import describing
+from protogen.targets.python import frames as tables
 from protogen.targets.python.formats import constant, field_format, is_empty
 from protogen.targets.python.literals import call, octets_in_class, text, tuple_of
 from protogen.targets.python.names import Names, RecordNames
@@ -134,11 +135,7 @@ def message_class(item: Message, identity: str, names: Names) -> RecordClass:
 
 def _identities(identities: Identities) -> str:
     """All identities of a message that has several."""
-    parts = (
-        tuple_of(tuple_of(f"0x{value:02X}" for value in run) for run in runs)
-        for runs in identities.runs
-    )
-    expression = call("_rt.Identities", tuple_of(parts))
+    expression = tables.identities(identities)
     return wrapped(expression, _INDENT + len("IDENTITIES = "), _INDENT, after=0)
 
 

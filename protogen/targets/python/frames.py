@@ -22,7 +22,9 @@ from protogen.model.frame import (
     TypedPart,
     ValuePart,
 )
+from protogen.model.frame_plan import VirtualPlan
 from protogen.model.framing import AfterEnd, Anywhere, End, Start, StartLiteral, StartSet
+from protogen.model.identities import Identities
 from protogen.model.protocol import Sender
 from protogen.targets.python.formats import numeral
 from protogen.targets.python.literals import call, mapping, octets, text, tuple_of
@@ -50,6 +52,30 @@ def part(item: Part) -> str:
         case PayloadPart():
             return call("_rt.PayloadPart", name)
     raise TypeError(f"{type(item).__name__} is no part that a frame has")
+
+
+def virtual_part(plan: VirtualPlan) -> str:
+    """One part that is not sent."""
+    item = plan.part
+    values = (tuple_of((_identity(key), str(value))) for key, value in plan.values)
+    default = None if item.default is None else str(item.default)
+    given = f"values={tuple_of(values)}"
+    return call("_rt.VirtualPart", text(item.name), number(item), given, default=default)
+
+
+def _identity(key: Identities) -> str:
+    if key.count > 1:
+        return identities(key)
+    return tuple_of(f"0x{value:02X}" for value in key.first)
+
+
+def identities(several: Identities) -> str:
+    """Several identities of one message."""
+    parts = (
+        tuple_of(tuple_of(f"0x{value:02X}" for value in run) for run in runs)
+        for runs in several.runs
+    )
+    return call("_rt.Identities", tuple_of(parts))
 
 
 def number(item: TypedPart) -> str:

@@ -360,6 +360,7 @@ def _frame(sender: Sender) -> str:
         rescans="True" if sender.plan.rescans else None,
         ambiguous_cut="True" if framing.cut_ambiguous else None,
         is_bounded="True" if sender.frame.limit is not None else None,
+        virtual=_unless(tuple_of(map(frames.virtual_part, sender.plan.virtual)), "()"),
     )
     return wrapped(expression, _INDENT + len("return "), _INDENT, after=0)
 

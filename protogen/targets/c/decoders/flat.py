@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 
+from protogen.model.frame_plan import Run
 from protogen.targets.c.decoders.groups import GroupView
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.expressions import byte
@@ -80,7 +81,7 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         first_head = self.first_head
         runs = [run for c in self.plan.checksums for run in c.covers]
         return not self.plan.start_bytes or any(
-            not isinstance(run, bytes) and run.first.at(self.plan.head_size, 0) < first_head
+            isinstance(run, Run) and run.first.at(self.plan.head_size, 0) < first_head
             for run in runs
         )
 

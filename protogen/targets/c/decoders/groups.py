@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import msgspec
 
-from protogen.model.frame_plan import FramePlan, IdentityGroup
-from protogen.model.identities import Identities
+from protogen.model.frame_plan import FramePlan
+from protogen.model.identities import Identities, Identity
 from protogen.model.messages import Message
 from protogen.model.types import Integer
 from protogen.targets.c.payload.messages import MessageView
@@ -72,7 +72,7 @@ def groups_of(plan: FramePlan, views: Mapping[str, MessageView]) -> tuple[GroupV
     """The groups of the messages that have a view."""
     return tuple(
         GroupView(
-            key=_constant(plan, group),
+            key=key_constant(plan, group.identity),
             messages=tuple(_message(plan, item, views[item.name]) for item in group.messages),
             fixed=group.fixed,
             greatest=group.greatest,
@@ -85,13 +85,14 @@ def groups_of(plan: FramePlan, views: Mapping[str, MessageView]) -> tuple[GroupV
 def alternatives_of(plan: FramePlan) -> tuple[Alternatives, ...]:
     """The identities of the messages that have several."""
     return tuple(
-        Alternatives(_constant(plan, group), _is_among(plan, group.identities))
+        Alternatives(key_constant(plan, group.identity), is_among(plan, group.identities))
         for group in plan.groups
         if group.identities is not None
     )
 
 
-def _is_among(plan: FramePlan, identities: Identities) -> str:
+def is_among(plan: FramePlan, identities: Identities) -> str:
+    """The condition that `key` is one of several identities; empty if every one is."""
     shift, found = plan.identity_bits, []
     for part, runs in zip(plan.identity, identities.runs, strict=True):
         shift -= part.type.bits
@@ -132,8 +133,9 @@ def key_from(plan: FramePlan, values: Mapping[str, str]) -> str:
     return f"({type_})({' | '.join(terms)})" if len(terms) > 1 else "".join(terms)
 
 
-def _constant(plan: FramePlan, group: IdentityGroup) -> str:
-    return hexadecimal(group.key, max(2, -(-plan.identity_bits // 4)))
+def key_constant(plan: FramePlan, identity: Identity) -> str:
+    """An identity as one number."""
+    return hexadecimal(plan.frame.key(identity), max(2, -(-plan.identity_bits // 4)))
 
 
 def _message(plan: FramePlan, message: Message, view: MessageView) -> ReceivedMessage:

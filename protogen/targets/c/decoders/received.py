@@ -32,6 +32,7 @@ from protogen.targets.c.frame.numbers import (
 )
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.stuffing import Node, Stuffing, StuffingKind, stuffing_of
+from protogen.targets.c.frame.virtual import VirtualView, virtual_of
 from protogen.targets.c.options import Events
 from protogen.targets.c.spelling import Names
 
@@ -270,7 +271,12 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @cached_property
     def checksums(self) -> tuple[ChecksumView, ...]:
         """The checksums."""
-        return checksums_of(self.plan, self.protocol, self.numbers)
+        return checksums_of(self.plan, self.protocol, self.numbers, self.virtual)
+
+    @cached_property
+    def virtual(self) -> tuple[VirtualView, ...]:
+        """The parts that are not sent."""
+        return virtual_of(self.plan, self.prefix, self.numbers)
 
     @property
     def announced(self) -> str:
@@ -297,8 +303,12 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def early_key(self) -> str:
         """The identity, made of bytes of the content, in front of the payload."""
-        names = {part.placed.name: part.value("") for part in self.parts}
-        return self.told(key_from(self.plan, names))
+        return self.told(self.key_in_content(""))
+
+    def key_in_content(self, payload: str) -> str:
+        """The identity as it stands in `content` or `tail`, with a payload of that size."""
+        names = {part.placed.name: part.value(payload) for part in self.parts}
+        return key_from(self.plan, names)
 
     def told(self, key: str) -> str:
         """The identity that stands for all that its message has."""

@@ -5,11 +5,13 @@ from __future__ import annotations
 import msgspec
 
 from protogen.model.checksums import ChecksumSpec, find_algorithm
+from protogen.model.frame import VirtualPart
 from protogen.model.frame_plan import ChecksumPlan, FramePlan, Run, Side
 from protogen.model.types import Integer
 from protogen.targets.c.frame.algorithms import Algorithm, algorithm_of
 from protogen.targets.c.frame.expressions import Index, differs
 from protogen.targets.c.frame.part_numbers import PartNumbers
+from protogen.targets.c.frame.virtual import VirtualView
 
 
 class CoveredRun(msgspec.Struct, frozen=True):
@@ -20,6 +22,7 @@ class CoveredRun(msgspec.Struct, frozen=True):
     stuffed: bool
     """True if it is stuffed on the wire, and the checksum covers what is there."""
     literal: bytes = b""
+    virtual: None = None
 
     def of(self, payload: str) -> str:
         """Start and size of the run, where `payload` is the C of the payload's size."""
@@ -32,6 +35,15 @@ class CoveredLiteral(msgspec.Struct, frozen=True):
 
     literal: bytes
     stuffed: bool = False
+    virtual: None = None
+
+
+class CoveredVirtual(msgspec.Struct, frozen=True):
+    """A part that a checksum covers and that is not sent."""
+
+    virtual: VirtualView
+    stuffed: bool = False
+    literal: bytes = b""
 
 
 class ChecksumView(msgspec.Struct, frozen=True):
@@ -41,13 +53,18 @@ class ChecksumView(msgspec.Struct, frozen=True):
     checksum: Algorithm
     type: Integer
     numbers: PartNumbers
-    covers: tuple[CoveredRun | CoveredLiteral, ...]
+    covers: tuple[CoveredRun | CoveredLiteral | CoveredVirtual, ...]
     at: Index
     """Place of its first byte in the content."""
     optional: bool
     over_wire: bool
     sums_stuffed: bool
     """True if some of what it covers is stuffed on the wire before it is summed."""
+
+    @property
+    def covered(self) -> tuple[str, ...]:
+        """The names of the parts that it covers and that are not sent."""
+        return tuple(item.virtual.name for item in self.covers if item.virtual is not None)
 
     @property
     def size(self) -> int:
@@ -65,13 +82,19 @@ class ChecksumView(msgspec.Struct, frozen=True):
         return differs(self.wire_bytes("due"), "content", at)
 
 
-def checksums_of(plan: FramePlan, protocol: str, numbers: PartNumbers) -> tuple[ChecksumView, ...]:
+def checksums_of(
+    plan: FramePlan, protocol: str, numbers: PartNumbers, virtual: tuple[VirtualView, ...]
+) -> tuple[ChecksumView, ...]:
     """The views of a frame's checksums."""
-    return tuple(_checksum(plan, item, protocol, numbers) for item in plan.checksums)
+    return tuple(_checksum(plan, item, protocol, numbers, virtual) for item in plan.checksums)
 
 
 def _checksum(
-    plan: FramePlan, item: ChecksumPlan, protocol: str, numbers: PartNumbers
+    plan: FramePlan,
+    item: ChecksumPlan,
+    protocol: str,
+    numbers: PartNumbers,
+    virtual: tuple[VirtualView, ...],
 ) -> ChecksumView:
     part = item.part
     return ChecksumView(
@@ -79,21 +102,25 @@ def _checksum(
         checksum=algorithm_of(part.algorithm, checksum_name(protocol, part.algorithm)),
         type=part.type,
         numbers=numbers,
-        covers=tuple(
-            CoveredRun(
-                Index(cover.first, plan.head_size),
-                Index(cover.end, plan.head_size),
-                cover.over_stuffing,
-            )
-            if isinstance(cover, Run)
-            else CoveredLiteral(cover)
-            for cover in item.covers
-        ),
+        covers=tuple(_covered(plan, cover, virtual) for cover in item.covers),
         at=Index(item.placed.place, plan.head_size),
         optional=part.when_payload,
         over_wire=part.over_wire,
         sums_stuffed=item.over_stuffing,
     )
+
+
+def _covered(
+    plan: FramePlan, cover: Run | bytes | VirtualPart, virtual: tuple[VirtualView, ...]
+) -> CoveredRun | CoveredLiteral | CoveredVirtual:
+    match cover:
+        case Run():
+            first, last = Index(cover.first, plan.head_size), Index(cover.end, plan.head_size)
+            return CoveredRun(first, last, cover.over_stuffing)
+        case VirtualPart():
+            return CoveredVirtual(next(view for view in virtual if view.part == cover))
+        case bytes():
+            return CoveredLiteral(cover)
 
 
 def checksum_name(protocol: str, spec: ChecksumSpec) -> str:

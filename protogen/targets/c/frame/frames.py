@@ -22,6 +22,7 @@ from protogen.model.frame import (
     NumberPart,
     PayloadPart,
     ValuePart,
+    VirtualPart,
 )
 from protogen.model.frame_plan import FramePlan, PlacedPart, Side
 from protogen.model.identities import Runs
@@ -31,6 +32,7 @@ from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
 from protogen.targets.c.frame.expressions import Index, byte, less_absent, wire_bytes
 from protogen.targets.c.frame.numbers import has_others, none_of
 from protogen.targets.c.frame.stuffing import Stuffing
+from protogen.targets.c.frame.virtual import VirtualView
 from protogen.targets.c.spelling import Names, unsigned_type
 
 _STUFFED = 128
@@ -65,6 +67,8 @@ class Step(msgspec.Struct, frozen=True):
     checksum: ChecksumView | None = None
     flags: int | None = None
     """Flags of the writer for its bytes, where they differ from those before."""
+    virtual: VirtualView | None = None
+    """A part that is summed here and not sent."""
 
 
 class Half(msgspec.Struct, frozen=True):
@@ -110,15 +114,33 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         """The parts that the caller gives."""
         return tuple(_argument(part, self._names) for part in self.plan.frame.caller_parts)
 
+    @cached_property
+    def virtual(self) -> dict[str, Argument]:
+        """The parts that are not sent, which each message has a value for."""
+        return {
+            part.name: Argument(
+                name=argument_name(part.name, self._names),
+                part=part.name,
+                type=unsigned_type(part.type.bits),
+                doc=part.about.doc,
+                refused="",
+            )
+            for part in self.plan.frame.virtual
+        }
+
+    @property
+    def _parameters(self) -> tuple[Argument, ...]:
+        return (*self.identity, *self.virtual.values(), *self.arguments)
+
     @property
     def parameters(self) -> str:
-        """The same as parameters behind others."""
-        return "".join(f", {item.type} {item.name}" for item in self.identity + self.arguments)
+        """The parts that a frame is made of and that vary, as parameters behind others."""
+        return "".join(f", {item.type} {item.name}" for item in self._parameters)
 
     @property
     def names(self) -> list[str]:
         """Names of these parameters."""
-        return [item.name for item in self.identity + self.arguments]
+        return [item.name for item in self._parameters]
 
     # --- sizes ------------------------------------------------------------------------------------
 
@@ -280,7 +302,12 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         payload_flags: int | None = None
         before = 0
         placed = {item.name: item for item in self.plan.placed}
-        for part in self.plan.frame.parts:
+        payload = self.plan.frame.parts.index(self.plan.frame.payload)
+        views = {view.name: view for view in self.decoder.virtual}
+        for part in self.plan.frame.declared:
+            if isinstance(part, VirtualPart):
+                steps.append(Step(part.place <= payload, (), virtual=views[part.name]))
+                continue
             flags = self._flags(part.name)
             change = None if flags == before else flags
             if isinstance(part, PayloadPart):

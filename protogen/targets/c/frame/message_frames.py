@@ -10,6 +10,7 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.frames import Argument, FrameView, one_of
+from protogen.targets.c.frame.virtual import value_of
 from protogen.targets.c.payload.message_names import FrameNames
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.spelling import hexadecimal
@@ -81,8 +82,12 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
 
     @cached_property
     def passed(self) -> str:
-        """The identity and the caller's parts, as arguments behind others."""
-        names = (*self.identity, *(item.name for item in self.frame.arguments))
+        """Identity, parts that are not sent and those of the caller, as arguments behind others."""
+        given = (
+            value_of(part, self.message.virtual_value(part) or 0)
+            for part in self.decoder.plan.frame.virtual
+        )
+        names = (*self.identity, *given, *(item.name for item in self.frame.arguments))
         return "".join(f", {name}" for name in names)
 
     @property

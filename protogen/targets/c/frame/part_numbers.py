@@ -54,6 +54,8 @@ class PartNumbers:
 def claim_functions(plans: Iterable[FramePlan], numbers: PartNumbers) -> None:
     """Ask for the functions that read and write the digits of frames, so that they are printed."""
     for plan in plans:
+        for virtual in plan.frame.virtual:
+            numbers.bytes_of(virtual.type, "value")
         for item in plan.placed:
             if isinstance(item.part, TypedPart):
                 numbers.bytes_of(item.part.type, "value")

@@ -67,9 +67,8 @@ def message_table(frame: Frame, message: Message, anchors: Anchors, names: Emitt
 
 def _part_row(slot: Slot, frame: Frame, message: Message) -> Row:
     part = slot.part
-    value = value_in(frame, part, message.told_by, message.sizes)
-    size = size_text(slot.sizes)
-    return (slot.place, "", size, part_type(part), part_title(part), "", value, role(part))
+    value = value_in(frame, part, message)
+    return (slot.place, "", slot.size, part_type(part), part_title(part), "", value, role(part))
 
 
 class _PayloadRows:

@@ -21,9 +21,10 @@ from protogen.model.frame import (
     LengthPart,
     Part,
     PayloadPart,
+    VirtualPart,
 )
 from protogen.model.sizes import SizeSet
-from protogen.targets.markdown.text.words import code, span
+from protogen.targets.markdown.text.words import code, size_text, span
 
 INDICES = "ijkl"
 """Names of the indices of nested arrays, outermost first."""
@@ -101,8 +102,15 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
     """Bytes from its start to the frame's end; None where that varies."""
 
     @property
+    def size(self) -> str:
+        """Number of these bytes, as tables show it."""
+        return "" if isinstance(self.part, VirtualPart) else size_text(self.sizes)
+
+    @property
     def place(self) -> str:
         """Place of these bytes in the frame."""
+        if isinstance(self.part, VirtualPart):
+            return "not sent"
         if self.start is not None:
             return self._from_start(self.start)
         return "" if self.rest is None else self._from_end(self.rest)
@@ -123,12 +131,15 @@ def _from_last(distance: int) -> str:
 
 @lru_cache(maxsize=1024)
 def slots(frame: Frame, payload: SizeSet) -> tuple[Slot, ...]:
-    """Return where each part lies in frames with such a payload; absent parts are left out."""
+    """Return where each part lies in frames with such a payload; absent parts are left out.
+
+    Those that are not sent have their places among the others, and no bytes.
+    """
     sized = [(part, part_sizes(part, payload)) for part in _parts_on_wire(frame)]
     present = [
         (part, sizes)
         for part, sizes in sized
-        if sizes.greatest > 0 or isinstance(part, PayloadPart)
+        if sizes.greatest > 0 or isinstance(part, PayloadPart | VirtualPart)
     ]
     shown = [sizes.times(SizeSet.exactly(wire_scale(frame, part))) for part, sizes in present]
     starts = accumulate(shown, initial=_NOTHING)
@@ -147,11 +158,11 @@ def slots(frame: Frame, payload: SizeSet) -> tuple[Slot, ...]:
 
 def _parts_on_wire(frame: Frame) -> tuple[Part, ...]:
     """Return the parts of a frame, and what its encoding adds."""
-    size = frame.code_size
+    size, parts = frame.code_size, frame.declared
     if frame.transparency is None or not size:
-        return frame.parts
-    first = [part.name for part in frame.parts].index(frame.transparency.first)
-    return (*frame.parts[:first], CodePart(size=size), *frame.parts[first:])
+        return parts
+    first = [part.name for part in parts].index(frame.transparency.first)
+    return (*parts[:first], CodePart(size=size), *parts[first:])
 
 
 def part_sizes(part: Part, payload: SizeSet) -> SizeSet:

@@ -24,9 +24,12 @@ from protogen.model.frame import (
     PayloadPart,
     Substitution,
     Transparency,
+    TypedPart,
     ValuePart,
+    VirtualPart,
 )
-from protogen.model.identities import Identities, Runs
+from protogen.model.identities import Runs
+from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.targets.emitted import EmittedNames
 from protogen.targets.markdown.fields.types import number_text
@@ -42,7 +45,6 @@ from protogen.targets.markdown.text.words import (
     hex_number,
     listed,
     plural,
-    size_text,
 )
 
 _HEADER = ("Frame byte", "Size", "Type", "Part", "Value", "Meaning")
@@ -55,15 +57,14 @@ def frame_table(frame: Frame, payload: SizeSet, names: EmittedNames) -> Table:
 
 def _frame_row(slot: Slot, names: EmittedNames) -> tuple[str, ...]:
     part = slot.part
-    size = size_text(slot.sizes)
     name = part_title(part)
-    return (slot.place, size, part_type(part), name, part_value(part), meaning(part, names))
+    return (slot.place, slot.size, part_type(part), name, part_value(part), meaning(part, names))
 
 
 @lru_cache(maxsize=256)
 def part_type(part: Part) -> str:
     """Return a part's type; empty for bytes."""
-    return number_text(part.type) if isinstance(part, NumberPart | ChecksumPart) else ""
+    return number_text(part.type) if isinstance(part, TypedPart) else ""
 
 
 def part_value(part: Part) -> str:
@@ -84,16 +85,24 @@ def part_value(part: Part) -> str:
             return ""
 
 
-def value_in(frame: Frame, part: Part, identities: Identities, payload: SizeSet) -> str:
+def value_in(frame: Frame, part: Part, message: Message) -> str:
     """Return what a part holds in the frames of one message."""
     if isinstance(part, IdentityPart):
-        return identity_values(part, identities.runs[frame.identity.index(part)])
+        return identity_values(part, message.told_by.runs[frame.identity.index(part)])
+    if isinstance(part, VirtualPart):
+        value = message.virtual_value(part)
+        return "" if value is None else virtual_text(part, value)
     if isinstance(part, LengthPart):
-        lengths = length_values(frame, part, payload)
+        lengths = length_values(frame, part, message.sizes)
         if lengths.fixed is not None:
             return code(hex_number(lengths.fixed, part.type.bits))
         return f"{max(lengths.least, part.least)}..{min(lengths.greatest, part.greatest)}"
     return part_value(part)
+
+
+def virtual_text(part: VirtualPart, value: int) -> str:
+    """Print the value of a part that is not sent."""
+    return literal_text(part.encode(value)) if part.type.is_text else code(value)
 
 
 def identity_values(part: IdentityPart, runs: Runs) -> str:
@@ -143,6 +152,7 @@ _ROLE_WORDS: tuple[tuple[type[Part], str], ...] = (
     (ValuePart, "Given by the sender."),
     (ChecksumPart, "Checksum."),
     (PayloadPart, "Payload."),
+    (VirtualPart, "Not sent, but summed."),
     (CodePart, "How far on the next zero is, or the end."),
 )
 
@@ -159,6 +169,8 @@ def _roles(part: Part) -> tuple[str, ...]:
             return _checksum_roles(part)
         case CodePart():
             return (role(part),)
+        case VirtualPart():
+            return _virtual_roles(part)
         case _ if part.unprotected is not None:
             return ("The fields of the message.", _unmarked(part.unprotected))
         case _:
@@ -206,6 +218,12 @@ def _default(part: CounterPart | ValuePart) -> str:
     if part.type.is_text:
         return f"{literal_text(part.encode(part.default))} by default."
     return f"{raw_text(part.default, part.type)} by default."
+
+
+def _virtual_roles(part: VirtualPart) -> tuple[str, ...]:
+    default = part.default
+    text = "Not sent: it goes into the checksum, with a value that each message has."
+    return (text, "" if default is None else f"{virtual_text(part, default)} by default.")
 
 
 def _checksum_roles(part: ChecksumPart) -> tuple[str, ...]:

@@ -7,7 +7,14 @@ from itertools import groupby
 
 import msgspec
 
-from protogen.model.frame import ChecksumPart, IdentityPart, NumberPart, Part, PayloadPart
+from protogen.model.frame import (
+    ChecksumPart,
+    IdentityPart,
+    NumberPart,
+    Part,
+    PayloadPart,
+    VirtualPart,
+)
 from protogen.model.messages import Contradiction, Example, Message
 from protogen.model.protocol import Protocol
 from protogen.model.reading.annotate import Row, annotate
@@ -231,7 +238,7 @@ def _part_value(row: Row) -> str:
         return identity_value(part, row.value)
     if isinstance(part, ChecksumPart):
         return code(hex_number(row.value, part.type.bits))
-    if isinstance(part, NumberPart) and part.type.is_text:
+    if isinstance(part, NumberPart | VirtualPart) and part.type.is_text:
         return literal_text(part.encode(row.value))
     return code(row.value)
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 from contextlib import nullcontext
 
 from protogen.model.checksums import ChecksumSpec
-from protogen.model.frame import ChecksumPart
+from protogen.model.frame import ChecksumPart, VirtualPart
 from protogen.targets.python import frames as tables
+from protogen.targets.python.engine import identities
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.layout import UNSIGNED
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.numbers import FrameFunction
 from protogen.targets.python.engine.place import Place
+from protogen.targets.python.literals import octets_in_class, tuple_of
 
 _SHORT = 256
 """So many bytes can be summed by Adler-32 without its modulus showing."""
@@ -46,7 +48,7 @@ class ChecksumFunction(FrameFunction):
 
     def _compare(self) -> None:
         for part in self.frame.checksums:
-            covered = self.frame.covered(part, self.content)
+            covered = self.covered(part)
             if self.sums_to_nothing(part, covered):
                 self.stop_if(f"_adler32({self.content}, 0) & 0xFF")
                 continue
@@ -65,6 +67,15 @@ class ChecksumFunction(FrameFunction):
             found = self.frame.slice_of(self.content, first, first + part.type.size)
             self.stop_if(f"{found} != {self.lines.constants.number(part.type)}.encode({due})")
 
+    def covered(self, part: ChecksumPart) -> str:
+        """Bytes that a checksum covers, as an expression."""
+        return self.frame.covered(part, self.content, virtual=self._virtual)
+
+    def _virtual(self, part: VirtualPart) -> str:
+        """Bytes of a part that is not sent; an identity that has none is the reference's."""
+        identity = [self.number(self.content, item) for item in self.plan.identity]
+        return virtual_bytes(self.frame, part, identity, self.lines.constants)
+
     def sums_to_nothing(self, part: ChecksumPart, covered: str) -> bool:
         """True if the checksum brings the sum of the whole content to 0."""
         all_but_last = covered == self.frame.slice_of(self.content, 0, -1)
@@ -73,7 +84,7 @@ class ChecksumFunction(FrameFunction):
     def xors_to_nothing(self, part: ChecksumPart, covered: str) -> int | None:
         """Place from which the checksum brings the exclusive or of the content to 0; else None."""
         spec, runs = part.algorithm, self.frame.covered_runs(part)
-        if not is_plain_xor(spec) or len(runs) != 1 or isinstance(runs[0], bytes):
+        if not is_plain_xor(spec) or len(runs) != 1 or not isinstance(runs[0], tuple):
             return None
         if part.type.size != 1 or self.has_padding(part.type):
             return None
@@ -96,6 +107,17 @@ class ChecksumFunction(FrameFunction):
         return frame.slice_of(
             self.content, self.plan.head_size - frame.skipped, -self.plan.tail_size
         )
+
+
+def virtual_bytes(
+    frame: EngineFrame, part: VirtualPart, identity: list[str], constants: Constants
+) -> str:
+    """Bytes of a part that is not sent, as an expression that fails where they are not known."""
+    table = constants.named("VIRTUAL", identities.virtual_bytes(frame, part))
+    key = identity[0] if len(identity) == 1 else tuple_of(identity)
+    if part.default is None:
+        return f"{table}[{key}]"
+    return f"{table}.get({key}, {octets_in_class(part.encode(part.default))})"
 
 
 def is_plain_sum(part: ChecksumPart, frame: EngineFrame) -> bool:

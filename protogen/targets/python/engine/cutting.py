@@ -56,7 +56,7 @@ class _Cutter(ChecksumFunction):
         """Take runs of frames of one message at once, if their checksum is one that allows it."""
         frame = self.frame
         (part,) = frame.checksums
-        covered = frame.covered(part, self.content)
+        covered = self.covered(part)
         first = self.xors_to_nothing(part, covered)
         if first is None and not self.sums_to_nothing(part, covered):
             return

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 from protogen.model.frame import (
@@ -9,8 +10,9 @@ from protogen.model.frame import (
     LiteralPart,
     NumberPart,
     Part,
+    VirtualPart,
 )
-from protogen.model.frame_plan import EndRule, Place, Side
+from protogen.model.frame_plan import EndRule, Place, Run, Side
 from protogen.model.protocol import Sender
 from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.runtime.transparency import replacing_order
@@ -40,7 +42,7 @@ class EngineFrame:
         """Bytes of the largest payload that a message has, whatever frames allow."""
         self.gives_content = False
         """True if readers are given the whole content of a frame, and not its payload alone."""
-        self._covered: dict[tuple[str, str, int], str] = {}
+        self._covered: dict[tuple[str, str, int], list[str | VirtualPart]] = {}
         """Expressions of what checksums cover: those of all messages are the same."""
 
     @cached_property
@@ -64,6 +66,7 @@ class EngineFrame:
             and not any(part.over_wire for part in self.checksums)
             and self.tail == self.checksums
             and self.plan.is_regular
+            and self._has_few_identities
         )
 
     @property
@@ -73,7 +76,13 @@ class EngineFrame:
         A range of very many identities is left to the reference.
         """
         several = filter(None, (group.identities for group in self.plan.groups))
-        return self.plan.takes_whole and sum(item.count for item in several) <= _MOST_IDENTITIES
+        are_few = sum(item.count for item in several) <= _MOST_IDENTITIES
+        return self.plan.takes_whole and are_few and self._has_few_identities
+
+    @property
+    def _has_few_identities(self) -> bool:
+        """True if tables have room for what each identity puts into checksums."""
+        return all(item.count <= _MOST_IDENTITIES for item in self.plan.virtual)
 
     @property
     def lists_frame_sizes(self) -> bool:
@@ -193,31 +202,41 @@ class EngineFrame:
             return content
         return f"{content}[{first or ''}:{last or ''}]"
 
-    def covered(self, part: ChecksumPart, content: str, missing: int = 0) -> str:
+    def covered(
+        self,
+        part: ChecksumPart,
+        content: str,
+        missing: int = 0,
+        *,
+        virtual: Callable[[VirtualPart], str],
+    ) -> str:
         """Bytes that a checksum covers, as an expression.
 
-        The content's last `missing` bytes are not there yet.
+        The content's last `missing` bytes are not there yet. `virtual` gives the bytes of a part
+        that is not sent.
         """
         key = part.name, content, missing
         if key not in self._covered:
-            pieces = [
-                octets_in_class(run)
+            self._covered[key] = [
+                run
+                if isinstance(run, VirtualPart)
+                else octets_in_class(run)
                 if isinstance(run, bytes)
                 else self.slice_of(content, *(_moved(bound, missing) for bound in run))
                 for run in self.covered_runs(part)
             ]
-            self._covered[key] = " + ".join(pieces) or 'b""'
-        return self._covered[key]
+        pieces = (it if isinstance(it, str) else virtual(it) for it in self._covered[key])
+        return " + ".join(pieces) or 'b""'
 
-    def covered_runs(self, part: ChecksumPart) -> tuple[tuple[int, int] | bytes, ...]:
+    def covered_runs(self, part: ChecksumPart) -> tuple[tuple[int, int] | bytes | VirtualPart, ...]:
         """Bytes that a checksum covers, or where they begin and end in the content.
 
         A place below 0 is counted from the content's end, as is an end of 0.
         """
         plan = next(item for item in self.plan.checksums if item.part == part)
-        runs: list[tuple[int, int] | bytes] = []
+        runs: list[tuple[int, int] | bytes | VirtualPart] = []
         for run in plan.covers:
-            if isinstance(run, bytes):
+            if not isinstance(run, Run):
                 runs.append(run)
                 continue
             first, end = self._place(run.first), self._place(run.end)

@@ -14,11 +14,18 @@ from protogen.model.frame import (
     Part,
     PayloadPart,
     ValuePart,
+    VirtualPart,
 )
 from protogen.model.messages import Message
 from protogen.model.types import Integer
 from protogen.targets.python import frames as tables
-from protogen.targets.python.engine.checksums import FOLDED, checksum, folded, is_plain_xor
+from protogen.targets.python.engine.checksums import (
+    FOLDED,
+    checksum,
+    folded,
+    is_plain_xor,
+    virtual_bytes,
+)
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.layout import UNSIGNED, byte_order
 from protogen.targets.python.engine.lines import Constants, Lines
@@ -334,8 +341,15 @@ class _Framer(FrameFunction):
         """Bytes that a checksum covers, while the content ends where the part begins."""
         frame = self.frame
         missing = -frame.offset(part)
-        covered = frame.covered(part, "content", missing)
+        covered = frame.covered(part, "content", missing, virtual=self._virtual)
         return "payload" if self._has_payload and self._covers_payload(part, covered) else covered
+
+    def _virtual(self, part: VirtualPart) -> str:
+        """Bytes of a part that is not sent."""
+        value = None if self.message is None else self.message.virtual_value(part)
+        if value is not None:
+            return literal(part.encode(value))
+        return virtual_bytes(self.frame, part, self._identity, self.lines.constants)
 
     @property
     def _is_cut_off(self) -> bool:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+from functools import partial
+
+from protogen.model.frame import VirtualPart
 from protogen.model.frame_plan import EndRule, IdentityGroup
-from protogen.model.identities import Runs
+from protogen.model.identities import Identities, Runs
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.numbers import FrameFunction
 from protogen.targets.python.engine.place import Place
-from protogen.targets.python.literals import tuple_of
+from protogen.targets.python.literals import octets_in_class, tuple_of
 
 
 def header(frame: EngineFrame, constants: Constants) -> tuple[str, ...]:
@@ -24,21 +28,35 @@ def kinds(frame: EngineFrame) -> str:
 
     Where that varies, it is negative: the complement of the greatest.
     """
-    lines = [f"    {_entries(frame, item)}," for item in frame.plan.groups]
-    return "\n".join(["{", *lines, "}"])
+    return _table(_entries(item.told_by, partial(_kind, frame, item)) for item in frame.plan.groups)
 
 
-def _entries(frame: EngineFrame, group: IdentityGroup) -> str:
-    if group.identities is None:
-        identity = tuple(map(str, group.identity))
-        return f"{identity_key(group.identity)}: {_kind(frame, group, identity)}"
-    names = tuple(f"part{index}" for index in range(len(group.identity)))
+def virtual_bytes(frame: EngineFrame, part: VirtualPart) -> str:
+    """Table of the bytes of a part that is not sent, by identity."""
+    values = next(item.values for item in frame.plan.virtual if item.part == part)
+
+    def octets(number: int, _: tuple[str, ...]) -> str:
+        return octets_in_class(part.encode(number))
+
+    return _table(_entries(key, partial(octets, number)) for key, number in values)
+
+
+def _table(entries: Iterable[str]) -> str:
+    return "\n".join(["{", *(f"    {entry}," for entry in entries), "}"])
+
+
+def _entries(identities: Identities, value: Callable[[tuple[str, ...]], str]) -> str:
+    """Entries of a table; `value` is what belongs to an identity, given as expressions."""
+    if identities.count == 1:
+        identity = tuple(map(str, identities.first))
+        return f"{identity_key(identities.first)}: {value(identity)}"
+    names = tuple(f"part{index}" for index in range(len(identities.runs)))
     key = names[0] if len(names) == 1 else tuple_of(names)
     loops = [
         f"        for {name} in {_values(runs)}"
-        for name, runs in zip(names, group.identities.runs, strict=True)
+        for name, runs in zip(names, identities.runs, strict=True)
     ]
-    entry = f"        {key}: {_kind(frame, group, names)}"
+    entry = f"        {key}: {value(names)}"
     return "\n".join(["**{", entry, *loops, "    }"])
 
 
