@@ -202,11 +202,11 @@ class _Frame:
 
     def _dissected(self, message: Message, inside: Cursor) -> list[Row]:
         """The rows of a payload; zeros that the frame leaves out have values and no bytes."""
-        size = inside.left
+        offset, size = inside.offset, inside.left
         missing = message.sizes.greatest - size
         if missing <= 0 or not self._sender.plan.is_trimmed:
             return dissect(message.plan, inside)
-        zeros = Cursor([*inside.rest(), *[Unit(0, b"")] * missing], inside.offset)
+        zeros = Cursor([*inside.rest(), *[Unit(0, b"")] * missing], offset)
         return list(_as_sent(dissect(message.plan, zeros), size))
 
     def _payload_size(self, part: PayloadPart) -> int:

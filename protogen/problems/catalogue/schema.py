@@ -14,8 +14,8 @@ from protogen.problems.catalogue.messages import MESSAGE_CODES
 from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.parts import PART_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
-from protogen.problems.catalogue.trimming import TRIMMING_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
+from protogen.problems.catalogue.trimming import TRIMMING_CODES
 
 SCHEMA_CODES: tuple[Code, ...] = (
     *KEY_AND_NAME_CODES,

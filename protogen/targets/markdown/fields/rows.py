@@ -57,7 +57,7 @@ Row = tuple[str, ...]
 def message_table(frame: Frame, message: Message, anchors: Anchors, names: EmittedNames) -> Table:
     """Return the table of everything in a message's frame, in wire order."""
     rows: list[Row] = []
-    for slot in slots(frame, message.sizes):
+    for slot in slots(frame, frame.payload.sent(message.sizes)):
         if isinstance(slot.part, PayloadPart):
             rows += _PayloadRows(slot, anchors, names).of_record(message.plan.steps, Place(), ROOT)
         else:
@@ -67,7 +67,7 @@ def message_table(frame: Frame, message: Message, anchors: Anchors, names: Emitt
 
 def _part_row(slot: Slot, frame: Frame, message: Message) -> Row:
     part = slot.part
-    value = value_in(frame, part, message.told_by, message.sizes)
+    value = value_in(frame, part, message.told_by, frame.payload.sent(message.sizes))
     size = size_text(slot.sizes)
     return (slot.place, "", size, part_type(part), part_title(part), "", value, role(part))
 
