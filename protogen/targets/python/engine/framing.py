@@ -72,7 +72,7 @@ def encoder(
         lines.refuse_if("module is not _ENCODERS")
     payload_writer(message, lines)
     if len(frames) == 1:
-        if frames[0].plan.is_trimmed:
+        if _is_trimmed(frames[0], message):
             lines.add(f"payload = {_trimmed(frames[0])}")
         return _Framer(frames[0], of_caller, lines, message).body()
     endpoints = dict.fromkeys(frame.sender.endpoint for frame in frames)
@@ -97,7 +97,7 @@ def _first_that_fits(
         values = [*_identity_of(message, frame, lines), *others]
         stated, sizes = frame.plan.payload, frame.plan.frame.payload.sent(message.sizes)
         payload = "payload"
-        if frame.plan.is_trimmed:
+        if _is_trimmed(frame, message):
             payload = "trimmed"
             lines.add(f"{payload} = {_trimmed(frame)}")
         made = f"return _frame_{frame.sender.name}({', '.join([payload, *values])})"
@@ -107,6 +107,11 @@ def _first_that_fits(
         if stated.meets(sizes):
             with lines.block(f"if {stated.least} <= len({payload}) <= {stated.greatest}:"):
                 lines.add(made)
+
+
+def _is_trimmed(frame: EngineFrame, message: Message) -> bool:
+    """True if zeros at the end of a message's payload may be left out."""
+    return frame.plan.frame.payload.sent(message.sizes) != message.sizes
 
 
 def _trimmed(frame: EngineFrame) -> str:
