@@ -318,4 +318,3 @@ def test_a_field_that_can_not_be_zero_is_refused_in_old_frames() -> None:
     found = _changes("{value: uint16}", "{value: uint16, extra: {type: uint8, const: 7}}")
     assert {finding[3] for finding in found} == {"rejected"}
     assert {finding[2] for finding in found} == {"both"}
-
