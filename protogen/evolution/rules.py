@@ -73,6 +73,12 @@ RULES: tuple[Rule, ...] = (
     Rule("frame-checksum-algorithm", _W, "the checksum is worked out another way", _TOGETHER),
     Rule("frame-checksum-coverage", _W, "the checksum covers other bytes", _TOGETHER),
     Rule("frame-transparency", _W, "bytes are stuffed another way", _TOGETHER),
+    Rule(
+        "frame-trailing-zeros",
+        _W,
+        "zeros at the end of payloads are left out, or no more",
+        "rebuild the receivers first",
+    ),
     Rule("frame-leniency", _S, "receivers take other sloppy encodings", "check the receivers"),
     Rule("frame-size-limit", _S, "the greatest frame has another size", "rebuild the receivers"),
     Rule("form-added", _W, "an endpoint sends frames of a new form", "rebuild the receivers first"),

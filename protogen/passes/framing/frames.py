@@ -49,6 +49,7 @@ from protogen.passes.framing.part_digits import (
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.part_values import number_of, text_bounds, text_type
 from protogen.passes.framing.transparencies import transparency_of
+from protogen.passes.framing.trimming import trimmed
 from protogen.passes.framing.virtual_parts import check_virtual_parts, sent_run
 from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width
@@ -68,7 +69,7 @@ _ROLES: dict[str, frozenset[str]] = {
     "counter": _NUMBER | {"counter", "default"},
     "algorithm": _TYPE | {"algorithm", "covers", "over", "when"},
     "type": _NUMBER | {"size", "default"},
-    PAYLOAD: frozenset({"unprotected"}),
+    PAYLOAD: frozenset({"unprotected", "trailing_zeros"}),
 }
 _ORDER_HINT = "set `byte_order: little` or `big` on the part or the protocol"
 _IDENTITY_BITS = 64
@@ -134,6 +135,8 @@ class FrameBuilder:
             transparency=transparency,
             limit=self._written.limit,
         )
+        if self._syntax[PAYLOAD].trailing_zeros is not None:
+            frame = trimmed(self._context, self._loc, frame)
         self._check(frame)
         return frame if self._context.tally.errors == before else None
 

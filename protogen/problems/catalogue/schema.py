@@ -15,6 +15,7 @@ from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.parts import PART_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
+from protogen.problems.catalogue.trimming import TRIMMING_CODES
 from protogen.problems.catalogue.virtual_parts import VIRTUAL_PART_CODES
 
 SCHEMA_CODES: tuple[Code, ...] = (
@@ -29,6 +30,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *FRAMING_CODES,
     *FORM_CODES,
     *FRAME_SIZE_CODES,
+    *TRIMMING_CODES,
     *MESSAGE_CODES,
     *PART_CODES,
 )
