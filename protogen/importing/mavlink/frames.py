@@ -12,7 +12,13 @@ from protogen.importing.schema_text import Number
 LARGEST_PAYLOAD = 255
 ENDPOINT = "component"
 _DECISION = "start_in_data"
-_PAYLOAD = {"doc": "Fields of the message, the largest ones first"}
+_EXTRA = "extra"
+_LENGTH = {"type": "uint8", "counts": "payload", "doc": "Number of bytes of the payload"}
+_SENDER = {
+    "seq": {"type": "uint8", "counter": True, "doc": "Counts the frames of the sender"},
+    "sysid": {"type": "uint8", "default": 1, "doc": "System that sends it"},
+    "compid": {"type": "uint8", "default": 1, "doc": "Component of it; 1 is an autopilot"},
+}
 
 
 class Wire(StrEnum):
@@ -40,11 +46,17 @@ def protocol_data(wire: Wire) -> dict[str, Any]:
         "title": "Component of a system",
         "doc": "An autopilot, a camera, a ground station: each sends and takes all messages.",
     }
-    return {
-        "endpoints": {ENDPOINT: endpoint},
-        "byte_order": "little",
-        "frame": _head(wire) | _tail(),
+    data: dict[str, Any] = {"endpoints": {ENDPOINT: endpoint}, "byte_order": "little"}
+    if wire is Wire.V1:
+        return data | {"frame": _head_1() | _tail({})}
+    payload = {"trailing_zeros": "trimmed"}
+    unsigned = _head_2("0x00", "Nothing that a receiver has to understand") | _tail(payload)
+    signed = _head_2("0x01", "The frame is signed") | _tail(payload) | _signature()
+    forms = {
+        "unsigned": {"doc": "Without a signature.", "frame": unsigned},
+        "signed": {"doc": "With a signature, which receivers check by a key.", "frame": signed},
     }
+    return data | {"forms": forms}
 
 
 def decisions() -> dict[str, Any]:
@@ -59,42 +71,60 @@ def decisions() -> dict[str, Any]:
     }
 
 
-def message_data(crc_extra: int) -> dict[str, Any]:
-    """Return what a message says about its frame."""
-    return {}
+def message_data(extra: int) -> dict[str, Any]:
+    """Return what a message says about its frame: the CRC_EXTRA."""
+    return {"parts": {_EXTRA: extra}}
 
 
-def _head(wire: Wire) -> dict[str, Any]:
-    start = {"unprotected": _DECISION, "doc": f"Begins a frame of MAVLink {wire}"}
-    length = {"type": "uint8", "counts": "payload", "doc": "Number of bytes of the payload"}
-    sender = {
-        "seq": {"type": "uint8", "counter": True, "doc": "Counts the frames of the sender"},
-        "sysid": {"type": "uint8", "default": 1, "doc": "System that sends it"},
-        "compid": {"type": "uint8", "default": 1, "doc": "Component of it; 1 is an autopilot"},
-    }
-    if wire is Wire.V1:
-        return {
-            "magic": {"literal": _hex(0xFE), **start},
-            "len": length,
-            **sender,
-            "msgid": {"type": "uint8", "id": True, "doc": "Which message it is"},
-        }
+def _head_1() -> dict[str, Any]:
     return {
-        "magic": {"literal": _hex(0xFD), **start},
-        "len": length,
-        "incompat_flags": {"literal": 0, "doc": "What a receiver has to understand: nothing"},
-        "compat_flags": {"type": "uint8", "default": 0, "doc": "What it may pass over"},
-        **sender,
+        "magic": _magic("0xFE", Wire.V1),
+        "len": _LENGTH,
+        **_SENDER,
+        "msgid": {"type": "uint8", "id": True, "doc": "Which message it is"},
+    }
+
+
+def _head_2(incompat: str, doc: str) -> dict[str, Any]:
+    return {
+        "magic": _magic("0xFD", Wire.V2),
+        "len": _LENGTH,
+        "incompat_flags": {"literal": Number(incompat), "doc": doc},
+        "compat_flags": {"type": "uint8", "default": 0, "doc": "What a receiver may pass over"},
+        **_SENDER,
         "msgid": {"type": "uint24", "id": True, "doc": "Which message it is"},
     }
 
 
-def _tail() -> dict[str, Any]:
+def _magic(byte: str, wire: Wire) -> dict[str, Any]:
+    doc = f"Begins a frame of MAVLink {wire}"
+    return {"literal": Number(byte), "unprotected": _DECISION, "doc": doc}
+
+
+def _tail(payload: dict[str, Any]) -> dict[str, Any]:
+    extra = "CRC_EXTRA: whether both sides have the same definition of the message"
     return {
-        "payload": _PAYLOAD,
-        "checksum": {"type": "uint16", "algorithm": "CRC-16/MCRF4XX", "covers": "len..payload"},
+        "payload": payload | {"doc": "Fields of the message, the largest ones first"},
+        _EXTRA: {"type": "uint8", "virtual": True, "doc": extra},
+        "checksum": {
+            "type": "uint16",
+            "algorithm": "CRC-16/MCRF4XX",
+            "covers": f"len..{_EXTRA}",
+            "doc": "Of all bytes behind the first one, and CRC_EXTRA",
+        },
     }
 
 
-def _hex(number: int) -> Any:
-    return Number(f"0x{number:02X}")
+def _signature() -> dict[str, Any]:
+    return {
+        "link_id": {"type": "uint8", "doc": "Link on which it is sent"},
+        "timestamp": {
+            "type": "uint48",
+            "doc": "Since 1 January 2015, in 10 us; greater in each frame",
+        },
+        "signature": {
+            "type": "uint48",
+            "byte_order": "big",
+            "doc": "First bytes of the SHA-256 of the key and all in front of it",
+        },
+    }
