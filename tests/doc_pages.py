@@ -21,7 +21,7 @@ PAGES = (
     "ARCHITECTURE.md",
     "benchmarks/README.md",
 )
-FILES = ("toml", "markdown")
+FILES = ("toml", "markdown", "xml")
 """Languages of blocks that are written to a file of their own."""
 
 _FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -32,7 +32,7 @@ _DEFINITIONS = re.compile(r"# (definitions/\w+\.yaml)\n")
 _FRAGMENT = re.compile(r"# frame: (.+)\n")
 _MODELINE = re.compile(r"# yaml-language-server: \$schema=(\S+)\n")
 _WORKFLOW = re.compile(r"# (?:\.github/workflows/\w+\.yaml|\.pre-commit-config\.yaml|hooks: .*)\n")
-_NAMED = re.compile(r"(?:# |// |/\* |<!-- )(\w+\.(?:toml|md|c|ino))(?: \*/| -->)?\n")
+_NAMED = re.compile(r"(?:# |// |/\* |<!-- )(\w+\.(?:toml|md|xml|c|ino))(?: \*/| -->)?\n")
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@
     cpp       `// NAME.ino` in the first line: an Arduino sketch, linked in the same way
     toml      `# NAME.toml` in the first line: a file
     markdown  `<!-- NAME.md -->` in the first line: a file
+    xml       `<!-- NAME.xml -->` in the first line: a file
 
 In what is expected, `...` stands for any text, and alone on a line for any lines.
 """

@@ -48,6 +48,9 @@ ONLY = {
     "test_c_schemas.py": r"\[0\]",
     "test_ci.py": "TestCommands",
     "test_evolution_random.py": r"^$",
+    "test_import_mavlink_c.py": "minimal",
+    "test_import_mavlink_published.py": r"all_files.*\[2|is_named|small_dialects|left_out_are_read",
+    "test_import_mavlink_random.py": r"\[[01]-",
     "test_import_sbp_published.py": r"^$",
     "test_lower_bounds.py": "has_a_lower_bound",
 }

@@ -130,7 +130,10 @@ def test_the_payload_of_an_event_is_that_of_its_message(path: Path, sender: str)
             if event.kind == "message":
                 again = type(event.message).from_payload(event.payload)
                 assert repr(again) == repr(event.message)
-                assert event.payload == byte_by_byte(event.codec, event.raw)
+                carried = byte_by_byte(event.codec, event.raw)
+                if event.codec.layout.payload.kept is not None:
+                    carried = carried.ljust(type(event.message).SIZES.greatest, b"\0")
+                assert event.payload == carried
 
 
 def byte_by_byte(sender: Any, raw: bytes) -> bytes:

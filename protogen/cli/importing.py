@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -66,6 +66,35 @@ def sbp(
         print_found(problems, sources)
         return USAGE
     imported = import_packages(packages, remarks, split=split)
+    if not imported.schemas:
+        raise UsageError(f"`{definitions}` defines no message")
+    _write(imported, output, force=force, quiet=quiet)
+    return CLEAN
+
+
+@GROUP.command(cls=Command, epilog="Example: protogen import mavlink common.xml -o schemas")
+@guarded
+def mavlink(
+    definitions: Definitions,
+    output: Output,
+    wire: Annotated[
+        Literal["1", "2"], typer.Option("--wire", help="The version of the protocol.")
+    ] = "2",
+    force: Force = False,
+    quiet: Quiet = False,
+) -> int:
+    """Make schemas of definitions of MAVLink.
+
+    Reads an XML file of messages, or those of a folder, with the files that they include. Each
+    becomes a schema, which extends that of a file that it includes. They have messages, enums,
+    units and docs. What is not in them as it is defined is listed with the reason. A file that was
+    made or changed by hand is not overwritten.
+    """
+    from protogen.importing.mavlink.dialects import read_dialects
+    from protogen.importing.mavlink.frames import Wire
+    from protogen.importing.mavlink.schemas import import_dialects
+
+    imported = import_dialects(read_dialects(definitions), Wire(wire))
     if not imported.schemas:
         raise UsageError(f"`{definitions}` defines no message")
     _write(imported, output, force=force, quiet=quiet)

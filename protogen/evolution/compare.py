@@ -118,7 +118,8 @@ def _obstacle(message: Message, old: FramePlan, new: FramePlan) -> str:
     if old.end_rule is EndRule.IDENTITY:
         return "an unknown identity tells no size"
     greatest = new.room(message.sizes.greatest)
-    if greatest > old.greatest or not old.payload.holds(message.sizes):
+    sizes = new.frame.payload.sent(message.sizes)
+    if greatest > old.greatest or not old.payload.holds(sizes):
         return f"frames of up to {greatest} bytes, and old receivers take {old.greatest} at most"
     return ""
 

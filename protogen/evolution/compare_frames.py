@@ -22,6 +22,7 @@ from protogen.model.frame import (
     NumberPart,
     Part,
     PartType,
+    PayloadPart,
     Substitution,
     Transparency,
     TypedPart,
@@ -98,6 +99,10 @@ class _Frames:
                 yield self._change("frame-literal", old.name, words)
         elif isinstance(old, NumberPart) and isinstance(new, NumberPart):
             yield from self._number(old, new, renamed)
+        elif isinstance(old, PayloadPart) and isinstance(new, PayloadPart):
+            if old.is_trimmed != new.is_trimmed:
+                words = "zeros at the end are " + ("left out" if new.is_trimmed else "sent")
+                yield self._change("frame-trailing-zeros", old.name, words)
         elif isinstance(old, ChecksumPart) and isinstance(new, ChecksumPart):
             yield from self._checksum(old, new, renamed)
         elif isinstance(old, VirtualPart) and isinstance(new, VirtualPart):
@@ -191,7 +196,8 @@ def _fits(sender: Sender, receiver: Sender) -> bool:
     """True if the receiver's length can say the sizes of the messages that both have."""
     taken = payload_range(receiver.frame)
     names = {message.name for message in receiver.messages}
-    sizes = [message.sizes for message in sender.messages if message.name in names]
+    messages = (message for message in sender.messages if message.name in names)
+    sizes = [sender.frame.payload.sent(message.sizes) for message in messages]
     return taken is None or all(taken.holds(item) for item in sizes)
 
 

@@ -22,6 +22,7 @@ from protogen.model.reading.readings import physical, value_name
 from protogen.model.reading.wire import plain
 from protogen.model.types import Field, Integer
 from protogen.runtime.decoder import Decoder
+from protogen.runtime.framing.extraction import payload_of
 from protogen.runtime.values import as_dict
 
 
@@ -30,6 +31,14 @@ class Contents(msgspec.Struct, frozen=True, dict=True):
 
     fields: tuple[Field, ...] = ()
     payload: bytes = b""
+    sent: int | None = None
+    """Bytes of it that were in the frame, where zeros at its end were left out."""
+
+    @cached_property
+    def filled(self) -> frozenset[str]:
+        """Paths of what was not in the frame: zeros, as an older sender may never have had it."""
+        sent = len(self.payload) if self.sent is None else self.sent
+        return frozenset(row.path for row in self._rows if row.offset >= sent)
 
     @cached_property
     def _rows(self) -> list[Row]:
@@ -127,7 +136,8 @@ class Side:
             return Reading(None, _why(events))
         event = found[0]
         name = event.message.NAME
-        contents = Contents(self.protocol.message(name).fields, event.payload)
+        sent = len(payload_of(event.codec, event.raw))
+        contents = Contents(self.protocol.message(name).fields, event.payload, sent)
         if like is not None and like.contents == contents:
             contents = like.contents
         parts = {f"frame.{part}": str(value) for part, value in as_dict(event.parts).items()}

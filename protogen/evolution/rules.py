@@ -80,6 +80,12 @@ RULES: tuple[Rule, ...] = (
         _TOGETHER,
         by_frame=False,
     ),
+    Rule(
+        "frame-trailing-zeros",
+        _W,
+        "zeros at the end of payloads are left out, or no more",
+        "rebuild the receivers first",
+    ),
     Rule("frame-leniency", _S, "receivers take other sloppy encodings", "check the receivers"),
     Rule("frame-size-limit", _S, "the greatest frame has another size", "rebuild the receivers"),
     Rule("form-added", _W, "an endpoint sends frames of a new form", "rebuild the receivers first"),

@@ -271,7 +271,8 @@ class Witnesses:
                 yield Difference(path, sent.values[path], None)
             elif theirs.pop(place) != meaning:
                 yield Difference(path, sent.values[path], received.values[place])
-        for path in theirs:
+        filled = received.contents.filled
+        for path in (path for path in theirs if path not in filled):
             yield Difference(path, None, received.values[path])
 
 

@@ -70,7 +70,7 @@ def _scaled(text: str, remark: str) -> Unit:
     factor, unit = _split(text)
     part, unit = _PARTS.get(unit, (Fraction(1), _SAME.get(unit, unit)))
     scale = factor * part
-    return Unit(_bare(unit) or None, _written(scale), remark)
+    return Unit(_bare(unit) or None, written_scale(scale), remark)
 
 
 def _split(text: str) -> tuple[Fraction, str]:
@@ -114,7 +114,7 @@ def _bare(unit: str) -> str:
     return re.sub(r"\s*/\s*", "/", unit)
 
 
-def _written(scale: Fraction) -> str | None:
+def written_scale(scale: Fraction) -> str | None:
     """Return a scale as a schema has it: a decimal number if that is short, else a fraction."""
     if scale == 1:
         return None

@@ -10,6 +10,7 @@ import msgspec
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.origin import NOTHING, About
+from protogen.model.sizes import SizeSet
 from protogen.model.types import Integer, characters, codec
 
 PartType = Integer
@@ -151,6 +152,24 @@ class ChoicePart(ValuePart, frozen=True, kw_only=True):
 
 class PayloadPart(Part, frozen=True, kw_only=True):
     """The message's fields."""
+
+    kept: int | None = None
+    """Bytes that stay, at least, where zeros at its end are left out; None where none are."""
+
+    @property
+    def is_trimmed(self) -> bool:
+        """True if senders leave out zeros at its end, which receivers put there again."""
+        return self.kept is not None
+
+    def carried(self, sizes: SizeSet) -> SizeSet:
+        """The sizes in which a receiver takes the payloads of a message that has these itself."""
+        return SizeSet.between(0, sizes.greatest) if self.is_trimmed else sizes
+
+    def sent(self, sizes: SizeSet) -> SizeSet:
+        """The sizes in which an encoder sends them."""
+        if self.kept is None:
+            return sizes
+        return SizeSet.between(min(self.kept, sizes.greatest), sizes.greatest)
 
 
 class ChecksumPart(TypedPart, frozen=True, kw_only=True):

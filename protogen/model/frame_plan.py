@@ -272,6 +272,8 @@ class IdentityGroup(msgspec.Struct, frozen=True, kw_only=True):
     key: int
     """Values of the identity parts as one number, the first part in its highest bits."""
     messages: tuple[Message, ...]
+    sizes: tuple[SizeSet, ...]
+    """Payload sizes of each of these messages, as frames carry them."""
     identities: Identities | None = None
     """Where there are several."""
 
@@ -283,13 +285,13 @@ class IdentityGroup(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def fixed(self) -> int | None:
         """Size of the payload, where no message has another one."""
-        sizes = {message.sizes.fixed for message in self.messages}
+        sizes = {item.fixed for item in self.sizes}
         return sizes.pop() if len(sizes) == 1 else None
 
     @property
     def greatest(self) -> int:
         """Greatest payload of these messages in bytes."""
-        return max(message.sizes.greatest for message in self.messages)
+        return max(item.greatest for item in self.sizes)
 
 
 class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
@@ -370,6 +372,11 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         if not self.identity:
             return 0 if self.groups and all(g.fixed is not None for g in self.groups) else None
         return self.part(self.identity[-1].name).end if self.identity_is_early else None
+
+    @property
+    def is_trimmed(self) -> bool:
+        """True if senders leave out zeros at the end of payloads, and receivers fill them up."""
+        return self.frame.payload.is_trimmed
 
     @property
     def bounds_payload(self) -> bool:
@@ -546,7 +553,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     def has_one_spelling(self) -> bool:
         """True if a frame can only have the bytes that an encoder makes of what is in it."""
         lenient = self.region is not None and self.region.lenient
-        if lenient or self.cut_ambiguous or self.shares_delimiter:
+        if lenient or self.cut_ambiguous or self.shares_delimiter or self.is_trimmed:
             return False
         messages = (message for group in self.groups for message in group.messages)
         return all(message.plan.has_one_spelling for message in messages)

@@ -15,6 +15,7 @@ from protogen.passes.framing.forms import check_forms
 from protogen.passes.framing.frame_plan import plan_frame
 from protogen.passes.framing.frames import resolve_frames
 from protogen.passes.framing.transparencies import check_codes
+from protogen.passes.framing.trimming import check_trimmed
 from protogen.passes.messages.building import resolve_messages
 from protogen.passes.messages.examples import attach_examples, resolve_exchanges
 from protogen.passes.messages.identities import check_identities
@@ -41,6 +42,7 @@ PASSES: tuple[Pass, ...] = (
     check_distinct_names,
     check_identities,
     check_shared_values,
+    check_trimmed,
     resolve_reserved,
     attach_examples,
     resolve_exchanges,

@@ -198,7 +198,8 @@ def _frame(
     strict: bool,
 ) -> bytes:
     identity, given = sender.choose_identity(type(message), parts)
-    return encode_frame(sender, identity, payload, given, strict)
+    carried = sender.layout.payload.trimmed(payload)
+    return encode_frame(sender, identity, carried, given, strict)
 
 
 class Encoder:

@@ -71,8 +71,9 @@ class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
 
     @property
     def payload(self) -> bytes:
-        """The message's bytes in the frame."""
-        return payload_of(self.codec, self.raw)
+        """The message's bytes, with zeros at their end that the frame leaves out."""
+        payload = payload_of(self.codec, self.raw)
+        return self.codec.layout.payload.filled(payload, self.message.SIZES.greatest)
 
     def __repr__(self) -> str:
         shown = ("offset", "raw", "sender", "parts", "message")

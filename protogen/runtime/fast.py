@@ -199,7 +199,8 @@ def _writer(
             parts = [least.get(name) for name in arguments]
         if tables is not None and not tables.are_filled:
             tables.fill()
-        return payload_of(sender, message.__encode__(encoders, sender.name, *parts))
+        payload = payload_of(sender, message.__encode__(encoders, sender.name, *parts))
+        return sender.layout.payload.filled(payload, message.SIZES.greatest)
 
     return write_payload
 

@@ -170,6 +170,11 @@ _PART_RULES = (
         {"propertyNames": {"enum": ["literal", "unprotected", "type", "doc", "source"]}},
     ),
     _where(
+        _with("trailing_zeros"),
+        "Only the payload is trimmed.",
+        {"propertyNames": {"enum": ["trailing_zeros", "unprotected", "doc", "source"]}},
+    ),
+    _where(
         _with("literal", "type"),
         "Only a choice of literals can be a text.",
         {"properties": {"literal": {"type": "object"}, "type": {"const": "ascii"}}},

@@ -171,6 +171,8 @@ def _may_differ(sender: Sender, line: dict[str, Any]) -> bool:
     """
     if not all(message.plan.has_one_spelling for message in sender.messages):
         return True
+    if sender.plan.is_trimmed:
+        return True
     start, end, transparency = sender.framing.start, sender.framing.end, sender.frame.transparency
     is_shared = isinstance(start, StartLiteral) and end is not None and start.bytes == end.bytes
     return is_shared or (transparency is not None and transparency.lenient) or "nan" in str(line)

@@ -82,6 +82,19 @@ class FramePlan:
         return bool(self.closing) or has_length or self.silence is not None
 
     @property
+    def has_length(self) -> bool:
+        """True if a part says how long the payload is."""
+        return any(part.role == "length" for part in self.parts)
+
+    def trimmed(self) -> FramePlan:
+        """The same frame, with a payload whose zeros at the end are left out."""
+        parts = (
+            part.adding(trailing_zeros="trimmed") if part.role == "payload" else part
+            for part in self.parts
+        )
+        return replace(self, parts=tuple(parts))
+
+    @property
     def starts_with_set(self) -> bool:
         """True if the range of the first part marks the start."""
         covered = self.region is not None and self.region.first == 0

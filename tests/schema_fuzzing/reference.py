@@ -186,6 +186,9 @@ class _Assembly:
         self, frame: Frame, message: Message, payload: bytes, given: Mapping[str, int | str]
     ) -> None:
         self._frame = frame
+        kept = frame.payload.kept
+        while kept is not None and payload[kept:].endswith(b"\0"):
+            payload = payload[:-1]
         self._payload = payload
         names = [part.name for part in frame.identity]
         self._numbers = {**dict(zip(names, message.identity, strict=True)), **given}

@@ -72,7 +72,8 @@ class _Drawing:
         )
         found = self._draw(messages(plan))
         overloads = self._overloads(plan, found)
-        finished = self._finished(drawn, found, types)
+        by_size = bool(overloads) and overloads["shared_identity"]["by"] == "size"
+        finished = self._finished(drawn, found, types, may_trim=not by_size)
         data = self._root(types=types, found=found, frames=finished)
         if overloads:
             data["overloads"] = overloads
@@ -131,6 +132,8 @@ class _Drawing:
         drawn: Mapping[str, FramePlan],
         found: list[MessagePlan],
         types: Sequence[Declared],
+        *,
+        may_trim: bool,
     ) -> dict[str, FramePlan]:
         """The frames with what depends on the messages."""
         finished: dict[str, FramePlan] = {}
@@ -139,6 +142,9 @@ class _Drawing:
             least = min(message.size.least for message in sent)
             slack = self._draw(st.sampled_from([0, 0, 1, 1000]))
             bounded = frame.with_least_payload(least, slack)
+            are_fixed = all(message.size.least == message.size.greatest for message in sent)
+            if may_trim and are_fixed and bounded.has_length and self._draw(st.booleans()):
+                bounded = bounded.trimmed()
             payload = self._payload
             if self._byte_bits == 8:
                 declared = {item.name: item.built.data for item in types}

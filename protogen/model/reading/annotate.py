@@ -6,7 +6,7 @@ decoder says.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import msgspec
 
@@ -30,13 +30,14 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.reading.dissect import Cursor, Row, dissect
 from protogen.model.reading.readings import character, quoted
-from protogen.model.reading.wire import Wire, plain, unstuff
+from protogen.model.reading.wire import Unit, Wire, plain, unstuff
 from protogen.model.types import characters, codec
 from protogen.runtime.errors import ByteError
 
 __all__ = ["Row", "annotate"]
 
 _SURPLUS = "nothing is due here"
+_LEFT_OUT = "left out, as zeros at the end are"
 
 
 def annotate(
@@ -229,11 +230,20 @@ class _Frame:
         if message is None:
             rows = [inside.take(size, part.name, "bytes", subject=part)] if size else []
         else:
-            rows = dissect(message.plan, inside)
+            rows = self._dissected(message, inside)
         if inside.left:
             left = inside.left
             rows.append(inside.take(left, part.name, "bytes", fault=_SURPLUS, subject=part))
         return rows or [replace(inside.take(0, part.name, "", subject=part), meaning="empty")]
+
+    def _dissected(self, message: Message, inside: Cursor) -> list[Row]:
+        """The rows of a payload; zeros that the frame leaves out have values and no bytes."""
+        offset, size = inside.offset, inside.left
+        missing = message.sizes.greatest - size
+        if missing <= 0 or not self._sender.plan.is_trimmed:
+            return dissect(message.plan, inside)
+        zeros = Cursor([*inside.rest(), *[Unit(0, b"")] * missing], offset)
+        return list(_as_sent(dissect(message.plan, zeros), size))
 
     def _payload_size(self, part: PayloadPart) -> int:
         """As the length part says, else what the parts behind it leave."""
@@ -291,3 +301,14 @@ class _Frame:
     def _bare(self, wire: bytes, meaning: str = "", fault: str = "") -> Row:
         offset = sum(len(row.wire) for row in self._rows)
         return Row(offset=offset, wire=wire, meaning=meaning, fault=fault)
+
+
+def _as_sent(rows: Sequence[Row], size: int) -> Iterator[Row]:
+    """The rows of a payload that was filled up, without the bytes behind the first `size`."""
+    for row in rows:
+        sent, size = row.bytes[:size], max(0, size - len(row.bytes))
+        if len(sent) == len(row.bytes):
+            yield row
+        else:
+            meaning = "; ".join(filter(None, (row.meaning, _LEFT_OUT if not sent else "")))
+            yield replace(row, bytes=sent, meaning=meaning)

@@ -86,7 +86,7 @@ class Cursor:
 
     def __init__(self, units: Sequence[Unit], offset: int) -> None:
         self._units = units
-        self._offset = offset
+        self.offset = offset
         self._position = 0
 
     @property
@@ -105,7 +105,7 @@ class Cursor:
         value_type: Scalar | None = None,
     ) -> Row:
         """A row without a value of the next `count` units, or of as many as there are."""
-        offset = self._offset
+        offset = self.offset
         taken = self._next(count)
         missing = count - len(taken)
         return Row(
@@ -123,7 +123,7 @@ class Cursor:
     def _next(self, count: int) -> Sequence[Unit]:
         taken = self._units[self._position : self._position + count]
         self._position += len(taken)
-        self._offset += sum(len(unit.wire) for unit in taken)
+        self.offset += sum(len(unit.wire) for unit in taken)
         return taken
 
     def size_to(self, byte: int, behind: int) -> int:
@@ -138,11 +138,15 @@ class Cursor:
 
     def skip(self, size: int) -> None:
         """Pass bytes on the wire that belong to no unit."""
-        self._offset += size
+        self.offset += size
+
+    def rest(self) -> Sequence[Unit]:
+        """The units that are left, which this one passes."""
+        return self._next(self.left)
 
     def part(self, count: int) -> Cursor:
         """A cursor over the next `count` units, which this one passes."""
-        offset = self._offset
+        offset = self.offset
         return Cursor(self._next(count), offset)
 
 

@@ -63,7 +63,10 @@ class _Analysis:
         self._context = context
         self._written = context.frames[sender]
         self._loc = self._written.loc
-        self._messages = draft.sent_by(sender)
+        self._messages = [
+            replace(message, sizes=frame.payload.carried(message.sizes))
+            for message in draft.sent_by(sender)
+        ]
         self._too_large = any(message.name in draft.too_large for message in self._messages)
         self._overloads = draft.overloads[sender]
         self._payload = payload_alphabet(context.syntax.byte_bits, self._messages)

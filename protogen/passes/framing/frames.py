@@ -50,6 +50,7 @@ from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.part_values import number_of, text_bounds, text_type
 from protogen.passes.framing.silences import check_silence, silence_of
 from protogen.passes.framing.transparencies import transparency_of
+from protogen.passes.framing.trimming import trimmed
 from protogen.passes.framing.virtual_parts import check_virtual_parts, sent_run
 from protogen.passes.framing.wire_counts import check_wire_length, check_wire_sum
 from protogen.passes.framing.written_frames import WrittenFrame
@@ -70,7 +71,7 @@ _ROLES: dict[str, frozenset[str]] = {
     "counter": _NUMBER | {"counter", "default"},
     "algorithm": _TYPE | {"algorithm", "covers", "over", "when"},
     "type": _NUMBER | {"size", "default"},
-    PAYLOAD: frozenset({"unprotected"}),
+    PAYLOAD: frozenset({"unprotected", "trailing_zeros"}),
 }
 _ORDER_HINT = "set `byte_order: little` or `big` on the part or the protocol"
 _IDENTITY_BITS = 64
@@ -138,6 +139,8 @@ class FrameBuilder:
             limit=self._written.limit,
             silence=silence,
         )
+        if self._syntax[PAYLOAD].trailing_zeros is not None:
+            frame = trimmed(self._context, self._loc, frame)
         self._check(frame)
         return frame if self._context.tally.errors == before else None
 

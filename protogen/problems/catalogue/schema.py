@@ -17,6 +17,7 @@ from protogen.problems.catalogue.silences import SILENCE_CODES
 from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
+from protogen.problems.catalogue.trimming import TRIMMING_CODES
 from protogen.problems.catalogue.virtual_parts import VIRTUAL_PART_CODES
 from protogen.problems.catalogue.wire_counts import WIRE_COUNT_CODES
 
@@ -34,6 +35,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *FRAMING_CODES,
     *FORM_CODES,
     *FRAME_SIZE_CODES,
+    *TRIMMING_CODES,
     *MESSAGE_CODES,
     *PART_CODES,
     *WIRE_COUNT_CODES,

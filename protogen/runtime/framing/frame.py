@@ -104,11 +104,25 @@ class CounterPart(ValuePart):
 
 
 class PayloadPart(NamedTuple):
-    """The message's fields."""
+    """The message's fields.
+
+    Zeros at its end are left out on the wire where `kept` tells how many bytes stay at least.
+    """
 
     name: str = "payload"
     size: int = 0
     """The payload's bytes are not counted among those of the parts."""
+    kept: int | None = None
+
+    def trimmed(self, payload: bytes) -> bytes:
+        """The bytes of a message's payload that an encoder puts into a frame."""
+        if self.kept is None:
+            return payload
+        return payload[: max(len(payload.rstrip(b"\0")), self.kept)]
+
+    def filled(self, payload: bytes, size: int) -> bytes:
+        """The payload of so many bytes of which a frame has these."""
+        return payload if self.kept is None else payload.ljust(size, b"\0")
 
 
 class ChecksumPart(NamedTuple):

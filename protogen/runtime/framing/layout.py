@@ -55,6 +55,7 @@ class Layout:
         self.payload_index = next(
             index for index, part in enumerate(self.parts) if isinstance(part, PayloadPart)
         )
+        self.payload = next(part for part in self.parts if isinstance(part, PayloadPart))
         self.head = self.parts[: self.payload_index]
         self.tail = self.parts[self.payload_index + 1 :]
         self.head_size = sum(part.size for part in self.head)

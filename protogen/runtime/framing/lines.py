@@ -47,7 +47,8 @@ def _encode_message(sender: SenderSpec[Any, Any], line: Mapping[str, Any]) -> by
         raise error.inside("fields") from None
     parts = _parts(line) if "parts" in line else {}
     identity, given = sender.choose_identity(message, parts)
-    return encode_frame(sender, identity, payload, given, strict=False)
+    carried = sender.layout.payload.trimmed(payload)
+    return encode_frame(sender, identity, carried, given, strict=False)
 
 
 def split_parts(

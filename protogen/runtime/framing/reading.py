@@ -38,7 +38,7 @@ def _read_as(
     try:
         message = sender.read(cut.numbers, cut.payload)
     except PayloadFault as error:
-        offset = _wire_offset(sender, data, error.offset)
+        offset = _wire_offset(sender, data, min(error.offset, len(cut.payload)))
         raise DecodeError(error.reason, error.problem, offset=offset, path=error.path) from None
     return frame_event(sender, cut, message, data, 0)
 

@@ -7,7 +7,13 @@ from functools import cached_property
 from typing import Any, Generic, TypeVar
 
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.framing.frame import ChecksumPart, FrameSpec, IdentityPart, VirtualPart
+from protogen.runtime.framing.frame import (
+    ChecksumPart,
+    FrameSpec,
+    IdentityPart,
+    PayloadPart,
+    VirtualPart,
+)
 from protogen.runtime.framing.layout import Layout
 from protogen.runtime.identities import Identities, Identity, Runs
 from protogen.runtime.payload.message import Message
@@ -28,17 +34,24 @@ _LISTED = 1024
 class IdentityGroup(Generic[MessageT_co]):
     """The messages that a receiver may find behind one identity: one, or more told by size."""
 
-    def __init__(self, messages: tuple[type[MessageT_co], ...]) -> None:
+    def __init__(self, messages: tuple[type[MessageT_co], ...], part: PayloadPart) -> None:
         self.messages = messages
+        self._part = part
         sizes = {message.SIZES.fixed for message in messages}
-        self.fixed = sizes.pop() if len(sizes) == 1 else None
+        self.fixed = sizes.pop() if len(sizes) == 1 and part.kept is None else None
         """The payload's size, where no message has another one."""
         self.greatest = max(message.SIZES.greatest for message in messages)
         """The greatest payload of these messages."""
 
     def holds(self, size: int) -> bool:
-        """True if one of these messages can have a payload of that size."""
+        """True if frames can carry a payload of one of these messages in that size."""
+        if self._part.kept is not None:
+            return size <= self.greatest
         return any(size in message.SIZES for message in self.messages)
+
+    def filled(self, payload: bytes) -> bytes:
+        """The payload with the zeros at its end that the frame does not have."""
+        return self._part.filled(payload, self.greatest)
 
     def measure(self, start: bytes) -> int:
         """The size of the payload that starts so; PayloadError with `missing` if it is longer."""
@@ -47,7 +60,8 @@ class IdentityGroup(Generic[MessageT_co]):
         return prefix_size(self.messages[0].FORMAT, start)
 
     def read(self, payload: bytes) -> MessageT_co:
-        """The message of a payload. Raises PayloadError: size, value or encoding."""
+        """The message of a frame's payload. Raises PayloadError: size, value or encoding."""
+        payload = self.filled(payload)
         fitting = (message for message in self.messages if len(payload) in message.SIZES)
         return next(fitting, self.messages[0]).parse_payload(payload)
 
@@ -125,7 +139,8 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         groups: dict[Identity, tuple[type[MessageT_co], ...]] = {}
         for message in self.messages:
             groups[message.IDENTITY] = (*groups.get(message.IDENTITY, ()), message)
-        found = {key: IdentityGroup(value) for key, value in groups.items()}
+        part = self.layout.payload
+        found = {key: IdentityGroup(value, part) for key, value in groups.items()}
         for message in self.messages:
             identities = message.IDENTITIES
             if identities is not None and identities.count <= _LISTED:

@@ -215,6 +215,11 @@ class Part(Syntax):
         None,
         description="The part is present only in frames whose payload is not empty.",
     )
+    trailing_zeros: Literal["trimmed"] | None = Field(
+        None,
+        description="Zero bytes at the end of the payload are left out; receivers fill it up "
+        "with them: trimmed.",
+    )
     range: RawRange | None = Field(
         None,
         description="Least and greatest value of the part; of a text, of each of its characters.",

@@ -50,6 +50,9 @@ def _all_names(protocol: Protocol) -> Names:
     names = Names(protocol.name, writer_parameter(protocol), _writer_argument(protocol))
     names.claim_file(protocol.name)
     _claim_own(names)
+    if any(sender.plan.is_trimmed for sender in protocol.senders):
+        names.claim_tag(OWN, "kept")
+        names.claim(OWN, "keep")
     _claim_checksums(names, protocol.senders)
     claim_texts(names, protocol)
     for sender in protocol.senders:
@@ -134,14 +137,18 @@ def _of_sender(names: Names, sender: Sender, start: str) -> Iterator[tuple[NameT
         yield names.others, function_of(start, item)
     if any(group.identities is not None for group in sender.plan.groups):
         yield names.others, f"{start}_told"
+    if sender.plan.is_trimmed:
+        for word in ("fill_up", "trim"):
+            yield names.others, f"{start}_{word}"
     if sender.plan.mark_size and len(sender.plan.start_words) > 1:
         for word in ("begun", "begun_byte"):
             yield names.others, f"{start}_{word}"
 
 
 def is_stateless(protocol: Protocol) -> bool:
-    """True if what is sent goes out as it is: nothing is summed or stuffed on the way."""
-    return not any(s.frame.checksums or s.frame.transparency for s in protocol.senders)
+    """True if what is sent goes out as it is: not summed, stuffed, or trimmed on the way."""
+    frames = (sender.frame for sender in protocol.senders)
+    return not any(f.checksums or f.transparency or f.payload.is_trimmed for f in frames)
 
 
 def writer_parameter(protocol: Protocol) -> str:

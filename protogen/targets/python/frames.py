@@ -54,7 +54,8 @@ def part(item: Part) -> str:
         case ChecksumPart():
             return _checksum_part(item)
         case PayloadPart():
-            return call("_rt.PayloadPart", name)
+            kept = None if item.kept is None else str(item.kept)
+            return call("_rt.PayloadPart", name, kept=kept)
     raise TypeError(f"{type(item).__name__} is no part that a frame has")
 
 

@@ -9,13 +9,14 @@ import msgspec
 from protogen.model.frame_plan import FramePlan
 from protogen.model.identities import Identities, Identity
 from protogen.model.messages import Message
+from protogen.model.sizes import SizeSet
 from protogen.model.types import Integer
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
 class ReceivedMessage(msgspec.Struct, frozen=True):
-    """A message as a receiver tells it, and the payloads that it can have."""
+    """A message as a receiver tells it, and the payloads that frames can have of it."""
 
     name: str
     constant: str
@@ -73,7 +74,10 @@ def groups_of(plan: FramePlan, views: Mapping[str, MessageView]) -> tuple[GroupV
     return tuple(
         GroupView(
             key=key_constant(plan, group.identity),
-            messages=tuple(_message(plan, item, views[item.name]) for item in group.messages),
+            messages=tuple(
+                _message(plan, item, sizes, views[item.name])
+                for item, sizes in zip(group.messages, group.sizes, strict=True)
+            ),
             fixed=group.fixed,
             greatest=group.greatest,
             index=index,
@@ -138,8 +142,9 @@ def key_constant(plan: FramePlan, identity: Identity) -> str:
     return hexadecimal(plan.frame.key(identity), max(2, -(-plan.identity_bits // 4)))
 
 
-def _message(plan: FramePlan, message: Message, view: MessageView) -> ReceivedMessage:
-    sizes = message.sizes
+def _message(
+    plan: FramePlan, message: Message, sizes: SizeSet, view: MessageView
+) -> ReceivedMessage:
     checks = view.check if _needs_check(plan, view) else ""
     return ReceivedMessage(
         message.name, view.constant, sizes.least, sizes.greatest, sizes.step, checks

@@ -132,6 +132,13 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         return self.plan.greatest if self.length is None else min(self.plan.greatest, content)
 
     @property
+    def filled_size(self) -> int:
+        """Bytes of the greatest payload that is filled up with zeros; 0 where none is."""
+        if not self.plan.is_trimmed:
+            return 0
+        return max((group.greatest for group in self.groups), default=0)
+
+    @property
     def unlimited(self) -> str:
         """Bound of a payload or all content while its size is unknown: the room for it."""
         size = self.plan.greatest if self.keeps_both else self.buffer_size

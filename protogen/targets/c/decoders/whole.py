@@ -7,6 +7,7 @@ import msgspec
 from protogen.model.frame_plan import StartRule
 from protogen.targets.c.decoders.groups import GroupView
 from protogen.targets.c.decoders.received import ReceivedFrame
+from protogen.targets.c.decoders.style import DecoderStyle, decoder_style
 from protogen.targets.c.frame.expressions import differs, equals
 from protogen.targets.c.frame.numbers import NumberView
 from protogen.targets.c.frame.stuffing import Code, StuffingKind
@@ -84,6 +85,8 @@ def whole_frames(decoder: ReceivedFrame) -> WholeFrames | None:
         and not d.plan.shares_delimiter
         and not d.optional_size
         and not d.checks_tail
+        # A flat decoder fills payloads up in its buffer.
+        and not (d.filled_size and decoder_style(d) is DecoderStyle.FLAT)
         # A frame with a start inside is none: without stuffing, each byte would have to be seen.
         and not (d.plan.start_is_unique and d.stuffing is None and not starts_show)
     )

@@ -49,6 +49,11 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
             found.append(f"payload > {self.greatest_payload}U")
         return " || ".join(found)
 
+    @property
+    def is_trimmed(self) -> bool:
+        """True if zeros at the end of its payload may be left out."""
+        return self.frame.plan.frame.payload.sent(self.message.sizes) != self.message.sizes
+
     # --- the frame --------------------------------------------------------------------------------
 
     @property

@@ -58,7 +58,7 @@ Row = tuple[str, ...]
 def message_table(frame: Frame, message: Message, anchors: Anchors, names: EmittedNames) -> Table:
     """Return the table of everything in a message's frame, in wire order."""
     rows: list[Row] = []
-    for slot in slots(frame, message.sizes):
+    for slot in slots(frame, frame.payload.sent(message.sizes)):
         if isinstance(slot.part, PayloadPart):
             rows += _PayloadRows(slot, anchors, names).of_record(message.plan.steps, Place(), ROOT)
         else:

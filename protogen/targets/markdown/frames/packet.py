@@ -58,7 +58,7 @@ def frame_diagram(frame: Frame, payload: SizeSet) -> str:
 
 
 def message_diagram(frame: Frame, message: Message) -> str | None:
-    """Draw a message of fixed size in its frame; None if its size varies."""
+    """Draw a message of fixed size in its frame, nothing left out; None if its size varies."""
     laid = slots(frame, message.sizes)
     if any(slot.sizes.fixed is None or slot.start is None for slot in laid):
         return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 from protogen.model.checksums import ChecksumSpec
@@ -94,7 +94,7 @@ def value_in(frame: Frame, part: Part, message: Message) -> str:
         value = message.virtual_value(part)
         return "" if value is None else virtual_text(part, value)
     if isinstance(part, LengthPart):
-        lengths = length_values(frame, part, message.sizes)
+        lengths = length_values(frame, part, frame.payload.sent(message.sizes))
         if lengths.fixed is not None:
             return code(hex_number(lengths.fixed, part.type.bits))
         return f"{max(lengths.least, part.least)}..{min(lengths.greatest, part.greatest)}"
@@ -172,10 +172,17 @@ def _roles(part: Part) -> tuple[str, ...]:
             return (role(part),)
         case VirtualPart():
             return _virtual_roles(part)
-        case _ if part.unprotected is not None:
-            return ("The fields of the message.", _unmarked(part.unprotected))
         case _:
-            return ("The fields of the message.",)
+            return tuple(_payload_roles(part))
+
+
+def _payload_roles(part: Part) -> Iterator[str]:
+    yield "The fields of the message."
+    if isinstance(part, PayloadPart) and part.kept is not None:
+        kept = "the first one" if part.kept == 1 else f"the first {part.kept}"
+        yield f"Zero bytes at its end are left out, but for {kept}; a receiver puts them there."
+    if part.unprotected is not None:
+        yield _unmarked(part.unprotected)
 
 
 def _unprotected(decision: str) -> str:

@@ -89,6 +89,9 @@ def _struct_size(natural: int, small: int) -> str:
 def _notes(senders: Iterable[Sender], message: Message) -> Iterator[str]:
     if message.unspecified:
         yield "The document does not say what the payload holds."
+    trimmed = [sender_code(it) for it in senders if it.plan.is_trimmed and message.sizes.greatest]
+    if trimmed:
+        yield f"{listed(trimmed)} leaves out zero bytes at the end of the payload."
     for sender in senders:
         for overload in sender.overloads:
             if message.name in overload.messages:

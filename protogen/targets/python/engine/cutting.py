@@ -441,6 +441,8 @@ class _Cutter(ChecksumFunction):
     @property
     def _read_from(self) -> str:
         """Argument of readers."""
+        if self.plan.is_trimmed:
+            return 'payload.ljust(full, b"\\0")'
         return self.content if self.frame.gives_content else "payload"
 
     def _numbers(self) -> None:
@@ -468,7 +470,8 @@ class _Cutter(ChecksumFunction):
             self.lines.add(f"{numbers}payload_size, read = {entry}")
             self.stop_if("0 <= payload_size != len(payload)")
             return
-        self.lines.add(f"{numbers}read = {entry}")
+        full = "full, " if self.plan.is_trimmed else ""
+        self.lines.add(f"{numbers}{full}read = {entry}")
         with self.lines.block("if read is None:"):
             self._unknown()
 

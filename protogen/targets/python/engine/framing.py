@@ -79,6 +79,8 @@ def encoder(
         lines.refuse_if("module is not _ENCODERS")
     payload_writer(message, lines)
     if len(frames) == 1:
+        if _is_trimmed(frames[0], message):
+            lines.add(f"payload = {_trimmed(frames[0])}")
         return _Framer(frames[0], of_caller, lines, message).body()
     endpoints = dict.fromkeys(frame.sender.endpoint for frame in frames)
     for endpoint in endpoints:
@@ -100,14 +102,31 @@ def _first_that_fits(
         chosen = _chosen_names(message, frame)
         others = ("None" if name in chosen else f"{name}_" for name in of_caller)
         values = [*_identity_of(message, frame, lines), *others]
-        made = f"return _frame_{frame.sender.name}({', '.join(['payload', *values])})"
-        stated, sizes = frame.plan.payload, message.sizes
+        stated, sizes = frame.plan.payload, frame.plan.frame.payload.sent(message.sizes)
+        payload = "payload"
+        if _is_trimmed(frame, message):
+            payload = "trimmed"
+            lines.add(f"{payload} = {_trimmed(frame)}")
+        made = f"return _frame_{frame.sender.name}({', '.join([payload, *values])})"
         if frame is frames[-1] or frame.plan.length is None or stated.holds(sizes):
             lines.add(made)
             return
         if stated.meets(sizes):
-            with lines.block(f"if {stated.least} <= len(payload) <= {stated.greatest}:"):
+            with lines.block(f"if {stated.least} <= len({payload}) <= {stated.greatest}:"):
                 lines.add(made)
+
+
+def _is_trimmed(frame: EngineFrame, message: Message) -> bool:
+    """True if zeros at the end of a message's payload may be left out."""
+    return frame.plan.frame.payload.sent(message.sizes) != message.sizes
+
+
+def _trimmed(frame: EngineFrame) -> str:
+    """The payload without zeros at its end, but for the bytes that stay, as an expression."""
+    kept, bare = frame.plan.frame.payload.kept, 'payload.rstrip(b"\\0")'
+    if kept == 1:
+        return f"{bare} or payload[:1]"
+    return f"payload[: max(len({bare}), {kept})]"
 
 
 def _chosen_names(message: Message, frame: EngineFrame) -> list[str]:
@@ -157,7 +176,7 @@ def encoder_arguments(of_caller: tuple[str, ...]) -> list[str]:
 def _goes_together(frame: EngineFrame) -> bool:
     """True if all parts in front of the payload are numbers for `struct`, and none is optional."""
     plain = all(frame.is_skipped(part) or _is_packed(part) for part in frame.head)
-    return plain and not frame.plan.optional_size
+    return plain and not (frame.plan.optional_size or frame.plan.is_trimmed)
 
 
 class _Framer(FrameFunction):
@@ -218,6 +237,13 @@ class _Framer(FrameFunction):
             return Packed("", "B", f"0x{part.bytes[0]:02X}")
         assert isinstance(part, NumberPart)
         return Packed(byte_order(part.type), UNSIGNED[part.type.size], self._value(part, bare))
+
+    @property
+    def _fixed(self) -> int | None:
+        """Bytes of the payload, where it is that of a message and always as long."""
+        if self.message is None:
+            return None
+        return self.plan.frame.payload.sent(self.message.sizes).fixed
 
     def _values(self) -> list[str]:
         """Check what callers give; the variables that have yet to be seen to be integers.
@@ -305,8 +331,8 @@ class _Framer(FrameFunction):
         length = self.plan.length
         if length is not None and part is length.part:
             counted = length.base + (0 if bare else length.optional)
-            if self.message is not None and self.message.sizes.fixed is not None:
-                return str(self.message.sizes.fixed + counted)
+            if self._fixed is not None:
+                return str(self._fixed + counted)
             return f"len(payload) + {counted}" if counted else "len(payload)"
         if isinstance(part, IdentityPart):
             return self._identity[self.plan.identity.index(part)]
@@ -333,8 +359,8 @@ class _Framer(FrameFunction):
             return ""
         if not is_plain_xor(spec):
             return ""
-        if message.sizes.fixed is not None:
-            return folded(self.lines, covered, "", message.sizes.fixed)
+        if self._fixed is not None:
+            return folded(self.lines, covered, "", self._fixed)
         return folded(self.lines, covered, f"len({covered}) > {FOLDED}", message.sizes.greatest)
 
     def _covered(self, part: ChecksumPart) -> str:

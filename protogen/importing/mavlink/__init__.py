@@ -1,0 +1,1 @@
+"""Definitions of MAVLink, the XML files of its dialects, to schemas."""
