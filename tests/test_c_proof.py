@@ -27,6 +27,8 @@ CONSTRUCTS = [
     for name in ("packed_bits", "digits_line", "written_line")
 ]
 """Schemas of what no document has, and C has to parse."""
+TRIMMED = ROOT / "tests" / "framings" / "trimmed_stuffed.yaml"
+"""Payloads that a decoder fills up in its buffer."""
 DIGITS = ROOT / "tests" / "framings" / "digit_words.yaml"
 """Digits around a payload, which a decoder reads and compares."""
 IDLE = ROOT / "tests" / "framings" / "idle_end.yaml"
@@ -43,6 +45,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
     else [
         *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS, DIGITS, IDLE)),
         *((path, events, NARROW) for path in DOCUMENTS for events in EVENTS),
+        (TRIMMED, "messages", WIDE),
     ]
 )
 FIRST = [ROOT / "schemas" / f"{name}.yaml" for name in ("matty", "rn1")]
