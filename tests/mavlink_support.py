@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
+from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import ModuleType
@@ -15,24 +17,19 @@ from typing import Any
 
 from cli_support import run
 from library_support import peer_module
+from tooling import require_module
 
 from protogen.compiler import compile_file
 from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.trips import Case, cases
+from protogen.importing.names import snake_case
 from protogen.live.codec import module_of
 from protogen.model.protocol import Protocol
 
 FOLDERS = {"1": "v10", "2": "v20"}
 """Where the package has the definitions, by the version of the protocol."""
-DIALECTS = (
-    "ASLUAV", "AVSSUAS", "all", "ardupilotmega", "common", "csAirLink", "cubepilot", "development",
-    "icarous", "loweheiser", "matrixpilot", "minimal", "paparazzi", "python_array_test", "standard",
-    "storm32", "test", "uAvionix", "ualberta",
-)  # fmt: skip
-SCHEMAS = {"csAirLink": "cs_air_link", "uAvionix": "u_avionix"}
-"""Names of schemas that are not those of their files, in lower case."""
-FAR = ("csAirLink", "icarous", "test")
-"""Dialects whose messages all have ids that do not fit into frames of MAVLink 1."""
+TESTED = "2.4.50"
+"""Version of the package whose definitions were looked at; others have more messages."""
 KEY = bytes(range(32))
 TIME = 123_456_789
 LINK = 7
@@ -40,13 +37,29 @@ LINK = 7
 
 def definitions(wire: str) -> Path:
     """The folder of the package's definitions."""
-    package = peer_module("pymavlink").__file__
-    assert package is not None
-    return Path(package).parent / "dialects" / FOLDERS[wire]
+    require_module("pymavlink")
+    return _folder(wire)
+
+
+def _folder(wire: str) -> Path:
+    spec = find_spec("pymavlink")
+    assert spec is not None and spec.origin is not None
+    return Path(spec.origin).parent / "dialects" / FOLDERS[wire]
+
+
+def dialects() -> list[str]:
+    """Names of the package's dialects; of none that is not installed."""
+    if find_spec("pymavlink") is None:
+        return []
+    return sorted(file.stem for file in _folder("2").glob("*.xml"))
+
+
+def is_tested_version() -> bool:
+    return version("pymavlink") == TESTED
 
 
 def schema_name(dialect: str) -> str:
-    return SCHEMAS.get(dialect, dialect.lower())
+    return snake_case(dialect)
 
 
 @cache

@@ -6,19 +6,29 @@ first line of each file.
 
 from __future__ import annotations
 
+from contextlib import redirect_stdout
 from fractions import Fraction
+from io import StringIO
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
 from cli_support import ROOT, run
+from library_support import peer_module
 
 from protogen.compiler import compile_file
+from protogen.importing.mavlink.crc_extra import crc_extra, wire_order
 from protogen.importing.mavlink.identifiers import common_prefix, identifier, short_name
+from protogen.importing.mavlink.spec import read_dialect
 from protogen.importing.mavlink.texts import summary_and_doc
 from protogen.importing.mavlink.units import read_unit
 from protogen.importing.units import Unit
+from protogen.importing.xml_text import read_xml
 from protogen.layout.formatting import format_text
+from protogen.live.codec import module_of
+
+Values = dict[str, Any]
 
 DEFINITIONS = ROOT / "tests" / "definitions" / "mavlink"
 EXPECTED = ROOT / "tests" / "definitions" / "harbour"
@@ -64,6 +74,80 @@ class TestSchemas:
         assert done.exit_code == 2
         assert "tides.yaml`: not made by an import, or changed since" in done.output
         imported(tmp_path, "--force")
+
+
+class TestFrames:
+    """Bytes worked out by hand, with checksums by pymavlink, which sums CRC_EXTRA in the end."""
+
+    @pytest.mark.parametrize(
+        ("schema", "message", "values", "parts", "frame"),
+        [
+            (
+                "tides",
+                "alive",  # CRC_EXTRA 86: the larger field comes first; the version is 3.
+                {"time_sent": 0x01020304, "tide": 1, "mavlink_version": 3},
+                {"seq": 5},
+                "FD 06 00 00 05 01 01 00 00 00 04 03 02 01 01 03 E7 81",
+            ),
+            (
+                "harbour",
+                "mooring",  # CRC_EXTRA 115
+                {"rope": "loose"},
+                {},
+                "FD 01 00 00 00 01 01 05 00 00 01 D4 40",
+            ),
+            (
+                "harbour",
+                "tide_message",  # CRC_EXTRA 57: of the command, both bytes are zeros.
+                {"tide": "spring", "command": 0},
+                {"seq": 255, "sysid": 7, "compid": 200},
+                "FD 02 00 00 FF 07 C8 06 00 00 2C 01 AA 29",
+            ),
+            (
+                "moorings",
+                "mooring",  # Signed, and of the zeros of the payload, one stays.
+                {"rope": 0},
+                {"link_id": 3, "timestamp": 0x0102, "signature": 0xA1A2A3A4A5A6},
+                "FD 01 01 00 00 01 01 05 00 00 00 2B 75 03 02 01 00 00 00 00 A1 A2 A3 A4 A5 A6",
+            ),
+        ],
+    )
+    def test_are_those_of_the_protocol(
+        self, schema: str, message: str, values: Values, parts: Values, frame: str
+    ) -> None:
+        protocol = compile_file(EXPECTED / f"{schema}.yaml").protocol
+        assert protocol is not None
+        module = module_of(protocol)
+        codec = module.PROTOCOL
+        sender = "component_signed" if "signature" in parts else "component_unsigned"
+        kinds = {kind.NAME: kind for kind in codec.sender(sender).messages}
+        record = kinds[message].from_dict(values)
+        made = codec.encode(record, sender, **({"seq": 0} | parts))
+        assert made.hex(" ").upper() == frame
+        (event,) = module.Decoder("component").feed(bytes.fromhex(frame))
+        assert event.message == record
+
+    def test_of_version_1_have_neither_flags_nor_large_ids(self, tmp_path: Path) -> None:
+        imported(tmp_path, "--wire", "1", of=DEFINITIONS / "tides.xml")
+        done = run(
+            *("encode", str(tmp_path / "tides.yaml"), "alive"),
+            *("time_sent=0x01020304", "tide=rising", "@seq=5"),
+        )
+        assert done.output == "FE 06 05 01 01 00 04 03 02 01 01 03 CD DC\n"
+
+    @pytest.mark.parametrize("name", NAMES)
+    def test_have_the_order_and_the_crc_extra_of_mavgen(self, name: str) -> None:
+        mavparse = peer_module("pymavlink.generator.mavparse")
+        file = DEFINITIONS / f"{name}.xml"
+        with redirect_stdout(StringIO()):
+            theirs = {item.name: item for item in mavparse.MAVXML(str(file), "2.0").message}
+        ours = read_dialect(read_xml(file), str(file)).messages
+        assert [message.name for message in ours] == list(theirs)
+        for message in ours:
+            their = theirs[message.name]
+            names = [field.name for field in wire_order(message)]
+            assert names == [field.name for field in their.ordered_fields]
+            assert crc_extra(message) == their.crc_extra
 
 
 class TestVersion1:
