@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protogen.passes.proofs.codewords import Segment, ambiguity, occurs, prefix_clash
+from protogen.passes.proofs.codewords import Inserted, Segment, ambiguity, occurs, prefix_clash
 
 Code = Mapping[int, bytes]
 
@@ -225,6 +225,64 @@ def test_where_no_word_is_possible_nothing_occurs() -> None:
 def test_an_empty_literal_is_refused() -> None:
     with pytest.raises(ValueError, match="empty literal"):
         occurs(b"", b"", [], b"")
+
+
+DYNAMIXEL = Inserted(b"\xff\xff\xfd", 0xFD)
+HEADER = b"\xff\xff\xfd\x00"
+
+
+def stuffed(words: frozenset[bytes], least: int = 1, greatest: int | None = 1) -> Segment:
+    return Segment(words, least, greatest, inserts=DYNAMIXEL)
+
+
+def test_a_byte_that_is_put_in_keeps_a_literal_out() -> None:
+    region = [stuffed(ANY_BYTE), stuffed(ANY_BYTE, 0, None)]
+    assert occurs(HEADER, b"", [own(HEADER), *region], b"") is None
+    assert occurs(HEADER, b"", [own(HEADER), *region], b"\x00") is None
+    # FF FF may be the region's end; so may FF FF FD, but FD FD 00 is no end of the literal.
+    frame, offset = occurs(HEADER, b"", [own(HEADER), *region], b"\xfd\x00") or (b"", -1)
+    assert frame[offset:] == HEADER
+    # In front of the region, nothing is put in.
+    found = occurs(HEADER, b"\xff\xff", region, b"")
+    assert found is not None
+    assert found[0].startswith(HEADER)
+
+
+def test_a_sequence_of_the_words_of_several_segments() -> None:
+    both = [stuffed(frozenset((b"\xff",)), 2, 2), stuffed(frozenset((b"\xfd",)))]
+    assert occurs(b"\xfd\xfd", b"", both, b"") == (b"\xff\xff\xfd\xfd", 2)
+    # Behind many words, what is put in still follows from the last ones.
+    many = [stuffed(frozenset((b"\xff",)), 1000, 1000), stuffed(frozenset((b"\xfd",)))]
+    assert occurs(b"\xfd\x00", b"", many, b"\x00") == (b"\xff" * 1000 + b"\xfd\xfd\x00", 1001)
+    assert occurs(HEADER, b"", many, b"\x00") is None
+
+
+SMALL_INSERTS = st.sampled_from([Inserted(b"ab", ord("b")), Inserted(b"aab", ord("b"))])
+
+
+@given(
+    SMALL_INSERTS,
+    st.lists(st.sampled_from(b"ab"), min_size=1, max_size=5).map(bytes),
+    st.sampled_from([b"", b"a", b"b", b"ab"]),
+    st.sampled_from([b"", b"a", b"b", b"ab"]),
+)
+def test_what_is_put_in_agrees_with_brute_force(
+    inserts: Inserted, literal: bytes, before: bytes, after: bytes
+) -> None:
+    words = frozenset((b"a", b"b"))
+    chain = [Segment(words, 1, 1, inserts=inserts), Segment(words, 0, None, inserts=inserts)]
+    sent = {
+        before + bytes(data).replace(inserts.sequence, inserts.sequence + b"b") + after
+        for size in range(1, 9)
+        for data in itertools.product(b"ab", repeat=size)
+    }
+    witness = occurs(literal, before, chain, after)
+    if witness is None:
+        assert not any(literal in frame for frame in sent)
+    else:
+        frame, offset = witness
+        assert frame.startswith(literal, offset)
+        assert frame in sent or len(frame) > 8
 
 
 SMALL_WORD = st.lists(st.sampled_from(b"ab"), max_size=2).map(bytes)

@@ -12,6 +12,7 @@ from protogen.runtime.transparency import (
     Base16Upper,
     Cobs,
     Escape,
+    Insertion,
     Substitution,
     Transparency,
     TransparencyError,
@@ -48,6 +49,11 @@ def plain_escape(*, lenient: bool = False) -> Escape:
     return Escape(0x10, frozenset((0x02, 0x03, 0x10)), "none", lenient)
 
 
+def dynamixel() -> Insertion:
+    """Dynamixel 2: FD behind FF FF FD."""
+    return Insertion(b"\xff\xff\xfd", 0xFD)
+
+
 def as_lenient(kind: Any) -> Transparency:
     lenient: Transparency = replace(kind, lenient=True)
     return lenient
@@ -68,11 +74,12 @@ STRICT: list[Transparency] = [
     Base16Upper(),
     Cobs(),
 ]
-EVERY = STRICT + [as_lenient(kind) for kind in STRICT]
+ALWAYS_STRICT: list[Transparency] = [dynamixel(), Insertion(b"\x01\x02", 0x00)]
+EVERY = [*STRICT, *map(as_lenient, STRICT), *ALWAYS_STRICT]
 
 # The bytes that mean something to one of the kinds, so that examples hit sequences often.
 TELLING = bytes.fromhex(
-    "00 01 02 03 05 0A 10 1B 41 42 46 55 56 5D 5E 61 7C 7D 7E A9 AA C0 DB DC DD FE FF"
+    "00 01 02 03 05 0A 10 1B 41 42 46 55 56 5D 5E 61 7C 7D 7E A9 AA C0 DB DC DD FD FE FF"
 )
 
 
@@ -396,6 +403,44 @@ def test_strict_cobs_accepts_what_the_cobs_package_encodes(region: bytes) -> Non
     except cobs_library.DecodeError:
         canonical = False
     assert accepts(Cobs(), region) == canonical
+
+
+# --- insertion ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("data", "wire"),
+    [
+        ("FF FF FD", "FF FF FD FD"),
+        ("FF FF FD 00", "FF FF FD FD 00"),
+        # Of three FF the last two count.
+        ("FF FF FF FD", "FF FF FF FD FD"),
+        ("FF FF FD FD", "FF FF FD FD FD"),
+        ("FF FF FD FF FF FD", "FF FF FD FD FF FF FD FD"),
+        # What was put in belongs to no other sequence.
+        ("FF FF FD FF FD", "FF FF FD FD FF FD"),
+        ("FF FF", "FF FF"),
+        ("FF FD FD", "FF FD FD"),
+    ],
+)
+def test_a_byte_is_put_in_behind_each_sequence(data: str, wire: str) -> None:
+    assert dynamixel().encode(bytes.fromhex(data)) == bytes.fromhex(wire)
+    assert dynamixel().decode(bytes.fromhex(wire)) == bytes.fromhex(data)
+
+
+@pytest.mark.parametrize(
+    ("region", "refused"),
+    [("FF FF FD 00", 3), ("FF FF FD FF", 3), ("FF FF FF FD FE", 4), ("41 FF FF FD", None)],
+)
+def test_no_other_byte_stands_behind_a_sequence(region: str, refused: int | None) -> None:
+    assert failing_byte(dynamixel(), region) == refused
+    with pytest.raises(TransparencyError):
+        dynamixel().decode(bytes.fromhex(region))
+
+
+@given(st.lists(st.sampled_from(b"\xff\xfd\x00"), max_size=12).map(bytes))
+def test_the_beginning_of_a_header_stands_in_no_region(data: bytes) -> None:
+    assert b"\xff\xff\xfd\x00" not in dynamixel().encode(data)
 
 
 # --- values -------------------------------------------------------------------------------------
