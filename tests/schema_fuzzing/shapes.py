@@ -42,7 +42,7 @@ COMMON = (
     *(f"identity parts: {count}" for count in range(4)),
     *(f"checksums: {count}" for count in range(3)),
     *(f"transparency: {code}" for code in _CODES), *(f"start: {start}" for start in _STARTS),
-    "end: protected", "end: unprotected", "end: none",
+    "end: protected", "end: unprotected", "end: none", "end: silence",
 )  # fmt: skip
 """Shapes that a few hundred schemas hold."""
 
@@ -85,6 +85,8 @@ def _frame(frame: FramePlan) -> Iterator[str]:
     yield f"transparency: {code}"
     yield f"start: {start}"
     yield f"end: {end}"
+    if frame.silence is not None:
+        yield "end: silence"
     yield f"start and end: {start}, {end}"
     yield f"start and transparency: {start}, {code}"
     yield f"end and transparency: {end}, {code}"
