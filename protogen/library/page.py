@@ -56,8 +56,13 @@ def render_page() -> str:
 
 def with_table(readme: str) -> str:
     """Return the README with the table of today between its two marks."""
-    said = [proof_of(name).unsaid == [] for name in library_names()]
-    text = f"{sum(said)} of {len(said)} are said completely.\n\n{_table()}\n"
+    names = {False: list[str](), True: list[str]()}
+    for name in library_names():
+        names[proof_of(name).unsaid == []].append(f"`{name}`")
+    said = ((True, "completely"), (False, "in part"))
+    rows = [f"| {words} | {', '.join(names[whole])} |" for whole, words in said]
+    count = f"{len(names[True])} of {len(library_names())} are said completely."
+    text = "\n".join((count, "", "| Said | Schemas |", "| --- | --- |", *rows, "", ""))
     return re.sub(f"(?s)(?<={_BEGIN}).*(?={_END})", lambda _: text, readme)
 
 
