@@ -7,17 +7,16 @@ from protogen.problems.catalogue.sketch import with_frame
 
 _COUNTED = """
     start: {literal: {hex: FF FF FD 00}}
-    length: {type: uint16, counts: id..end, over: wire, range: [0, 1000]}
+    length: {type: uint16, counts: id..payload, over: wire, range: [0, 1000]}
     id: {type: uint8, id: true}
     payload: {}
-    end: {literal: 0xFC}
 """
-_UNPROTECTED = """
+_SUMMED = """
     start: {literal: {hex: FF FF FD 00}}
+    length: {type: uint16, counts: id..crc, over: wire, range: [0, 1000]}
     id: {type: uint8, id: true}
     payload: {}
     crc: {type: uint8, algorithm: CRC-8/SMBUS, covers: id..payload, over: wire}
-    end: {literal: {hex: FF FF FD 01}}
 """
 
 
@@ -69,7 +68,7 @@ of them and unstuffed; it counts all of them, and the payload is one of them; th
 whose own size on the wire would depend on the length; no part is absent at times; and the stuffing
 is a `substitute` or an `escape` that only one spelling undoes. Its `range` bounds it above alone.
 """,
-        _stuffed(_KEPT_OUT, region="payload", parts=_COUNTED.replace("id..end", "end")),
+        _stuffed(_KEPT_OUT, _COUNTED.replace("id..payload", "payload")),
         _stuffed(_KEPT_OUT),
     ),
     Code(
@@ -80,8 +79,8 @@ is a `substitute` or an `escape` that only one spelling undoes. Its `range` boun
 Where a byte is put in behind a sequence, that depends on the bytes in front of it. A checksum
 `over: wire` can sum up all parts that are stuffed, or none of them.
 """,
-        _stuffed(_KEPT_OUT, _UNPROTECTED.replace("covers: id..payload", "covers: payload")),
-        _stuffed(_KEPT_OUT, _UNPROTECTED),
+        _stuffed(_KEPT_OUT, _SUMMED.replace("covers: id..payload", "covers: payload")),
+        _stuffed(_KEPT_OUT, _SUMMED),
     ),
 )
 """The problems of sequences and of bytes on the wire."""
