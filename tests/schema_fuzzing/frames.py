@@ -232,7 +232,7 @@ class _Drawing:
         self._code = draw(codes())
         self._start = draw(st.sampled_from(STARTS))
         self._end = draw(st.sampled_from(ENDS))
-        self._is_idle = self._code is None and self._end == "none" and draw(forms.one_in(3))
+        self._is_idle = self._code is None and self._end == "none" and draw(forms.one_in(4))
         self._has_length = draw(st.booleans())
         self._anywhere = self._start == self._end == "none"
         self._by_position = self._anywhere and not draw(forms.one_in(4))
