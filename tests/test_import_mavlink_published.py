@@ -24,7 +24,6 @@ from protogen.compiler import compile_file
 from protogen.fuzzing.trips import Case, same
 from protogen.layout.formatting import format_text
 
-
 PARTS = 4
 """Parts of the messages of a large dialect, each of which takes some time."""
 
