@@ -532,15 +532,17 @@ SENT_BY_THE_REFERENCE = {
     ("separated_line", "receiver"),
     ("digit_parts", "station"),
     ("digit_lengths", "station"),
+    ("mavlink_like", "craft_plain"),  # The same messages go in the form below, too.
     ("mavlink_like", "craft_signed"),
     ("virtual_behind", "station"),
+    ("virtual_parts", "station"),  # One checksum is always there, and one with a payload.
 }
 """Behind the payload stands something that is no checksum."""
 CUT_BY_THE_REFERENCE = {
     ("checksum_only", "station"),
     ("terminated_alone", "device"),
     *SENT_BY_THE_REFERENCE,
-}
+} - {("mavlink_like", "craft_plain")}
 """Nothing marks where the others' frames start, so a frame may begin at every byte."""
 
 

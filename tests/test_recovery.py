@@ -45,8 +45,14 @@ PIECES = 60
 PEAKS = {"packed_bits": 70_000, "terminated_alone": 400_000}
 """Bytes while a portion of noise is decoded. The first has the smallest frames; the second looks at
 the payload again with each byte, and what these looks leave is collected later."""
-BY_CHANCE = {"digits_line": 1 / 64, "written_line": 1 / 64, "separated_line": 1 / 64}
-"""Shares of checksums that are right by chance, where those have six bits alone."""
+BY_CHANCE = {
+    "digits_line": 1 / 64,
+    "written_line": 1 / 64,
+    "separated_line": 1 / 64,
+    "mavlink_like": 1 / 20,
+}
+"""Shares of damage that looks right: checksums of six bits alone, and signatures that are cut off
+behind a checksum that covers none of their bytes."""
 
 
 def spec_of(path: Path, sender: str) -> FrameSpec:

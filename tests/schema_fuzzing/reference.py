@@ -7,7 +7,7 @@ with something that shares no code with them.
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from bit_runs import bits_of_number, bytes_of, number_of
@@ -27,6 +27,7 @@ from protogen.model.frame import (
     Part,
     PayloadPart,
     Substitution,
+    VirtualPart,
 )
 from protogen.model.messages import Message
 from protogen.model.types import (
@@ -188,6 +189,7 @@ class _Assembly:
         while kept is not None and payload[kept:].endswith(b"\0"):
             payload = payload[:-1]
         self._payload = payload
+        self._message = message
         names = [part.name for part in frame.identity]
         self._numbers = {**dict(zip(names, message.identity, strict=True)), **given}
 
@@ -256,11 +258,26 @@ class _Assembly:
         raise AssertionError(part)
 
     def _checksum(self, part: ChecksumPart) -> int:
+        if self._frame.virtual:
+            return checksum(part.algorithm, b"".join(self._pieces(part)))
         covered = [other for other in self._present() if other.name in part.covers]
         if not part.over_wire:
             return checksum(part.algorithm, b"".join(map(self._content, covered)))
         names = {other.name for other in covered}
         return checksum(part.algorithm, self._wire_of_some(names))
+
+    def _pieces(self, part: ChecksumPart) -> Iterator[bytes]:
+        """What is covered one by one, in the order of the schema, and what is not sent as it is."""
+        for other in self._frame.declared:
+            if other.name not in part.covers:
+                continue
+            if isinstance(other, VirtualPart):
+                value = dict(self._message.virtual).get(other.name, other.default)
+                assert value is not None
+                yield number_bytes(other.type, value)
+            elif other in self._present():
+                inside = part.over_wire and other.name in self._covered()
+                yield self._wire_of_some({other.name}) if inside else self._content(other)
 
     def _wire_of_some(self, names: set[str]) -> bytes:
         """As they stand on the wire. Of a COBS region either all parts are covered or none."""

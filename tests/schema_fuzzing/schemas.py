@@ -17,6 +17,7 @@ from schema_fuzzing.parts import Maker, PartPlan, every_payload_byte
 from schema_fuzzing.setting import Declared
 from schema_fuzzing.shapes import shapes_of
 from schema_fuzzing.types import declared_types
+from schema_fuzzing.virtual import add_virtual
 
 DECISION = "delimiter_in_data"
 _SHARED = ""
@@ -78,6 +79,7 @@ class _Drawing:
         if overloads:
             data["overloads"] = overloads
         data.update(self._extras(finished, found))
+        add_virtual(self._draw, data, self._byte_bits, self._orders)
         return Schema(data, tuple(shapes_of(data, finished, self._byte_bits)))
 
     def _of(self, keyed: Mapping[str, Any], sender: str) -> Any:

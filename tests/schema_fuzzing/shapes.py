@@ -29,7 +29,7 @@ COMMON = (
     "text as a part: id", "text as a part: literal", "text as a part: value",
     "several identities", "overload by size", "overload by undecidable", "unspecified payload",
     "empty message",
-    "separated fields", "separated fields, one in front",
+    "separated fields", "separated fields, one in front", "virtual part",
     "type: ascii", "type: bytes", "type: bool", "type: byte", "type: char", "type: float32",
     "type: float64", "type: decimal", "type: hexadecimal", "type: struct", "type: switch",
     "declared struct", "declared number",
@@ -147,6 +147,8 @@ def _message(data: dict[str, Any]) -> Iterator[str]:
     yield "several senders" if isinstance(data["from"], list) and data["from"][1:] else "one sender"
     if "byte_order" in data:
         yield "byte order of a message"
+    if "parts" in data:
+        yield "virtual part"
     if "separator" in data:
         in_front = isinstance(data["separator"], dict) and data["separator"].get("in_front")
         yield f"separated fields{', one in front' if in_front else ''}"
