@@ -27,6 +27,8 @@ CONSTRUCTS = [
     for name in ("packed_bits", "digits_line", "written_line")
 ]
 """Schemas of what no document has, and C has to parse."""
+TRIMMED = ROOT / "tests" / "framings" / "trimmed_stuffed.yaml"
+"""Payloads that a decoder fills up in its buffer."""
 DIGITS = ROOT / "tests" / "framings" / "digit_words.yaml"
 """Digits around a payload, which a decoder reads and compares."""
 DECODES = [
@@ -41,6 +43,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
     else [
         *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS, DIGITS)),
         *((path, events, NARROW) for path in DOCUMENTS for events in EVENTS),
+        (TRIMMED, "messages", WIDE),
     ]
 )
 FIRST = [ROOT / "schemas" / f"{name}.yaml" for name in ("matty", "rn1")]

@@ -37,7 +37,7 @@ COMMON = (
     "struct: counted", "struct: fill", "ascii: fixed", "ascii: counted", "bytes: counted",
     "bytes: fill", "number: fill from a least number", "bytes: fill from a least number",
     "number: worked out", "ascii: worked out", "switch by an expression",
-    "greatest frame", *(f"field with {key}" for key in _FIELD_KEYS),
+    "greatest frame", "trailing zeros left out", *(f"field with {key}" for key in _FIELD_KEYS),
     *(f"identity parts: {count}" for count in range(4)),
     *(f"checksums: {count}" for count in range(3)),
     *(f"transparency: {code}" for code in _CODES), *(f"start: {start}" for start in _STARTS),
@@ -99,6 +99,8 @@ def _frame(frame: FramePlan) -> Iterator[str]:
         yield "lenient"
     if frame.limit is not None:
         yield "greatest frame"
+    if any("trailing_zeros" in part.data for part in frame.parts):
+        yield "trailing zeros left out"
     for part in frame.parts:
         yield from _part(part.data)
 
