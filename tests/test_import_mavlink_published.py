@@ -57,7 +57,8 @@ class TestDefinitions:
         assert len(files) >= 19
         folder, printed = imported(wire)
         assert f"{len(files)} files of definitions read\n" in printed
-        schemas = [schema_name(name) for name in files if Mavgen(name, wire).kinds]
+        # Of some, MAVLink 1 can carry no message.
+        schemas = [schema_name(name) for name in files if wire == "2" or Mavgen(name, wire).kinds]
         assert sorted(file.stem for file in folder.iterdir()) == sorted(schemas)
 
     @pytest.mark.skipif(not dialects() or not is_tested_version(), reason="other definitions")
