@@ -65,7 +65,8 @@ def in_elements(
 def in_region(setting: Setting, region: Extent) -> Setting:
     """The setting of what lies in a region of so many bytes, where that says how many."""
     if not isinstance(region, Fixed | Counted):
-        return setting
+        bounded = replace(setting, capacity=region.counts.greatest, used=0)
+        return bounded if region.stated else setting
     return replace(setting, capacity=region.counts.greatest, used=0, delimited=True, last=True)
 
 
