@@ -81,12 +81,27 @@ class _Reader:
         for field in fields:
             if field.when is not None and not worked_out(field.when, inner):
                 continue
-            found = self._value(field.type, inner, constant=field.const is not None)
+            found = self._of_field(field, inner)
             if field.const is not None and not _is(found, field.const):
                 raise Wrong("value")
             if isinstance(field.type, Integer | Struct):
                 inner[field.name] = numbers[field.name] = found
         return numbers
+
+    def _of_field(self, field: Field, scope: Scope) -> Any:
+        constant = field.const is not None
+        if field.region is None:
+            return self._value(field.type, scope, constant=constant)
+        size = self._count(field.region, scope, constant=False)
+        assert size is not None
+        inner = _Reader(self._take(size))
+        try:
+            found = inner._value(field.type, scope, constant=constant)
+        except Wrong as wrong:  # What its region has no room for, no more bytes help.
+            raise Wrong(wrong.reason, count=wrong.count) from None
+        if inner._left:
+            raise Wrong("size")
+        return found
 
     def _value(self, type_: Type, scope: Scope, *, constant: bool = False) -> Any:
         if isinstance(type_, Struct | Array) and type_.packed is not None:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from protogen.model.expressions import Expression
+from protogen.model.expressions import Expression, Quotient
 
 _OPERATORS = ("and", "or", "not", "in")
 _WORD = re.compile(r"[a-z_][a-z0-9_]*")
@@ -18,7 +18,10 @@ _RUN = re.compile(r"(?P<name>[a-z][a-z0-9_.]*)\[(?P<low>\d+)\.\.(?P<high>\d+)\]"
 
 
 def worked_out(expression: Expression, scope: Mapping[str, Any]) -> int:
-    """The value of an expression; of a condition, 0 or 1."""
+    """The value of an expression; of a condition, 0 or 1. Bytes that are no elements are -1."""
+    if isinstance(expression, Quotient):
+        whole, part = divmod(worked_out(expression.operand, scope), expression.size)
+        return -1 if part else whole
     text = str(expression)
     if text in scope:
         return int(scope[text])
