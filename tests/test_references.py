@@ -31,6 +31,7 @@ frame:
     length: {type: uint8, counts: payload}
     number: {type: uint8, id: true}
     payload: {}
+    extra: {type: uint8, virtual: true}
     sum: {type: uint8, algorithm: sum-8, covers: [length..number, payload], when: payload}
 transparency: {robot: {covers: number..payload, preset: slip}}
 content_covers: sync
@@ -41,6 +42,7 @@ messages:
   report:
     from: [robot]
     id: {number: 1}
+    parts: {extra: 5}
     fields:
       size: uint8
       state: {type: kind, const: idle, default: idle}

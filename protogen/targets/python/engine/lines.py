@@ -46,7 +46,10 @@ class Constants:
     def text(self) -> tuple[str, ...]:
         """One assignment for each."""
         return tuple(
-            f"{name} = {wrapped(expression, len(name) + 3, 0, after=0)}"
+            # A table is laid out already.
+            f"{name} = {expression}"
+            if "\n" in expression
+            else f"{name} = {wrapped(expression, len(name) + 3, 0, after=0)}"
             for expression, name in self._names.items()
         )
 
