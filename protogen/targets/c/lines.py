@@ -35,6 +35,10 @@ class Lines:
         """Put lines in front of all others."""
         self._lines[:0] = [" " * (INDENT * self._depth) + line for line in lines]
 
+    def put_at(self, place: int, *lines: str) -> None:
+        """Put lines of the current depth in front of those from a place on."""
+        self._lines[place:place] = [" " * (INDENT * self._depth) + line for line in lines]
+
     @contextmanager
     def block(self, head: str, end: str = "}") -> Iterator[None]:
         """Lines between braces."""
@@ -85,6 +89,9 @@ class Lines:
     def lines(self) -> tuple[str, ...]:
         """All lines."""
         return tuple(self._lines)
+
+    def __len__(self) -> int:
+        return len(self._lines)
 
     def __bool__(self) -> bool:
         return bool(self._lines)

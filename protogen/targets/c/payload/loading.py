@@ -149,15 +149,19 @@ class Load(PlacedWalk):
 
     @contextmanager
     def inside(self, size: str, step: RegionStep) -> Iterator[None]:
-        """Inside of a region, `size` is where it ends."""
-        self.reads_size = self.moves_size = True
-        whole = "" if step.is_last else self.variable("whole")
-        if whole:
-            self.lines.add(f"const size_t {whole} = size;")
-        self.lines.add(f"size = (size_t)(at - payload) + {size};")
+        """Inside of a region, `size` is where it ends, if anything in it asks for that."""
+        begin, reads_outside = len(self.lines), self.reads_size
+        self.reads_size = False
         yield
-        if whole:
-            self.lines.add(f"size = {whole};")
+        if self.reads_size:
+            self.moves_size = True
+            moved = [f"size = (size_t)(at - payload) + {size};"]
+            if not step.is_last:
+                whole = self.variable("whole")
+                moved.insert(0, f"const size_t {whole} = size;")
+                self.lines.add(f"size = {whole};")
+            self.lines.put_at(begin, *moved)
+        self.reads_size |= reads_outside
 
     def _left(self) -> str:
         """The number of bytes that are left."""
