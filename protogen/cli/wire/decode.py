@@ -22,7 +22,8 @@ from protogen.cli.wire.capture import (
     timed_pieces,
 )
 from protogen.cli.wire.complaints import Complaints
-from protogen.cli.wire.silences import LineTimes, Silences
+from protogen.cli.wire.line_times import LineTimes
+from protogen.cli.wire.silences import Silences
 from protogen.cli.wire.tagged import Complain, Piece, tagged_pieces
 from protogen.convert.inputs.hex_digits import parse_hex
 

@@ -13,7 +13,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
-from protogen.cli.wire.silences import LineTimes
+from protogen.cli.wire.line_times import LineTimes
 from protogen.convert.inputs.hex_digits import HexError, HexReader
 from protogen.convert.inputs.text_lines import decoded
 
