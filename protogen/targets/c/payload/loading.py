@@ -194,6 +194,7 @@ class Load(PlacedWalk):
             self._rest(place, member, step.count.greatest)
             return
         self.settle()
+        self.reads_size = True
         self.lines.add(f"{member} = 0U;")
         with self.lines.block("while (at < payload + size)"):
             index = member if step.element.holds_values else "0"
