@@ -516,10 +516,12 @@ class Checker(CheckedWalk):
         """What takes just so many bytes: inside of it, `size` is where they end."""
         self._settle()
         bytes_ = amount(self.count(step.region))
+        before = self._fixed, self._needs, self._ended
+        if self._fixed and step.region.known is None:
+            self._fixed = self._needs = False  # The number may be wrong, whatever has one size.
         self._require(0, bytes_)
         whole = self.variable("whole")
         self.lines.add(f"const size_t {whole} = size;", f"size = at + {bytes_};")
-        before = self._fixed, self._needs, self._ended
         self._fixed = self._needs = False
         self._secured = 0
         with self.branch():
