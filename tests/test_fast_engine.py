@@ -536,11 +536,14 @@ SENT_BY_THE_REFERENCE = {
     ("mavlink_like", "craft_signed"),
     ("virtual_behind", "station"),
     ("virtual_parts", "station"),  # One checksum is always there, and one with a payload.
+    ("escaped_counted", "station"),  # A length counts what is sent.
+    ("sequences_counted", "station"),
 }
-"""Behind the payload stands something that is no checksum."""
+"""Behind the payload stands something that is no checksum, but for what is said of some."""
 CUT_BY_THE_REFERENCE = {
     ("checksum_only", "station"),
     ("idle_end", "station"),
+    ("sequences_marked", "station"),  # What was put in has to be found.
     ("terminated_alone", "device"),
     *SENT_BY_THE_REFERENCE,
 } - {("mavlink_like", "craft_plain")}
