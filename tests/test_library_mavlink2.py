@@ -22,7 +22,13 @@ def pymavlink() -> Pymavlink:
 
 @pytest.fixture(scope="module")
 def drawn(pymavlink: Pymavlink) -> list[Case]:
-    return [pymavlink.sent(case) for case in cases_of("mavlink2")]
+    """All cases without a signature, and each third one with one: payloads are alike in both."""
+    cases = cases_of("mavlink2")
+    plain = [case for case in cases if "signature" not in case.parts]
+    signed = [case for case in cases if "signature" in case.parts]
+    chosen = [*plain, *signed[::3]]
+    assert len(chosen) >= 4000
+    return [pymavlink.sent(case) for case in chosen]
 
 
 def test_both_have_the_same_definitions(pymavlink: Pymavlink) -> None:
@@ -47,7 +53,7 @@ def test_zeros_are_left_out(drawn: list[Case]) -> None:
 
 
 def test_no_frame_is_lost_that_it_finds(pymavlink: Pymavlink, drawn: list[Case]) -> None:
-    compare_recovery("mavlink2", "component", pymavlink, drawn)
+    compare_recovery("mavlink2", "component", pymavlink, drawn[::2])
 
 
 @pytest.mark.parametrize(
