@@ -321,6 +321,33 @@ def test_ways_to_write_a_time(meter: str, first: str, second: str, is_silent: bo
     assert "ask" in found
 
 
+IDLE = """
+protocol: bus
+link: {baud: 9600, idle_timeout: 20 ms}
+max_frame: 64
+endpoints: {station: Station}
+frame:
+  id:      {type: uint8, id: true}
+  payload: {}
+  sum:     {type: uint8, algorithm: sum-8, covers: [id, payload]}
+  end:     {idle: 3.5 characters}
+messages:
+  ready: {id: 1, from: station}
+"""
+
+
+def test_the_silence_that_ends_frames_goes_before_that_of_the_line(tmp_path: Path) -> None:
+    """3.5 characters of 10 bits are 3.65 ms, and two bytes take 2.08 ms."""
+    path = tmp_path / "bus.yaml"
+    path.write_text(IDLE)
+    log = "".join(f"({time}) bus0 01 01\n" for time in (1, 1.0057, 1.0115, 1.0173))
+    found = kinds(str(path), "--input", "log", "--timed", input=log)
+    assert found == ["invalid", "ready", "ready", "ready"]
+    whole = IDLE.replace(", idle_timeout: 20 ms", "")
+    path.write_text(whole)
+    assert kinds(str(path), "--input", "log", "--timed", input=log) == found
+
+
 def test_bytes_of_a_line_without_a_time_are_decoded_and_complained_of(meter: str) -> None:
     result = run("decode", meter, "--tagged", "--timed", input=f"pump meter: {LEVEL}\n")
     assert result.exit_code == 1

@@ -118,6 +118,9 @@ AWAITED_BY_THE_REFERENCE = {
     ("mavlink_like", "craft_signed"),
     ("virtual_behind", "station"),
     ("virtual_parts", "station"),  # Where frames begin behind an end.
+    ("escaped_counted", "station"),  # A length counts what is sent.
+    ("sequences_counted", "station"),
+    ("sequences_marked", "station"),  # What was put in has to be found.
     ("slip", "station"),
     ("told_numbers", "station"),
     ("told_presence", "station"),

@@ -45,8 +45,8 @@ Timed = Annotated[
     bool,
     typer.Option(
         "--timed",
-        help="A silence of the schema's link.idle_timeout ends what a decoder holds: for logs with"
-        " a time in front of each line, --input log or --tagged.",
+        help="A silence ends what a decoder holds, of the schema's `idle` or link.idle_timeout: for"
+        " logs with a time in front of each line, --input log or --tagged.",
     ),
 ]
 
@@ -82,7 +82,7 @@ def decode(  # noqa: PLR0913 - each option is one argument
     kind = _input_format(input, tagged=tagged, has_text=hex is not None)
     _check_timed(kind, timed=timed, has_text=hex is not None)
     codec = open_codec(schema)
-    silences = Silences(codec.protocol.link) if timed else None
+    silences = Silences(codec.protocol) if timed else None
     if sender is not None:
         find_senders(codec.protocol, sender)
     complaints = Complaints()

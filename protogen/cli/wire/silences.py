@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from protogen.cli.exits import UsageError
 from protogen.cli.wire.tagged import Piece
-from protogen.model.protocol import Link
+from protogen.model.protocol import Protocol
 
 _SECOND = 10**9
 
@@ -22,20 +22,30 @@ class _Sent(NamedTuple):
 class Silences:
     """Which bytes come behind a silence that ends what a decoder holds."""
 
-    def __init__(self, link: Link) -> None:
-        """Of a link with an `idle_timeout`. Raises UsageError where it has none."""
-        if link.idle_timeout is None:
+    def __init__(self, protocol: Protocol) -> None:
+        """Of frames that a silence ends, or a link with an `idle_timeout`.
+
+        Raises UsageError where there is neither.
+        """
+        link, ends = protocol.link, _ends(protocol)
+        if link.idle_timeout is None and not ends:
             raise UsageError(
                 "the schema does not say which silence ends a frame",
                 "give it, such as `link: {idle_timeout: 20 ms}`, or leave --timed out",
             )
-        self._timeout = link.idle_timeout * _SECOND
+        self._ends = ends
+        self._timeout = link.idle_timeout
         bits = Fraction(link.bits_per_byte * _SECOND)
         self._of_byte = bits / link.baud if link.baud else Fraction(0)
         self._last: dict[str, _Sent] = {}
 
+    def _of(self, sender: str) -> Fraction | None:
+        """Seconds of silence that end what a sender, or any if it has no name, has begun."""
+        ends = self._ends.values() if not sender else filter(None, [self._ends.get(sender)])
+        return min(ends, default=self._timeout)
+
     def are_in_front(self, piece: Piece) -> bool:
-        """True if its sender was silent for at least the timeout in front of these bytes.
+        """True if its sender was silent for at least that long in front of these bytes.
 
         A line may be noted down when its bytes begin or when they are there, so the longer time
         that they, or those before, were on the line is no silence.
@@ -47,6 +57,19 @@ class Silences:
         if before is not None and before.when == piece.when:
             duration += before.duration
         self._last[piece.sender] = _Sent(piece.when, duration)
-        if before is None:
+        silence = self._of(piece.sender)
+        if before is None or silence is None:
             return False
-        return piece.when - before.when - max(before.duration, duration) >= self._timeout
+        passed = piece.when - before.when - max(before.duration, duration)
+        return passed >= silence * _SECOND
+
+
+def _ends(protocol: Protocol) -> dict[str, Fraction]:
+    """The silence that ends a frame of each endpoint whose frames one ends."""
+    silences: dict[str, Fraction] = {}
+    for sender in protocol.senders:
+        silence = sender.frame.silence
+        if silence is not None:
+            known = silences.get(sender.endpoint, silence.seconds)
+            silences[sender.endpoint] = min(known, silence.seconds)
+    return silences

@@ -32,6 +32,8 @@ def is_readable(step: AnyStep) -> bool:
     if isinstance(element, RecordStep):
         # Nothing outside of it may say what is in it.
         return bool(element.sizes.fixed and element.holds_values) and not element.type.needs
+    if isinstance(element, IntegerStep) and element.type.is_free:
+        return False  # It ends at a separator, however few digits it may have.
     return isinstance(element, NumberStep) and element.sizes.fixed is not None
 
 
