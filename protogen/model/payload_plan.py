@@ -187,11 +187,11 @@ class Step(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
     def known_size(self) -> int | None:
         """Bytes of every such value, where that tells the places behind it; None where it does not.
 
-        Numbers of as many digits as they need are read up to where they end, whatever their size.
+        Numbers of as many digits as they need are read up to where they end, whatever their size,
+        and so is what has a number of bytes of its own.
         """
         steps = every_step([cast("AnyStep", self)])
-        is_free = any(isinstance(it, IntegerStep) and it.type.is_free for it in steps)
-        return None if is_free else self.sizes.fixed
+        return None if any(map(_tells_its_end, steps)) else self.sizes.fixed
 
     @property
     def fills(self) -> bool:
@@ -319,11 +319,11 @@ class OptionalStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     def known_size(self) -> int | None:
         """Bytes of every such value, where that tells the places behind it; None where it does not.
 
-        Numbers of as many digits as they need are read up to where they end, whatever their size.
+        Numbers of as many digits as they need are read up to where they end, whatever their size,
+        and so is what has a number of bytes of its own.
         """
         steps = every_step([cast("AnyStep", self)])
-        is_free = any(isinstance(it, IntegerStep) and it.type.is_free for it in steps)
-        return None if is_free else self.sizes.fixed
+        return None if any(map(_tells_its_end, steps)) else self.sizes.fixed
 
     @property
     def fills(self) -> bool:
@@ -350,6 +350,11 @@ AnyStep = (
     | OptionalStep
     | RegionStep
 )
+
+
+def _tells_its_end(step: AnyStep) -> bool:
+    is_free = isinstance(step, IntegerStep) and step.type.is_free
+    return is_free or isinstance(step, RegionStep)
 
 
 class PayloadPlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
