@@ -23,7 +23,7 @@ from protogen.targets.c.module import Module, view
 from protogen.targets.c.options import COptions
 from protogen.targets.c.package import package_files
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.protocol_names import names_of
+from protogen.targets.c.protocol_names import choose_writer, names_of
 from protogen.targets.c.spelling import Names
 from protogen.targets.c.wrapping import wrapped
 from protogen.targets.output import File
@@ -57,6 +57,7 @@ def unit_of(protocol: Protocol, options: COptions) -> Unit:
     """Views of the chosen part of a protocol."""
     names = names_of(protocol)
     chosen = select(protocol, options.only, options.senders)
+    choose_writer(names, chosen)
     helpers = Helpers(names)
     module = view(chosen, options, names, helpers)
     framing = framing_view(chosen, module.messages, module.sinks, options, names, helpers)

@@ -162,6 +162,11 @@ def writer_parameter(protocol: Protocol) -> str:
     return f"struct {protocol.name}_writer *writer"
 
 
+def choose_writer(names: Names, chosen: Protocol) -> None:
+    """Have the writer that the chosen senders need: others of the protocol may need more."""
+    names.writer, names.writing = writer_parameter(chosen), _writer_argument(chosen)
+
+
 def _writer_argument(protocol: Protocol) -> str:
     """Arguments with which functions hand on the writer that they were given."""
     return "put, user" if is_stateless(protocol) else "writer"
