@@ -9,7 +9,7 @@ import msgspec
 from protogen.copying import replace
 from protogen.evolution.change import Change, named
 from protogen.evolution.compare_fields import FieldComparison
-from protogen.evolution.compare_frames import compare_frames
+from protogen.evolution.compare_frames import compare_frames, renamed_parts
 from protogen.evolution.compare_reserved import compare_reserved
 from protogen.evolution.rules import BY_NAME, Category
 from protogen.evolution.shapes import shape
@@ -217,10 +217,11 @@ class _Owners:
 
 
 def _virtual(old: Sender, new: Sender, messages: dict[str, str]) -> Iterator[Change]:
-    """Other values of what is not sent, in parts of one name."""
+    """Other values of what is not sent, whatever its part is called now."""
     after = {message.name: message for message in new.messages}
+    renamed = renamed_parts(old.frame, new.frame)
     for part in old.frame.virtual:
-        same = new.frame.virtual_part(part.name)
+        same = new.frame.virtual_part(renamed.get(part.name, part.name))
         for message in old.messages if same is not None else ():
             other = after.get(messages.get(message.name, ""))
             if other is None or same is None:

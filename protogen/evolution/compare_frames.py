@@ -56,7 +56,7 @@ class _Frames:
         return Change(rule=rule, place=place, text=text, sender=self._sender, part=part)
 
     def compare(self, old: Frame, new: Frame) -> Iterator[Change]:
-        renamed = _renamed(old, new)
+        renamed = renamed_parts(old, new)
         crossed = renamed if are_crossed(tuple(renamed.items())) else {}
         before = [renamed.get(part.name, part.name) for part in old.declared]
         after = [part.name for part in new.declared]
@@ -181,7 +181,7 @@ class _Frames:
             yield self._change("frame-leniency", "transparency", words)
 
 
-def _renamed(old: Frame, new: Frame) -> dict[str, str]:
+def renamed_parts(old: Frame, new: Frame) -> dict[str, str]:
     """Parts that are the same but for their names."""
     before = {part.name for part in old.declared}
     after = {part.name for part in new.declared}

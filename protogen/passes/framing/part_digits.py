@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from protogen.copying import replace
 from protogen.model.frame import PartType
 from protogen.passes.context import Context, Loc
@@ -22,6 +24,11 @@ def is_written(item: Part) -> bool:
 
 def part_type_hint(name: str) -> str | None:
     """Type that was probably meant for a part."""
+    signed = re.fullmatch(r"sint(\d+)", name)
+    if signed is not None:
+        return f"parts have no sign: uint{signed[1]}"
+    if name.startswith("float"):
+        return "parts are integers, such as uint32, or texts"
     if name not in ("decimal", "hexadecimal"):
         return type_hint(name)
     digits = "base10" if name == "decimal" else "base16-upper"
