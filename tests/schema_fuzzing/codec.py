@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from protogen.model.framing import StartLiteral, StartSet
+from protogen.model.framing import Anywhere, StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.api import EncodeError
@@ -74,6 +74,8 @@ def encode(
         wire = frame_bytes(sender.frame, message, made.to_payload(), shown)
         limit = sender.frame.limit
         too_large |= limit is not None and len(wire) > limit
+        length = sender.frame.length
+        too_large |= length is not None and length.over_wire and "makes " in str(error)
         assert too_large or (sender.framing.cut_ambiguous and "decoder" in str(error)), error
         return None
     assert module.encode(made, sender.name, **arguments(parts)) == frame
@@ -142,12 +144,16 @@ def _most_kept(sender: Sender) -> int:
 
     That is one greatest frame; but behind noise or a failed candidate of about that size the
     beginning of a start may stand, and where those end is not known before the start is decided.
+    Where a silence ends it, it is one byte more, and where nothing marks its start either, the
+    noise of one more frame may stand in front.
     """
+    if sender.plan.ends_idle and isinstance(sender.framing.start, Anywhere):
+        return 2 * sender.plan.given_up_at
     start = sender.framing.start
     beginning = len(start.bytes) - 2 if isinstance(start, StartLiteral) else 0
     if isinstance(start, StartSet):
         beginning = len(start.words[0]) - 2
-    return sender.framing.greatest + max(0, beginning)
+    return sender.plan.given_up_at + max(0, beginning)
 
 
 def check_lossless(module: ModuleType, sender: Sender, data: bytes, events: Sequence[Any]) -> None:
@@ -166,9 +172,11 @@ def _may_differ(sender: Sender, line: dict[str, Any]) -> bool:
     """True if encoding may give other bytes.
 
     That is so for stuffing that was accepted although no encoder makes it, for the payload of a
-    NaN, for numbers that an encoder writes in another way, and for a frame whose start is the end
-    of the frame before.
+    NaN, for numbers that an encoder writes in another way, for texts that are not ASCII, and for a
+    frame whose start is the end of the frame before.
     """
+    if not str(line.get("parts", "")).isascii():
+        return True
     if not all(message.plan.has_one_spelling for message in sender.messages):
         return True
     if sender.plan.is_trimmed:

@@ -35,7 +35,7 @@ COMMON = (
     "declared struct", "declared number",
     "number: fixed", "number: counted", "number: fill", "number: fill, bounded", "struct: fixed",
     "struct: counted", "struct: fill", "ascii: fixed", "ascii: counted", "bytes: counted",
-    "bytes: fill", "number: fill from a least number", "bytes: fill from a least number",
+    "bytes: fill", "number: fill from a least number",
     "number: worked out", "ascii: worked out", "switch by an expression",
     "number in bytes", "region", "trailing zeros left out",
     "greatest frame", *(f"field with {key}" for key in _FIELD_KEYS),

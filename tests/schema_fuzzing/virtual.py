@@ -58,7 +58,8 @@ def _value(type_: PartType) -> st.SearchStrategy[Any]:
 def _with(draw: st.DrawFn, parts: Data, name: str, part: Data, checksum: str) -> Data:
     """The parts with a virtual one among them, which this checksum covers."""
     items = list(parts.items())
-    items.insert(draw(st.integers(0, len(items))), (name, part))
+    last = len(items) - ("idle" in items[-1][1])  # Nothing stands behind a silence.
+    items.insert(draw(st.integers(0, last)), (name, part))
     covers = parts[checksum]["covers"]
     listed = [covers] if isinstance(covers, str) else list(covers)
     return {**dict(items), checksum: {**parts[checksum], "covers": [*listed, name]}}
