@@ -17,6 +17,7 @@ from protogen.compiler import compile_file
 from protogen.fuzzing.c_calls import OK, RANGE, SPACE, VALUE, Encoded
 from protogen.fuzzing.c_values import Unfit
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
+from protogen.model.frame import Insertion
 from protogen.model.protocol import Protocol
 from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError
@@ -131,6 +132,8 @@ def test_frames_are_sent_byte_by_byte_where_nothing_in_them_depends_on_what_foll
     for it in senders:
         length = it.frame.length
         counts_wire = length is not None and length.over_wire
+        code = it.frame.transparency
+        counts_wire |= code is not None and isinstance(code.encoding, Insertion)
         assert counts_wire or it.framing.cut_ambiguous or it.framing.is_cut_off, it.name
 
 
