@@ -49,6 +49,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """The frames, by their sender, some of which a decoder might end too early."""
     trims: frozenset[str]
     """Those in which zeros at the end of some payload may be left out."""
+    cuts_sent: bool
+    """True if of some message that is sent byte by byte only the first bytes may be."""
     idle_checks: frozenset[str]
     """Those some of which a decoder might take for an idle line."""
     texts: tuple[TextView, ...]
@@ -60,11 +62,6 @@ class FramingView(msgspec.Struct, frozen=True):
     def sends(self) -> bool:
         """True if some message can be sent byte by byte."""
         return any(message.sends for message in self.messages)
-
-    @property
-    def cuts_sent(self) -> bool:
-        """True if of some message that is sent byte by byte only the first bytes may be."""
-        return any(message.sends and message.is_trimmed for message in self.messages)
 
     @property
     def takes_whole(self) -> bool:
@@ -130,6 +127,7 @@ def framing_view(
             item.frame.decoder.name for item in message_frames if item.needs_cut_check
         ),
         trims=frozenset(item.frame.decoder.name for item in message_frames if item.is_trimmed),
+        cuts_sent=any(item.sends and item.is_trimmed for item in message_frames),
         idle_checks=frozenset(
             item.frame.decoder.name for item in message_frames if item.needs_idle_check
         ),
