@@ -406,12 +406,12 @@ class Checker(CheckedWalk):
     def _run(self, count: int | str, size: int) -> None:
         """Elements that can't be wrong."""
         self._flush()
-        if isinstance(count, int):
-            self._offset += count * size
+        amount = times(count, size)
+        if isinstance(amount, int):
+            self._offset += amount
             return
         self._settle()
-        amount = times(count, size)
-        self._require(0, str(amount))
+        self._require(0, amount)
         self._move(amount)
 
     def _each(self, element: AnyStep, place: str, count: int | str) -> None:

@@ -51,6 +51,8 @@ def type_of(formula: Formula) -> Integer:
 
 def times(count: int | str, size: int) -> int | str:
     """The bytes of so many elements."""
+    if size == 0:
+        return 0
     if isinstance(count, int):
         return count * size
     return f"(size_t){unsigned(size)} * {count}" if size > 1 else count
