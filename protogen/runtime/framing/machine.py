@@ -55,6 +55,7 @@ class Candidate:
         # The stuffed region: not begun, begun (with an unstuffer), or finished.
         self._region_begun = False
         self._unstuffer: Unstuffer | None = None
+        self._waiting = 0  # Bytes that were released together with the one that is taken.
         self._empty_left = 0  # Wire bytes still to come of a region that holds nothing.
         self._passed = 0  # Wire bytes that were taken as content or stuffing.
         self._wire_ends: list[int] = []  # As many as were passed, for each byte of content.
@@ -214,9 +215,8 @@ class Candidate:
             self._cross()
         elif self._content.is_full:
             raise self._content.surplus()
-        for value in released:
-            if self._unstuffer is None:
-                raise self._content.surplus()
+        for index, value in enumerate(released, start=1):
+            self._waiting = len(released) - index
             self._accept(value)
 
     def _accept(self, value: int) -> None:
@@ -282,7 +282,7 @@ class Candidate:
             released = unstuffer.finish()
         except TransparencyError as error:
             raise Rejected(error.reason, str(error)) from None
-        if released and surplus:
+        if surplus and (released or self._waiting):
             raise self._content.surplus()
         for value in released:
             self._accept(value)

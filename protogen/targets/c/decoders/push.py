@@ -244,10 +244,14 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     def held_beginnings(self) -> list[str]:
         """The conditions that what is held is the beginning of a sequence."""
         assert self.stuffing is not None
-        return [
-            f"(decoder->node == {size}U && {equals(code.sequence[:size], 'held')})"
+        beginnings = dict.fromkeys(
+            code.sequence[:size]
             for code in self.stuffing.codes
             for size in range(1, len(code.sequence))
+        )
+        return [
+            f"(decoder->node == {len(beginning)}U && {equals(beginning, 'held')})"
+            for beginning in beginnings
         ]
 
     # --- between parts ----------------------------------------------------------------------------
