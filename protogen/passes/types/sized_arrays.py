@@ -85,10 +85,15 @@ def region_of(
         context.error_at_key("PG240", item.at("size"), text, "leave `size` out")
         return type_, None
     bounds = extent.counts
-    if type_.sizes.within(bounds.least, bounds.greatest) is None:
+    fitting = type_.sizes.within(bounds.least, bounds.greatest)
+    if fitting is None:
         text = f"this takes {type_.sizes} bytes, and the region has {bounds}"
         context.error("PG241", item.at("size"), text)
         return type_, None
+    if isinstance(extent, Counted):  # No other number of bytes can be right.
+        is_stated = extent.stated or fitting != bounds
+        bounded = {"least": fitting.least, "greatest": fitting.greatest}
+        extent = replace(extent, **bounded, stated=is_stated)
     return type_, extent
 
 
