@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from library_support import cases_of, compare_frames, compare_recovery, peer_module
+from servo_port import Port
 
 from protogen.copying import replace
 from protogen.fuzzing.samples import Values
@@ -15,34 +16,6 @@ from protogen.fuzzing.trips import Case
 ALL = 254
 INSTRUCTIONS = ["ping", "read", "write", "reg_write", "action", "factory_reset", "reboot"]
 TO_ALL = ["sync_write", "bulk_read"]
-
-
-class Port:
-    """A port as the SDK has one, with what is there to read and what was written."""
-
-    is_using = False
-
-    def __init__(self, data: bytes = b"") -> None:
-        self.data = data
-        self.written = b""
-
-    def readPort(self, length: int) -> bytes:  # noqa: N802 - as the SDK calls it
-        length = max(length, 0)
-        piece, self.data = self.data[:length], self.data[length:]
-        return piece
-
-    def writePort(self, packet: list[int]) -> int:  # noqa: N802 - as the SDK calls it
-        self.written = bytes(packet)
-        return len(packet)
-
-    def clearPort(self) -> None:  # noqa: N802 - as the SDK calls it
-        pass
-
-    def setPacketTimeout(self, length: int) -> None:  # noqa: N802 - as the SDK calls it
-        pass
-
-    def isPacketTimeout(self) -> bool:  # noqa: N802 - as the SDK calls it
-        return not self.data
 
 
 class Sdk:

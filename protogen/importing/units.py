@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
+from typing import Any
 
 import msgspec
 
+from protogen.importing.schema_text import Number
 from protogen.schema.text.scalars import exact_number
 
 _NUMBER = r"\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
@@ -49,6 +51,16 @@ class Unit(msgspec.Struct, frozen=True):
     """Exact number as a schema has it; None is 1."""
     remark: str = ""
     """What stands behind the unit in brackets, which is for people."""
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """The keys of a field that say it."""
+        data: dict[str, Any] = {}
+        if self.scale is not None:
+            data["scale"] = Number(self.scale)
+        if self.unit is not None:
+            data["unit"] = self.unit
+        return data
 
 
 def read_unit(text: str) -> Unit:

@@ -355,6 +355,11 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
             key = key << part.type.bits | value
         return key
 
+    @property
+    def length_over_wire(self) -> bool:
+        """True if a length counts bytes as they are on the wire."""
+        return self.length is not None and self.length.over_wire
+
     @cached_property
     def length(self) -> LengthPart | None:
         """The length part, if there is one."""

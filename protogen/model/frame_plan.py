@@ -515,7 +515,12 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
             return self.length.over_wire
         if self.identity:
             return True  # An unknown identity tells no size.
-        return (bool(self.end_bytes) or self.ends_idle) and self.has_open_groups
+        return self.has_end and self.has_open_groups
+
+    @property
+    def has_end(self) -> bool:
+        """True if a literal or a silence stands at the end of every frame."""
+        return bool(self.end_bytes) or self.ends_idle
 
     @property
     def ends_idle(self) -> bool:
@@ -533,8 +538,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     @property
     def measures(self) -> bool:
         """True if the size of some payload follows from its first bytes alone."""
-        has_end = bool(self.end_bytes) or self.ends_idle
-        return self.length is None and not has_end and self.has_open_groups
+        return self.length is None and not self.has_end and self.has_open_groups
 
     @cached_property
     def has_open_groups(self) -> bool:
@@ -546,8 +550,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         """True if some frame ends where the next starts, and nothing else tells."""
         if self.length is not None:
             return False
-        has_end = bool(self.end_bytes) or self.ends_idle
-        return self.opens and not has_end and self.start is not StartRule.ANYWHERE
+        return self.opens and not self.has_end and self.start is not StartRule.ANYWHERE
 
     @cached_property
     def has_one_spelling(self) -> bool:

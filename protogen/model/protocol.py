@@ -32,6 +32,11 @@ class Link(msgspec.Struct, frozen=True, kw_only=True):
         """Bit times of one character: start bit, data, parity, stop bits."""
         return 1 + self.data_bits + (self.parity != "none") + self.stop_bits
 
+    @property
+    def byte_time(self) -> Fraction | None:
+        """Seconds that one character takes; None where the rate is not known."""
+        return Fraction(self.bits_per_byte, self.baud) if self.baud else None
+
 
 class Endpoint(msgspec.Struct, frozen=True, kw_only=True):
     """A named side of the link."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from datetime import date
 
-_SECOND = 10**9
-_DAY = 24 * 3600 * _SECOND
+from protogen.convert.inputs.text_logs import nanoseconds
+
+_DAY = 24 * 3600 * 10**9
 
 _TIME = re.compile(
     r"\s*[(\[<]?\s*(?:"
@@ -31,11 +32,10 @@ class LineTimes:
         found = _TIME.match(line)
         if found is None:
             return None
-        fraction = int((found["fraction"] or "").ljust(9, "0"))
         if found["seconds"] is not None:
-            return int(found["seconds"]) * _SECOND + fraction
+            return nanoseconds(int(found["seconds"]), found["fraction"])
         minutes = int(found["hours"]) * 60 + int(found["minutes"])
-        clock = (minutes * 60 + int(found["of_clock"] or 0)) * _SECOND + fraction
+        clock = nanoseconds(minutes * 60 + int(found["of_clock"] or 0), found["fraction"])
         if found["date"] is not None:
             day = _day(found["date"])
             return None if day is None else day * _DAY + clock

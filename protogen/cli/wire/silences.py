@@ -35,8 +35,7 @@ class Silences:
             )
         self._ends = ends
         self._timeout = link.idle_timeout
-        bits = Fraction(link.bits_per_byte * _SECOND)
-        self._of_byte = bits / link.baud if link.baud else Fraction(0)
+        self._of_byte = (link.byte_time or Fraction(0)) * _SECOND
         self._last: dict[str, _Sent] = {}
 
     def _of(self, sender: str) -> Fraction | None:

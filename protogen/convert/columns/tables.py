@@ -203,10 +203,8 @@ class Tables(msgspec.Struct, frozen=True):
     @property
     def byte_time(self) -> Fraction:
         """Nanoseconds that a byte takes on the line; a microsecond where the rate is not known."""
-        link = self.protocol.link
-        if link.baud is None:
-            return Fraction(1000)
-        return Fraction(link.bits_per_byte * 10**9, link.baud)
+        seconds = self.protocol.link.byte_time
+        return Fraction(1000) if seconds is None else seconds * 10**9
 
 
 def tables_of(protocol: Protocol, sender: Sender) -> Tables:

@@ -40,6 +40,11 @@ _LATEST = (1 << 63) - 1
 """The last time that tables have a place for: nanoseconds in an `int64`."""
 
 
+def nanoseconds(seconds: int, fraction: str | None) -> int:
+    """Seconds, and up to nine digits behind their point, in nanoseconds."""
+    return seconds * 10**9 + int((fraction or "").ljust(9, "0"))
+
+
 class LogLine(NamedTuple):
     """What a line says."""
 
@@ -72,7 +77,7 @@ def log_lines(lines: Iterable[str], complain: Complain) -> Iterator[LogLine]:
         if found is None or not (found["hex"] or found["id"]):
             complain(f"line {number}: not `(SECONDS) [NAME] HEX`: {text[:40]!r}")
         elif not (found["id"] and int(found["id"], 16) & _ERROR):
-            when = int(found["seconds"]) * 10**9 + int((found["fraction"] or "").ljust(9, "0"))
+            when = nanoseconds(int(found["seconds"]), found["fraction"])
             if when > _LATEST:
                 complain(f"line {number}: a time behind the year 2262: {text[:40]!r}")
             else:

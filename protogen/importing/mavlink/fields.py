@@ -109,13 +109,7 @@ class _Field:
         if not multiplier:
             self._remark(f"the multiplier `{written}`, which is no number but 0")
             multiplier = Fraction(1)
-        unit = read_unit(self._get("units"), multiplier)
-        data: dict[str, Any] = {}
-        if unit.scale is not None:
-            data["scale"] = Number(unit.scale)
-        if unit.unit is not None:
-            data["unit"] = unit.unit
-        return data
+        return read_unit(self._get("units"), multiplier).keys
 
     def _default(self, bounds: Sequence[Any]) -> dict[str, Any]:
         """Return the default; `bounds` are those of the range, if it has one."""

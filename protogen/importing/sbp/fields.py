@@ -17,7 +17,7 @@ from protogen.importing.sbp.structs import (
     width,
 )
 from protogen.importing.sbp.texts import end_of_text, is_known_encoding, text_data
-from protogen.importing.schema_text import Number, joined, paragraphs
+from protogen.importing.schema_text import joined, paragraphs
 from protogen.importing.units import read_unit
 from protogen.problems.span import Span
 
@@ -161,12 +161,7 @@ class _Fields:
     def _unit(self, spec: FieldSpec, docs: list[str]) -> dict[str, Any]:
         unit = read_unit(spec.units)
         docs.append(unit.remark)
-        data: dict[str, Any] = {}
-        if unit.scale is not None:
-            data["scale"] = Number(unit.scale)
-        if unit.unit is not None:
-            data["unit"] = unit.unit
-        return data
+        return unit.keys
 
 
 def _kind(spec: FieldSpec) -> str:

@@ -40,6 +40,7 @@ from protogen.model.framing import AfterEnd, Anywhere, Framing, StartLiteral, St
 from protogen.model.identities import Identities
 from protogen.model.messages import Message, Overload
 from protogen.passes.framing.capacity import counted_size, tail_literals
+from protogen.passes.framing.transparencies import beginning_in
 
 _START_RULES = {
     StartLiteral: StartRule.LITERAL,
@@ -204,7 +205,7 @@ class _Planner:
     def _rescans(self) -> bool:
         if self._frame.silence is not None:
             return True
-        end_is_final = self._unique_end and _has_no_border(self._end_bytes)
+        end_is_final = self._unique_end and not beginning_in(self._end_bytes, self._end_bytes[1:])
         match self._start:
             case StartLiteral():
                 return not (end_is_final if self._shares else self._unique_start)
@@ -316,7 +317,7 @@ class _Planner:
         cuts_region = region is not None and region.behind and region.before < self._head_size
         if region is not None and region.insertion is not None:
             return False
-        if self._frame.length is not None and self._frame.length.over_wire:
+        if self._frame.length_over_wire:
             return False
         return (
             self._is_regular
@@ -347,7 +348,7 @@ class _Planner:
             over_wire = any(part.over_wire for part in self._frame.checksums)
             if over_wire or isinstance(transparency.encoding, Cobs | Insertion):
                 return False
-            if self._frame.length is not None and self._frame.length.over_wire:
+            if self._frame.length_over_wire:
                 return False
         return all(self._checksum(part).is_behind for part in self._frame.checksums)
 
@@ -360,8 +361,3 @@ def _codes(encoding: Encoding) -> tuple[tuple[int, bytes], ...]:
             return tuple((byte, bytes((escape, byte ^ xor))) for byte in sorted(set(of)))
         case Insertion() | Base16() | Cobs():
             return ()
-
-
-def _has_no_border(literal: bytes) -> bool:
-    """True if no beginning of the literal is also an end of it."""
-    return not any(literal.endswith(literal[:size]) for size in range(1, len(literal)))

@@ -46,8 +46,9 @@ def _silence(context: Context, written: WrittenFrame, name: str, item: Part) -> 
 def character_time(context: Context) -> Fraction | None:
     """Seconds that a character takes on the line; None where its rate is not known."""
     link = context.syntax.link
-    bits = Link(data_bits=link.data_bits, parity=link.parity, stop_bits=link.stop_bits)
-    return Fraction(bits.bits_per_byte, link.baud) if link.baud else None
+    return Link(
+        baud=link.baud, data_bits=link.data_bits, parity=link.parity, stop_bits=link.stop_bits
+    ).byte_time
 
 
 def check_silence(context: Context, written: WrittenFrame, frame: Frame) -> None:

@@ -113,10 +113,10 @@ class _Reader:
         elif self._item.lenient:
             text = "a receiver that takes a sequence alone could not tell it from a stuffed one"
             hint = "remove `lenient`"
-        elif ending := _beginning_in(run, run[1:]):
+        elif ending := beginning_in(run, run[1:]):
             code, text = "PG248", f"{_hex(run)} begins and ends with {_hex(ending)}"
             hint = "choose a sequence that can't overlap itself"
-        elif ending := _beginning_in(run, word[1:]):
+        elif ending := beginning_in(run, word[1:]):
             code, text = "PG248", f"{_hex(word)} ends with {_hex(ending)}, which begins the next"
             hint = "choose another byte to put in"
         else:
@@ -142,7 +142,7 @@ class _Reader:
         return Escape(byte=item.byte, of=tuple(sorted(set(item.of))), xor=xor)
 
 
-def _beginning_in(run: bytes, data: bytes) -> bytes:
+def beginning_in(run: bytes, data: bytes) -> bytes:
     """The longest beginning of a sequence that the data ends with; empty if there is none."""
     sizes = range(min(len(run), len(data)), 0, -1)
     return next((run[:size] for size in sizes if data.endswith(run[:size])), b"")

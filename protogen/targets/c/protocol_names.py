@@ -47,7 +47,7 @@ def names_of(protocol: Protocol) -> Names:
 
 
 def _all_names(protocol: Protocol) -> Names:
-    names = Names(protocol.name, writer_parameter(protocol), _writer_argument(protocol))
+    names = Names(protocol.name)
     names.claim_file(protocol.name)
     _claim_own(names)
     if any(sender.plan.is_trimmed for sender in protocol.senders):
@@ -164,9 +164,5 @@ def writer_parameter(protocol: Protocol) -> str:
 
 def choose_writer(names: Names, chosen: Protocol) -> None:
     """Have the writer that the chosen senders need: others of the protocol may need more."""
-    names.writer, names.writing = writer_parameter(chosen), _writer_argument(chosen)
-
-
-def _writer_argument(protocol: Protocol) -> str:
-    """Arguments with which functions hand on the writer that they were given."""
-    return "put, user" if is_stateless(protocol) else "writer"
+    names.writer = writer_parameter(chosen)
+    names.writing = "put, user" if is_stateless(chosen) else "writer"

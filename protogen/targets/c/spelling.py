@@ -22,12 +22,12 @@ class Names:
     `robot_mode` with `idle`): the second is escaped.
     """
 
-    def __init__(self, prefix: str, writer: str = "", writing: str = "") -> None:
+    def __init__(self, prefix: str) -> None:
         self.prefix = prefix
-        self.writer = writer
+        self.writer = ""
         """The parameters of functions that send byte by byte."""
-        self.writing = writing
-        """Arguments with which these hand the writer on."""
+        self.writing = ""
+        """Arguments with which these hand the writer on. Both depend on the senders printed."""
         self.file = ""
         """The name of the files, but for its end."""
         self.senders: dict[str, str] = {}

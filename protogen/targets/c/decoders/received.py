@@ -337,14 +337,13 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         is_kept_whole = plan.store is not Store.CONTENT or plan.end_begins_start
         if not self.all_events and not is_kept_whole and plan.identity_is_early:
             # What nobody asked for is given up at once: no frame can start inside of it.
-            has_end = bool(plan.end_bytes) or plan.ends_idle
-            return plan.length is None and has_end and plan.has_open_groups
+            return plan.length is None and plan.has_end and plan.has_open_groups
         return plan.opens
 
     @property
     def length_over_wire(self) -> bool:
         """True if the length counts stuffed bytes, so that the end of these is known, no sizes."""
-        return self.plan.length is not None and self.plan.length.over_wire
+        return self.plan.frame.length_over_wire
 
     @property
     def seeks_end(self) -> bool:

@@ -67,7 +67,7 @@ class EngineFrame:
             and self.tail == self.checksums
             and self.plan.is_regular
             and self._has_few_identities
-            and not (self.plan.length is not None and self.plan.length.over_wire)
+            and not self.plan.frame.length_over_wire
         )
 
     @property
