@@ -129,7 +129,7 @@ class _PayloadRows:
 
     def _choice(self, step: ChooseStep, place: Place, path: Path) -> Iterator[Row]:
         for case in step.cases:
-            name = f"{code(path.shown)} if {code(step.expression.text)} is {_case_value(case)}"
+            name = f"{code(path.shown)} {_condition(step, case)}"
             inner = path.case(case.name)
             alone = _only_value(case.step)
             if alone is None:
@@ -140,6 +140,8 @@ class _PayloadRows:
                 inner = Path(path.shown, inner.field(alone.name).anchor)
                 yield self._field(alone, place, inner, name)
                 yield from self._inside(alone, place, inner)
+        if step.otherwise is not None:
+            return
         otherwise, rest = "invalid", SizeSet.exactly(0)
         if step.rest is not None:
             most = plural(step.rest.count.greatest, "byte")
@@ -183,6 +185,10 @@ def _only_value(step: AnyStep) -> AnyStep | None:
     return None
 
 
-def _case_value(case: CaseStep) -> str:
+def _condition(step: ChooseStep, case: CaseStep) -> str:
+    """Return on which condition there is a case."""
+    if case.value is None:
+        return "otherwise"
     value = code(short_number(case.value))
-    return value if case.name == f"case_{case.value}" else f"{value} {case.name}"
+    name = "" if case.name == f"case_{case.value}" else f" {case.name}"
+    return f"if {code(step.expression.text)} is {value}{name}"
