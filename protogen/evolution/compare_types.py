@@ -142,8 +142,8 @@ class TypeComparison:
         after = {case.value: case for case in new.cases if case.value is not None}
         for value in sorted(before.keys() | after.keys()):
             if (value in before) != (value in after):
-                words = _moved(value, old, new)
-                found = self._report("field-cases", path, words)
+                rule = "field-kind" if self._only_moved(value, old, new) else "field-cases"
+                found = self._report(rule, path, _moved(value, old, new))
                 name = plain_name(new.selector)
                 if name is not None:
                     marks = Mark(-1, value), Mark(-1, value)
@@ -153,6 +153,13 @@ class TypeComparison:
                 case = before[value]
                 yield from self.compare(case.type, after[value].type, path)
         yield from self._other_cases(old, new, path)
+
+    def _only_moved(self, value: int, old: Switch, new: Switch) -> bool:
+        """True if a value has the same bytes with the same meaning, with and without its case."""
+        before, after = old.case(value), new.case(value)
+        if before is None or after is None:
+            return False
+        return not list(self.compare(before.type, after.type, ""))
 
     def _other_cases(self, old: Switch, new: Switch, path: str) -> Iterator[Change]:
         """The changes of what values have that no case names."""
