@@ -228,7 +228,7 @@ class _Reader:
 
     def _case(self, type_: Switch, scope: Scope) -> None:
         for case in type_.cases:
-            if case.value == worked_out(type_.selector, scope):
+            if case.value in (worked_out(type_.selector, scope), None):  # That of all others: last.
                 self._value(case.type, scope)
                 return
         if type_.rest is None:

@@ -184,7 +184,7 @@ def _put(at: Any, key: Any, type_: Type, value: Any, scope: Scope) -> None:
 
 def _put_case(union: Any, type_: Switch, value: Any, scope: Scope) -> None:
     for case in type_.cases:
-        if case.value == worked_out(type_.selector, scope):
+        if case.value in (worked_out(type_.selector, scope), None):  # That of all others is last.
             if has_room(case.type):
                 _put(union, case.name, case.type, value, scope)
             return
@@ -293,7 +293,7 @@ def _count(extent: Extent, count: int, scope: Scope) -> int:
 
 def _take_case(union: Any, type_: Switch, scope: Scope) -> Any:
     for case in type_.cases:
-        if case.value == worked_out(type_.selector, scope):
+        if case.value in (worked_out(type_.selector, scope), None):  # That of all others is last.
             if isinstance(case.type, Struct) and not case.type.fields:
                 return None
             return _take(union, case.name, case.type, 0, scope)

@@ -126,7 +126,7 @@ def _said(number: int | str | Expression, scope: Scope) -> int:
 def _choice(choice: Choice, value: Any, scope: Scope) -> Any:
     chosen = _said(choice.selector, scope)
     for number, case in choice.cases:
-        if number == chosen:
+        if number == chosen or (number is None and chosen not in choice.empty):
             return _value(case, value[case.name], 0, scope)
     if chosen in choice.empty or choice.rest is None:
         return None

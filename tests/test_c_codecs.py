@@ -307,7 +307,8 @@ def others(type_: Type, value: Any, used: frozenset[str], scope: Values) -> Iter
             for other in others(element, value[-1], used, scope):
                 yield [*value[:-1], other]
         case Switch(selector=selector, cases=cases) if isinstance(value, dict):
-            case = next(case for case in cases if case.value == worked_out(selector, scope))
+            chosen = worked_out(selector, scope), None  # That of all others is last.
+            case = next(case for case in cases if case.value in chosen)
             assert isinstance(case.type, Struct)
             yield from spoilings(case.type.fields, value, used, scope)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from cli_support import run
@@ -279,6 +280,86 @@ class TestCases:
                 if witness.old_sends and item.rule.name == "field-cases":
                     seen[item.change.text] = int(module.decode(witness.frame, "host").kind)
         assert seen == {"no case 2 any more": 2, "no case 3 any more": 3}
+
+    @pytest.mark.parametrize(
+        ("before", "after", "text", "frames"),
+        [
+            (
+                "{1: uint16, else: uint32}",
+                "{1: uint16, 2: uint8, else: uint32}",
+                "a case 2 instead of `else`",
+                {(True, 2), (False, 2)},
+            ),
+            (
+                "{1: uint16, 2: uint8, else: uint32}",
+                "{1: uint16, else: uint32}",
+                "no case 2 any more, but `else`",
+                {(True, 2), (False, 2)},
+            ),
+        ],
+    )
+    def test_what_moves_out_of_the_case_of_others_or_into_it_has_other_bytes(
+        self, before: str, after: str, text: str, frames: set[tuple[bool, int]], tmp_path: Path
+    ) -> None:
+        modules, found = self.changed(before, after, tmp_path)
+        assert said(found) == [("WIRE", "field-cases", "both", "rejected")]
+        (item,) = found
+        assert item.change.text == text
+        kinds = {
+            (one.old_sends, int(modules[one.old_sends].decode(one.frame, "host").kind))
+            for one in item.witnesses
+        }
+        assert kinds == frames
+
+    @pytest.mark.parametrize(
+        ("before", "after", "text"),
+        [
+            ("{1: uint16}", "{1: uint16, else: uint32}", "values without a case have `else`"),
+            ("{1: uint16, else: uint32}", "{1: uint16}", "values without a case are taken"),
+        ],
+    )
+    def test_others_that_have_a_case_now_are_read_otherwise(
+        self, before: str, after: str, text: str, tmp_path: Path
+    ) -> None:
+        modules, found = self.changed(before, after, tmp_path)
+        assert {(item.rule.name, item.change.text) for item in found} == {("field-cases", text)}
+        for item in found:
+            for one in item.witnesses:
+                assert modules[one.old_sends].decode(one.frame, "host").kind != 1
+            assert item.witnesses
+
+    @pytest.mark.parametrize(
+        ("before", "after", "expected"),
+        [
+            (
+                "{1: uint16, else: uint32}",
+                "{1: uint16, 2: uint32, else: uint32}",
+                ("SOURCE", "field-kind"),
+            ),
+            ("{1: uint16, else: uint32}", "{1: uint16, else: sint32}", ("WIRE", "field-sign")),
+            ("{else: uint32, 1: uint16}", "{1: uint16, else: uint32}", None),
+        ],
+    )
+    def test_types_of_the_case_of_others_are_compared(
+        self, before: str, after: str, expected: tuple[str, str] | None, tmp_path: Path
+    ) -> None:
+        _, found = self.changed(before, after, tmp_path)
+        kinds = [(item.category.value, item.rule.name) for item in found]
+        assert kinds == ([] if expected is None else [expected])
+
+    @staticmethod
+    def changed(
+        before: str, after: str, tmp_path: Path
+    ) -> tuple[dict[bool, ModuleType], list[Finding]]:
+        order = "  order: {id: 2, from: host, fields: {mode: mode}}\n"
+        old, new = (
+            compiled(
+                tmp_path / f"{number}.yaml",
+                SCHEMA.replace(order, SWITCH_FIELDS.replace("CASES", cases)),
+            )
+            for number, cases in enumerate((before, after))
+        )
+        return {True: module_of(old), False: module_of(new)}, findings(old, new)[1]
 
 
 SWITCH_FIELDS = """\

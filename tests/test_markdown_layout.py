@@ -388,3 +388,28 @@ def test_messages_of_varying_size_have_no_diagram():
 def test_long_labels_are_cut():
     made = protocol(message("m", 1, ("a_name_that_does_not_fit", UINT8)))
     assert diagrams(page(made))[1][2] == '2: "2 a_name_that_d…"'
+
+
+def test_what_fills_a_region_ends_where_it_does():
+    value = Struct(name="s", fields=fields(("a", UINT8), ("b", Octets(extent=Fill(greatest=9)))))
+    cases = (
+        Case(value=1, name="case_1", type=value),
+        Case(
+            value=None,
+            name="else",
+            type=Struct(name="t", fields=fields(("x", UINT16), ("y", UINT16))),
+        ),
+    )
+    switch = Switch(selector=named("op"), cases=cases, rest=None)
+    made = message("m", 1, ("op", UINT8), ("argument", switch), ("z", UINT8))
+    op, argument, last = made.fields
+    made = replace(made, fields=(op, replace(argument, region=Fixed(count=4)), last))
+    rows = [(row["Name"], row["Size"], row["Type"]) for row in layout(protocol(made))]
+    assert rows[3:9] == [
+        ("`argument`", "4", "depends on `op`, in 4 bytes"),
+        ("`argument` if `op` is `1`", "4", "struct"),
+        ("`argument.a`", "1", "`uint8`"),
+        ("`argument.b`", "0 to 4", "`bytes` to the end of 4 bytes, at most 9 bytes"),
+        ("`argument` otherwise", "4", "struct"),
+        ("`argument.x`", "2", "`uint16` LE"),
+    ]

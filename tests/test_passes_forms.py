@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from passes_support import HEAD, protocol_of
 
 FORMS = """\
@@ -35,6 +36,44 @@ class TestSynchronisation:
     def test_the_start_of_the_second_may_be_one_that_the_first_can_hold(self) -> None:
         _, second = protocol_of(HEAD + FORMS.replace("SECOND", "0x46")).senders
         assert not second.framing.self_synchronising, "46 is the digit F"
+
+    @pytest.mark.parametrize("start", ["0x7E", "{hex: 7E 7E}", "{hex: 55 7E}"])
+    def test_what_all_forms_begin_with_is_no_false_start(self, start: str) -> None:
+        senders = protocol_of(HEAD + ALIKE.replace("START", start)).senders
+        assert [sender.framing.self_synchronising for sender in senders] == [True] * 3
+
+    @pytest.mark.parametrize("start", ["0x7E", "{hex: 7E 7E}", "{hex: 55 7E}"])
+    def test_a_start_behind_another_literal_is_one(self, start: str) -> None:
+        text = ALIKE.replace("{start: {literal: START}, mark", "{first: {literal: START}, mark")
+        text = text.replace(
+            "{first: {literal: START}, mark: {literal: 0xF0}",
+            "{first: {literal: 0x0A}, mark: {literal: START}",
+        )
+        first, second, third = protocol_of(HEAD + text.replace("START", start)).senders
+        assert not first.framing.self_synchronising
+        assert not second.framing.self_synchronising
+        assert "frames of the form `third`" in first.framing.why_synchronising
+        assert third.framing.self_synchronising
+
+
+ALIKE = """\
+forms:
+  first:
+    frame: {start: {literal: START}, length: {type: uint8, counts: payload, range: [0, 9]},
+            id: {type: uint8, id: true}, payload: {}}
+    transparency: {covers: id..payload, escape: ESCAPE}
+  second:
+    frame: {start: {literal: START}, length: {type: uint8, counts: payload, range: [10, 50]},
+            id: {type: uint8, id: true}, payload: {}}
+    transparency: {covers: id..payload, escape: ESCAPE}
+  third:
+    frame: {start: {literal: START}, mark: {literal: 0xF0}, length: {type: uint8, counts: payload},
+            id: {type: uint8, id: true}, payload: {}}
+    transparency: {covers: length..payload, escape: ESCAPE}
+messages:
+  go: {id: 1, from: robot, fields: {data: {type: bytes, size: fill}}}
+""".replace("ESCAPE", "{byte: 0x7D, of: [0x0A, 0x55, 0x7D, 0x7E], transform: {xor: 0x20}}")
+"""Three forms with one literal at their beginning, which occurs nowhere else."""
 
 
 class TestMessages:

@@ -50,7 +50,18 @@ HABITS = [
     ),
     ("a key without a value", VALUE, "{type: uint16, big}", "keys are type, fields"),
     ("a comment", VALUE, "{type: uint16, doc: see # 5}", "a `#` behind a space begins a comment"),
-    ("messages in a list", MESSAGES, "messages:\n  - reading\n", "leave out the `-`: `messages:`"),
+    (
+        "messages in a list",
+        MESSAGES,
+        "messages:\n  - reading\n",
+        "leave out the `-` or `[ ]`: `messages:`",
+    ),
+    (
+        "fields in a list between brackets",
+        "    fields:\n      value",
+        "    fields: [value]\n    other:\n      value",
+        "leave out the `-` or `[ ]`: `fields:`",
+    ),
     ("not indented", "  reading:\n", "reading:\n", "indent it, if it belongs to `messages`"),
     ("fields not indented", "      value", "    value", "indent it, if it belongs to `fields`"),
     (
@@ -115,7 +126,7 @@ def test_parts_in_a_list_get_a_hint(tmp_path: Path) -> None:
     path = tmp_path / "schema.yaml"
     path.write_text(f"{head}frame:\n{listed}transparency:{rest}", encoding="utf-8")
     hints = [problem.hint for problem in compile_file(path).errors]
-    assert any((hint or "").startswith("leave out the `-`: `frame:`") for hint in hints)
+    assert any((hint or "").startswith("leave out the `-` or `[ ]`: `frame:`") for hint in hints)
 
 
 @pytest.mark.parametrize("endpoints", ["{board: [a, b]}", "{board: {title: {a: b}}}", "[board]"])
@@ -131,3 +142,10 @@ def test_an_unknown_type_is_the_only_thing_that_is_said_of_it(tmp_path: Path) ->
     path.write_text(SCHEMA.replace(VALUE, "{type: snit16, range: [-500, 500]}"), encoding="utf-8")
     (problem,) = compile_file(path).errors
     assert (problem.code, problem.hint) == ("PG104", "did you mean `sint16`?")
+
+
+def test_what_holds_no_names_gets_no_hint_about_a_list(tmp_path: Path) -> None:
+    path = tmp_path / "schema.yaml"
+    path.write_text(SCHEMA.replace(VALUE, "{type: uint16, unit: [mm]}"), encoding="utf-8")
+    (problem,) = compile_file(path).errors
+    assert (problem.code, problem.hint) == ("PG102", None)

@@ -220,15 +220,16 @@ def _chosen(choice: Choice, values: Values, scope: Scope) -> Rows:
     whole = Column(name="it", role="field", source="it", shape=choice)
     found = rows(dtype_of(TableSchema(row=Record((whole,), choice.size, 1))), len(values))["it"]
     chosen = _said(choice.selector, scope, len(values))
-    known: Mapping[int, Column] = dict(choice.cases)
+    known: Mapping[int | None, Column] = dict(choice.cases)
     for value in dict.fromkeys(map(int, chosen)):
         places = [place for place, number in enumerate(chosen) if number == value]
         inner = [values[place] for place in places]
         seen = _at_places(scope, places)
-        if value in known:
-            case = known[value]
+        key = value if value in known or value in choice.empty else None
+        if key in known:
+            case = known[key]
             found[case.name][places] = _array(case, case.dimensions, inner, seen)
-        elif value not in choice.empty and choice.rest is not None:
+        elif key is None and choice.rest is not None:
             found[choice.rest.name][places] = _rest(choice.rest, inner)
     return found
 

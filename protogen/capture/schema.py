@@ -88,15 +88,15 @@ class Choice(msgspec.Struct, frozen=True):
     """A switch. Its cases share the same bytes; only the one that the selector chooses is there.
 
     `cases` gives the column of each value that has one, and `empty` the values whose case holds
-    nothing. Any other value has `rest`, a record of `size` and `bytes`; where that is None, it
-    can't be.
+    nothing; None is the value of the case of all others. Without that, any other value has `rest`,
+    a record of `size` and `bytes`; where that is None, it can't be.
     """
 
     selector: str | int | Expression
     """The column, found as that of a `Dimension`; a number where it is always that; an expression
     over columns and members of them."""
-    cases: tuple[tuple[int, Column], ...]
-    empty: tuple[int, ...]
+    cases: tuple[tuple[int | None, Column], ...]
+    empty: tuple[int | None, ...]
     rest: Column | None
     size: int
     alignment: int

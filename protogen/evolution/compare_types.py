@@ -138,12 +138,12 @@ class TypeComparison:
             chosen = f"the cases of {old.selector.text}", f"those of {new.selector.text}"
             words = named(*chosen)
             yield self._report("field-cases", path, words)
-        before = {case.value: case for case in old.cases}
-        after = {case.value: case for case in new.cases}
+        before = {case.value: case for case in old.cases if case.value is not None}
+        after = {case.value: case for case in new.cases if case.value is not None}
         for value in sorted(before.keys() | after.keys()):
             if (value in before) != (value in after):
-                words = f"a case {value}" if value in after else f"no case {value} any more"
-                found = self._report("field-cases", path, words)
+                rule = "field-kind" if self._only_moved(value, old, new) else "field-cases"
+                found = self._report(rule, path, _moved(value, old, new))
                 name = plain_name(new.selector)
                 if name is not None:
                     marks = Mark(-1, value), Mark(-1, value)
@@ -152,8 +152,21 @@ class TypeComparison:
             else:
                 case = before[value]
                 yield from self.compare(case.type, after[value].type, path)
-        if (old.rest is None) != (new.rest is None):
-            words = "values without a case are " + ("taken" if old.rest is None else "refused")
+        yield from self._other_cases(old, new, path)
+
+    def _only_moved(self, value: int, old: Switch, new: Switch) -> bool:
+        """True if a value has the same bytes with the same meaning, with and without its case."""
+        before, after = old.case(value), new.case(value)
+        if before is None or after is None:
+            return False
+        return not list(self.compare(before.type, after.type, ""))
+
+    def _other_cases(self, old: Switch, new: Switch, path: str) -> Iterator[Change]:
+        """The changes of what values have that no case names."""
+        if old.otherwise is not None and new.otherwise is not None:
+            yield from self.compare(old.otherwise.type, new.otherwise.type, path)
+        elif _of_others(old) != _of_others(new):
+            words = f"values without a case {_of_others(new)}"
             yield self._report("field-cases", path, words)
 
     def now(self, expression: Expression) -> Expression:
@@ -332,3 +345,18 @@ def _amount(extent: Extent) -> str:
 
 def _bounds(extent: Fill | Until) -> str:
     return f"{extent.least} to {extent.greatest}" if extent.least else f"up to {extent.greatest}"
+
+
+def _of_others(switch: Switch) -> str:
+    """What a switch does with values that no case names."""
+    if switch.otherwise is not None:
+        return "have `else`"
+    return "are refused" if switch.rest is None else "are taken"
+
+
+def _moved(value: int, old: Switch, new: Switch) -> str:
+    """A case that only one of two switches has."""
+    if new.case(value) in (None, new.otherwise):
+        else_ = "" if new.otherwise is None else ", but `else`"
+        return f"no case {value} any more{else_}"
+    return f"a case {value}" + ("" if old.otherwise is None else " instead of `else`")

@@ -200,13 +200,13 @@ def _needs_of_count(count: Count) -> Iterator[tuple[Reference, Need]]:
 def _needs_of_choice(step: ChooseStep) -> Iterator[tuple[Reference, Need]]:
     if isinstance(step.selector, int):
         return
-    values = tuple(case.value for case in step.cases)
+    values = step.values
     if step.selector.plain is not None:
-        yield step.selector.plain, Need(cases=values, others=step.rest is not None)
+        yield step.selector.plain, Need(cases=values, others=step.takes_all)
         return
     yield from _needs_of_formula(step.selector, values)
     selector = step.selector.expression
-    if isinstance(selector, Operand) and selector.run is not None and step.rest is None:
+    if isinstance(selector, Operand) and selector.run is not None and not step.takes_all:
         number = step.selector.references[selector.name]
         yield number, Need(runs=(Run(*selector.run, values),))
 
@@ -269,7 +269,8 @@ def _integer_choices(step: IntegerStep, need: Need | None) -> Choices:
         near = [value for value in (0, 1, -1) if least <= value <= greatest]
         values = _distinct([*values, least, greatest, *near])
     if need is not None and need.cases:
-        return _selecting(values, need)
+        more = () if closed else range(least, min(greatest, least + len(need.cases)) + 1)
+        return _selecting(values, need, more)
     if need is not None and not closed:
         values = _distinct([*values, *(it for it in need.near if least <= it <= greatest)])
     if need is not None and need.is_bounded:
@@ -284,8 +285,11 @@ def _integer_choices(step: IntegerStep, need: Need | None) -> Choices:
     return Choices(values, lambda random: _any_integer(least, greatest, random))
 
 
-def _selecting(values: Sequence[int], need: Need) -> Choices:
+def _selecting(values: Sequence[int], need: Need, more: Iterable[int]) -> Choices:
+    """The cases, and other values where those will do: if none is among `values`, one of `more`."""
     others = [value for value in values if need.others and value not in need.cases]
+    if need.others and not others:
+        others = [value for value in more if value not in need.cases][:1]
     choices = [*need.cases, *others[-1:]]
     return Choices(choices, lambda random: random.choice([*choices, *others]))
 

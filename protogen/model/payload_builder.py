@@ -252,7 +252,7 @@ class _Builder:
             name=name,
             field=field,
             sizes=type_.sizes,
-            checks=inside | ({Check.CASE} if type_.rest is None else _NOTHING),
+            checks=inside | (_NOTHING if type_.takes_all else {Check.CASE}),
             is_refusable=True,
             holds_values=type_.holds_values,
             is_last=is_last,

@@ -280,7 +280,8 @@ class RestStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
 class CaseStep(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
     """The step for one value of a selector."""
 
-    value: int
+    value: int | None
+    """None: every value that no other case has."""
     name: str
     step: AnyStep
 
@@ -298,12 +299,29 @@ class ChooseStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     selector: int | Formula
     """The number that chooses; of a constant its value."""
     cases: tuple[CaseStep, ...]
+    """The steps for some values each; last the one for all others, if there is one."""
     rest: RestStep | None
-    """The step for other values; None where they are invalid."""
+    """The step for the bytes of other values; None where they have a case or are invalid."""
+
+    @cached_property
+    def otherwise(self) -> CaseStep | None:
+        """The case of all values that no other one has, if there is one."""
+        return self.cases[-1] if self.cases and self.cases[-1].value is None else None
+
+    @property
+    def values(self) -> tuple[int, ...]:
+        """The values that have a case of their own."""
+        return tuple(case.value for case in self.cases if case.value is not None)
+
+    @property
+    def takes_all(self) -> bool:
+        """True if no value of the selector is invalid."""
+        return self.rest is not None or self.otherwise is not None
 
     def case(self, value: int) -> AnyStep | RestStep | None:
         """The step for a value of the selector; None where it is invalid."""
-        return next((case.step for case in self.cases if case.value == value), self.rest)
+        found = next((case for case in self.cases if case.value == value), self.otherwise)
+        return self.rest if found is None else found.step
 
 
 class OptionalStep(Step, frozen=True, kw_only=True, eq=False, dict=True):

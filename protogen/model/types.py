@@ -281,17 +281,19 @@ class Array(msgspec.Struct, frozen=True, kw_only=True):
 class Case(msgspec.Struct, frozen=True, kw_only=True):
     """Type for one raw value of a switch's selector. A case of no bytes is an empty struct."""
 
-    value: int
+    value: int | None
+    """None: every value that no other case has."""
     name: str
-    """The enum's name of the value, else `case_VALUE`."""
+    """The enum's name of the value, else `case_VALUE`; `else` of all other values."""
     type: Type
 
 
 class Switch(msgspec.Struct, frozen=True, kw_only=True):
     """One of several types, chosen by earlier fields.
 
-    A value without a case yields the rest of the payload as bytes (at most `rest` of them) where
-    the frame says where the payload ends; with `rest` None it is invalid.
+    A case for all other values is the last one. Without it, a value without a case yields the rest
+    of the payload as bytes (at most `rest` of them) where the frame says where the payload ends;
+    with `rest` None it is invalid.
     """
 
     selector: Expression
@@ -323,7 +325,22 @@ class Switch(msgspec.Struct, frozen=True, kw_only=True):
 
     def case(self, value: int) -> Case | None:
         """The case of a value of the selector."""
-        return next((case for case in self.cases if case.value == value), None)
+        return next((case for case in self.cases if case.value == value), self.otherwise)
+
+    @property
+    def otherwise(self) -> Case | None:
+        """The case of all values that no other one has, if there is one."""
+        return self.cases[-1] if self.cases and self.cases[-1].value is None else None
+
+    @property
+    def takes_all(self) -> bool:
+        """True if no value of the selector is invalid."""
+        return self.rest is not None or self.otherwise is not None
+
+    @property
+    def values(self) -> tuple[int, ...]:
+        """The values that have a case of their own."""
+        return tuple(case.value for case in self.cases if case.value is not None)
 
     @property
     def sizes(self) -> SizeSet:

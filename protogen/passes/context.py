@@ -28,7 +28,7 @@ _OF_ONE_FIELD = frozenset(
     {"PG110", "PG112", "PG113", "PG114", "PG115"} | {f"PG{number}" for number in range(220, 226)}
 )
 """Problems of one field and its declared type: what is missing in other fields has no part in."""
-_OF_REFERENCES = frozenset({"PG116", "PG117", "PG121"})
+_OF_REFERENCES = frozenset({"PG116", "PG117", "PG121", "PG270", "PG271", "PG272"})
 """Problems of a field with another one that it names."""
 
 Find = Callable[[Loc], Span]

@@ -47,6 +47,12 @@ _PROSE = frozenset(("doc", "title", "summary", "note", "section")) | frozenset(
     ("question", "document", "choice", "because", "why")
 )
 """Keys whose values are sentences."""
+_OF_NAMES = frozenset(
+    ("messages", "forms", "frame", "endpoints", "types", "values", "special", "flags", "bits")
+) | frozenset(
+    ("cases", "fields", "parts", "examples", "exchanges", "decisions", "overloads", "reserved")
+)
+"""Keys whose values are names, with what belongs to each."""
 
 
 def key_hint(word: str, known: Sequence[str]) -> str | None:
@@ -125,12 +131,13 @@ def endpoint_hint(detail: Any, data: Any) -> str | None:
 
 def list_hint(key: str, written: object) -> str | None:
     """How a mapping is written where a list stands."""
-    if not isinstance(written, list) or not written:
+    if not isinstance(written, list) or not written or key not in _OF_NAMES:
         return None
     if key in ("values", "flags", "special") and all(isinstance(item, str) for item in written):
         pairs = ", ".join(f"{name}: {number}" for number, name in enumerate(written))
         return f"each name has its number: `{{{pairs}}}`"
-    return f"leave out the `-`: `{key}:` holds names, each with a `:` and what belongs to it"
+    marks = "`-` or `[ ]`"
+    return f"leave out the {marks}: `{key}:` holds names, each with a `:` and what belongs to it"
 
 
 def indent_hint(around: Any, key: str, mappings: Sequence[str]) -> str | None:

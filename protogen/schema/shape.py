@@ -214,6 +214,7 @@ _YAML_WORDS = (
     (r"^Dictionary should have at least 1 item.*", "there is nothing in it"),
     (r" or instance of \w+", ""),
     (r"^(Input|String|Dictionary) should", "this should"),
+    (r"\bshould be greater than or equal to 0$", "can't be negative"),
     (r" after validation, not .*$", ""),
     (r"\ba valid boolean", "true or false"),
     (r"\ba valid integer", "an integer"),

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+from schema_fuzzing.setting import ELSE
+
 EVERY = frozenset(range(256))
 _DIGITS = {
     "base10": frozenset(b"0123456789"),
@@ -65,10 +67,10 @@ def _of_fields(fields: Mapping[str, Any], types: Types, *, last: bool) -> frozen
 
 def _of_field(item: dict[str, Any], types: Types, *, last: bool) -> frozenset[int]:
     if "switch" in item:
-        if last:
+        if last and ELSE not in item["cases"]:
             return EVERY  # The bytes of a value without a case.
         return frozenset().union(
-            *(_of_field(_full(case, types), types, last=False) for case in item["cases"].values())
+            *(_of_field(_full(case, types), types, last=last) for case in item["cases"].values())
         )
     if "packed" in item:
         return EVERY

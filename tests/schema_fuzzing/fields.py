@@ -13,7 +13,7 @@ from schema_fuzzing.names import FIELDS, fresh
 from schema_fuzzing.numbers import ORDERS, counter, integer, number
 from schema_fuzzing.packed import can_pack, packed_arrays, packed_structs
 from schema_fuzzing.separated import written_numbers
-from schema_fuzzing.setting import NOTHING, Built, Declared, Selector, Setting, Size
+from schema_fuzzing.setting import ELSE, NOTHING, Built, Declared, Selector, Setting, Size
 
 GREATEST_DEPTH = 2
 _USUAL_BYTES = 12
@@ -429,7 +429,8 @@ def _selector(draw: st.DrawFn, setting: Setting) -> Built:
 def _switch(draw: st.DrawFn, setting: Setting, selector: Selector) -> Built:
     cases: dict[Any, Any] = {}
     size: Size | None = None
-    fills = setting.may_fill
+    keeps_rest = setting.may_fill and ELSE not in selector.keys
+    fills = keeps_rest
     for key in selector.keys:
         inner = replace(setting, depth=setting.depth + 1)
         built = draw(_case(inner))
@@ -437,7 +438,7 @@ def _switch(draw: st.DrawFn, setting: Setting, selector: Selector) -> Built:
         size = built.size if size is None else size | built.size
         fills = fills or built.fills
     assert size is not None
-    if setting.may_fill:
+    if keeps_rest:
         rest = size.greatest if setting.room is None else setting.room
         size |= Size(0, rest)
     data = {"switch": selector.name, "cases": cases, **draw(forms.about())}

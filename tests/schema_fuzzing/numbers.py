@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from protogen.copying import replace
 from schema_fuzzing import forms
 from schema_fuzzing.names import SPECIAL, VALUES, several
-from schema_fuzzing.setting import Built, Setting, Size
+from schema_fuzzing.setting import ELSE, Built, Setting, Size
 
 ORDERS = st.sampled_from(["little", "big"])
 SCALES = st.sampled_from(["1/16", "0.01", 2, "-1/3", 0.5, "1.5e-3", 1])
@@ -245,7 +245,10 @@ def _one_run(draw: st.DrawFn, low: int, high: int) -> Any:
 
 
 def _keys(data: dict[str, Any], kind: Kind, least: int, greatest: int) -> st.SearchStrategy[Any]:
-    """Spellings of some values of the integer as keys of cases; each value at most once."""
+    """Spellings of some values of the integer as keys of cases; each value at most once.
+
+    The last one may be the key of all other values, where there are some.
+    """
     named = {name: _raw_of(entry) for name, entry in data.get("values", {}).items()}
     written: dict[int, Any] = {value: name for name, value in named.items()}
     if not data.get("closed"):
@@ -258,8 +261,12 @@ def _keys(data: dict[str, Any], kind: Kind, least: int, greatest: int) -> st.Sea
     ]
     if not usable:
         return st.just(())
+    allowed = len(usable) if data.get("closed") else greatest - least + 1
     few = st.lists(st.sampled_from(usable), min_size=1, max_size=3, unique=True)
-    return few.map(tuple)
+    others = forms.one_in(3) if ELSE not in named else st.just(False)
+    return st.tuples(few, others).map(
+        lambda drawn: (*drawn[0], *([ELSE] if drawn[1] and len(drawn[0]) < allowed else ()))
+    )
 
 
 def _raw_of(entry: Any) -> int:

@@ -103,7 +103,7 @@ def _bits(type_: Type, value: Any, order: str) -> list[int]:
 
 def _switch_bytes(type_: Switch, value: Any, scope: Scope) -> bytes:
     for case in type_.cases:
-        if case.value == worked_out(type_.selector, scope):
+        if case.value in (worked_out(type_.selector, scope), None):  # That of all others is last.
             return value_bytes(case.type, value, scope)
     return bytes.fromhex(value)
 

@@ -39,10 +39,17 @@ NOTHING = Size(0, 0)
 
 @dataclass(frozen=True, slots=True)
 class Selector:
-    """An integer that a switch may be chosen by: how its values are written as keys of cases."""
+    """An integer that a switch may be chosen by: how its values are written as keys of cases.
+
+    The last key may be that of all other values, where there are some.
+    """
 
     name: str
     keys: tuple[Any, ...]
+
+
+ELSE = "else"
+"""Key of the case of all values that no other case has."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from schema_fuzzing.frames import FramePlan
+from schema_fuzzing.setting import ELSE
 
 _FIELD_KEYS = (
     "values", "closed", "flags", "bits", "const", "default", "range", "scale", "offset", "unit",
@@ -37,6 +38,7 @@ COMMON = (
     "struct: counted", "struct: fill", "ascii: fixed", "ascii: counted", "bytes: counted",
     "bytes: fill", "number: fill from a least number",
     "number: worked out", "ascii: worked out", "switch by an expression",
+    "case of all others",
     "number in bytes", "region", "trailing zeros left out",
     "greatest frame", *(f"field with {key}" for key in _FIELD_KEYS),
     *(f"identity parts: {count}" for count in range(4)),
@@ -178,6 +180,8 @@ def _field(item: Any) -> Iterator[str]:
             yield f"field with {key}"
     if "switch" in item and not item["switch"].replace("_", "").isalnum():
         yield "switch by an expression"
+    if ELSE in item.get("cases", ()):
+        yield "case of all others"
     for key in ("count", "size"):
         if key in item:
             element = kind if kind in ("ascii", "bytes", "struct") else "number"

@@ -232,8 +232,11 @@ def _used(
     else:
         usual = _between(least, greatest)
     if switches:
-        known = [case.value for case in switches[0].cases if least <= case.value <= greatest]
-        open_ended = all(switch.rest is not None for switch in switches)
+        own = [case.value for case in switches[0].cases if case.value is not None]
+        known = [value for value in own if least <= value <= greatest]
+        open_ended = all(
+            switch.rest is not None or len(own) < len(switch.cases) for switch in switches
+        )
         usual = usual | st.sampled_from(known) if open_ended else st.sampled_from(known)
     value = draw(usual)
     # One that counts bytes may be 0.
@@ -319,7 +322,7 @@ def _array(draw: st.DrawFn, type_: Array, field: Field | None, scope: Scope) -> 
 @st.composite
 def _switch(draw: st.DrawFn, type_: Switch, scope: Scope) -> Any:
     chosen = worked_out(type_.selector, scope)
-    case = next((case for case in type_.cases if case.value == chosen), None)
+    case = next((case for case in type_.cases if case.value in (chosen, None)), None)
     if case is None:
         assert type_.rest is not None
         return draw(_octets(draw(_count(0, type_.rest)), 7)).hex()

@@ -15,6 +15,7 @@ from protogen.model.payload_plan import (
     IntegerStep,
     RecordStep,
     RepeatStep,
+    RestStep,
     held_step,
     without_constant,
 )
@@ -65,7 +66,8 @@ def _hint(step: AnyStep, value: Any, way: Sequence[str], scope: Scope, path: str
 def chosen_case(step: ChooseStep, scope: Mapping[str, Any]) -> AnyStep | None:
     """Return the step of the case that the value of the selector chooses, if it has one."""
     chosen = value_in(step.expression, scope)
-    return next((case.step for case in step.cases if case.value == chosen), None)
+    found = None if chosen is None else step.case(chosen)
+    return None if isinstance(found, RestStep) else found
 
 
 def value_in(expression: Expression, scope: Mapping[str, Any]) -> int | None:

@@ -52,12 +52,12 @@ def _plain(type: Type, value: Any, scope: Scope) -> Any:
 
 def _plain_case(type: Switch, value: Any, scope: Scope) -> dict[str, Any]:
     chosen = _said(type.selector, scope)
-    for case in type.cases:
-        if case.value == chosen:
-            if isinstance(case.type, Struct):
-                return {case.name: plain_fields(case.type.fields, value or {}, scope)}
-            return {case.name: _plain(case.type, value, scope)}
-    return {"": bytes.fromhex(value)}
+    case = type.case(chosen)
+    if case is None:
+        return {"": bytes.fromhex(value)}
+    if isinstance(case.type, Struct):
+        return {case.name: plain_fields(case.type.fields, value or {}, scope)}
+    return {case.name: _plain(case.type, value, scope)}
 
 
 def reached(values: Any, path: Sequence[str]) -> Any:

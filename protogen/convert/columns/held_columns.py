@@ -30,8 +30,8 @@ def members_of(column: Column | None) -> Sequence[Column]:
     return shape.columns if isinstance(shape, Record) else ()
 
 
-def cases_of(column: Column | None) -> dict[int, Column]:
-    """The columns inside of a switch's, by the values that choose them."""
+def cases_of(column: Column | None) -> dict[int | None, Column]:
+    """The columns inside of a switch's, by the values that choose them; None: all others."""
     shape = column and column.shape
     return dict(shape.cases) if isinstance(shape, Choice) else {}
 

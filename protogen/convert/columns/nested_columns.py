@@ -87,9 +87,9 @@ def _case(
     """Values behind a path, of the rows that have the case that it begins with."""
     case = next((case for case in type.cases if case.name == path[0]), None)
     chosen = np.ascontiguousarray(_said(type.selector, scope))
-    if case is None:
+    if case is None or case.value is None:
         # NumPy would compare numbers of 64 bits with those of another type as floats.
-        there = ~np.isin(chosen, np.array([case.value for case in type.cases], chosen.dtype))
+        there = ~np.isin(chosen, np.array(type.values, chosen.dtype))
     else:
         there = chosen == case.value
     having, places = _having(there)

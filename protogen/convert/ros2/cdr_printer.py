@@ -118,7 +118,7 @@ class CdrPrinter:
         return [cdr.where(condition, *self.fork([body, other]))]
 
     def chosen(self, selector: Count, bodies: Mapping[int, Make], rest: Make) -> list[Step]:
-        """Steps of the case that a number chooses."""
+        """Steps of the case that a number chooses; those of `rest` for all others."""
         if isinstance(selector, int):
             return bodies.get(selector, rest)()
         *found, last = self.fork([*bodies.values(), rest])

@@ -28,7 +28,7 @@ from protogen.convert.ros2.layout import (
 )
 from protogen.convert.writers.jsonl_steps import places_of
 from protogen.convert.writers.value_steps import Spot, count_of, said
-from protogen.model.types import Array, Field, Fixed, Octets, Struct, Switch, Text, Type
+from protogen.model.types import Array, Case, Field, Fixed, Octets, Struct, Switch, Text, Type
 from protogen.native import cdr_steps as cdr
 from protogen.native.cdr_steps import Alignment
 from protogen.native.print_steps import (
@@ -137,14 +137,13 @@ class _Values(CdrPrinter):
             if member.flag is None:  # No case has anything.
                 found += self.constant(member.type, None)
                 continue
-            bodies: dict[int, Make]
+            absent = self._absence(member)
             if member.source:
                 case = cases[member.source]
-                within = known.get(case.value)
-                bodies = {case.value: self._case(member, item, case.type, within, at)}
-                other = self._absence(member)
+                make = self._case(member, item, case.type, known.get(case.value), at)
+                bodies, other = _of_case(type, case, make, absent)
             else:
-                bodies = {it.value: self._absence(member) for it in type.cases}
+                bodies = dict.fromkeys(type.values, absent)
                 other = self.rest_of(member, rest, at)
             found += self.chosen(said(type.selector, at), bodies, other)
         return found
@@ -337,13 +336,13 @@ class _Row(_Values):
         assert isinstance(type, Switch)
         nowhere: Make = lambda: self._nowhere(member)  # noqa: E731
         if not path[0]:
-            bodies = {case.value: nowhere for case in type.cases}
+            bodies = dict.fromkeys(type.values, nowhere)
             rest = self.rest_of(member, rest_of(column), at)
             return self.chosen(said(type.selector, at), bodies, rest)
         case = next(case for case in type.cases if case.name == path[0])
         within = cases_of(column).get(case.value)
-        bodies = {case.value: lambda: self._inside(member, path[1:], item, case.type, within, at)}
-        return self.chosen(said(type.selector, at), bodies, nowhere)
+        make: Make = lambda: self._inside(member, path[1:], item, case.type, within, at)  # noqa: E731
+        return self.chosen(said(type.selector, at), *_of_case(type, case, make, nowhere))
 
     def _nowhere(self, member: Member) -> list[Step]:
         """What stands for a column's value where there is none."""
@@ -409,3 +408,10 @@ class _Row(_Values):
         if kind.is_float and meaning.special:
             return self.aligned(kind.size, cdr.plain_physical(place, kind.size, meaning.special))
         return self.number(kind, place)
+
+
+def _of_case(type: Switch, case: Case, make: Make, absent: Make) -> tuple[dict[int, Make], Make]:
+    """What is made for single values of a switch's selector, and for all others."""
+    if case.value is None:
+        return dict.fromkeys(type.values, absent), make
+    return {case.value: make}, absent

@@ -221,13 +221,15 @@ def in_quotes(step: Step) -> Iterator[Step]:
 
 
 def chosen(
-    selector: Count, bodies: Mapping[int, Iterable[Step]], rest: Iterable[Step]
+    selector: Count, bodies: Mapping[int | None, Iterable[Step]], rest: Iterable[Step]
 ) -> Iterator[Step]:
-    """The steps of the case that a number chooses."""
+    """The steps of the case that a number chooses; under None those of all others, else `rest`."""
+    others = bodies.get(None, rest)
+    own = {value: body for value, body in bodies.items() if value is not None}
     if isinstance(selector, int):
-        yield from bodies.get(selector, rest)
+        yield from own.get(selector, others)
     else:
-        yield choose(selector, bodies, rest)
+        yield choose(selector, own, others)
 
 
 def if_there(

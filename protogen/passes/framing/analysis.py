@@ -6,11 +6,11 @@ how large a frame can be. A schema whose receiver could not tell is a problem he
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
 from protogen.copying import replace
-from protogen.model.frame import ChoicePart, Cobs, Frame, LiteralPart, PayloadPart
+from protogen.model.frame import ChoicePart, Cobs, Frame, LiteralPart, Part, PayloadPart
 from protogen.model.framing import (
     AfterEnd,
     Anywhere,
@@ -26,12 +26,18 @@ from protogen.model.sizes import SizeSet
 from protogen.passes.context import Context
 from protogen.passes.draft import Draft
 from protogen.passes.framing import framing_words
-from protogen.passes.framing.capacity import GREATEST_FRAME, amount, payload_range, wire_limit
+from protogen.passes.framing.capacity import (
+    GREATEST_FRAME,
+    amount,
+    joined_words,
+    payload_range,
+    wire_limit,
+)
 from protogen.passes.framing.delimiters import delimiters_of, judge_delimiters
 from protogen.passes.framing.silences import character_time
 from protogen.passes.proofs import wire_sizes
 from protogen.passes.proofs.alphabets import payload_alphabet
-from protogen.passes.proofs.codewords import occurs
+from protogen.passes.proofs.codewords import Segment, occurs
 from protogen.passes.proofs.undetected import undetected_errors
 from protogen.passes.proofs.wire_code import (
     SEVEN_BITS,
@@ -286,15 +292,37 @@ class _Analysis:
         )
 
     def can_hold(self, start: Start) -> bool:
-        """True if the start of another form's frame may stand in these."""
+        """True if the start of another form's frame may stand in these, but for their beginning.
+
+        What begins a frame of this form is no false start: a receiver takes it for either.
+        """
         words = start.words if isinstance(start, StartSet) else ()
         if isinstance(start, StartLiteral):
             words = (start.bytes,)
         if all(len(word) == 1 for word in words):
-            used = frozenset().union(*(used for _, used in wire_bytes(self.frame, self._payload)))
-            return not used.isdisjoint(b"".join(words))
-        stretches = segments(self.frame, self._payload, ())
-        return any(occurs(word, b"", stretches, b"") is not None for word in words)
+            used = list(wire_bytes(self.frame, self._payload))
+            return any(
+                word[0] in values
+                for word in words
+                for part, values in used
+                if part not in self._beginning(word)
+            )
+        return any(
+            occurs(word, b"", self._stretches(self._beginning(word)), b"") is not None
+            for word in words
+        )
+
+    def _beginning(self, word: bytes) -> tuple[Part, ...]:
+        """The literals that are this word at the beginning of a frame; none where it can't be."""
+        parts = self.delimiters.head.parts if self.delimiters.head is not None else ()
+        for count in range(1, len(parts) + 1):
+            words = joined_words(parts[:count])
+            if word in words and all(len(other) == len(word) for other in words):
+                return parts[:count]
+        return ()
+
+    def _stretches(self, own: Iterable[Part]) -> list[Segment]:
+        return segments(self.frame, self._payload, [part.name for part in own])
 
     def _payload_sizes(self, start: Start) -> SizeSet:
         # Without a length, unknown messages alone have other sizes than those that are known.

@@ -234,7 +234,8 @@ def _case(switch: Switch, types: Mapping[str, Type], around: Mapping[str, Any]) 
         chosen = value_of(switch.selector, lambda operand: _raw_value(operand, types, around))
     except LookupError:
         return None
-    return next((case.type for case in switch.cases if case.value == chosen), None)
+    case = switch.case(int(chosen))
+    return None if case is None else case.type
 
 
 def _raw_value(operand: Operand, types: Mapping[str, Type], around: Mapping[str, Any]) -> int:

@@ -10,7 +10,7 @@ from protogen.model.messages import Message
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
 from protogen.passes.framing.part_values import number_of
-from protogen.problems import hint_for
+from protogen.problems import did_you_mean, hint_for
 from protogen.schema.syntax.messages import MessageSyntax
 
 _Values = tuple[tuple[str, int], ...]
@@ -30,16 +30,18 @@ def virtual_values(
             parts.setdefault(part.name, {})[sender] = part
     written = syntax.parts or {}
     given: dict[str, int] = {}
+    meant: set[str | None] = set()
     for key, value in written.items():
         if key not in parts:
             _report_unknown(context, (*loc, "parts", key), key, frames, list(parts))
+            meant.add(did_you_mean(key, parts))
             continue
         number = _number(context, (*loc, "parts", key), parts[key], value)
         if number is not None:
             given[key] = number
     for key, by_sender in parts.items():
         lacking = [sender for sender, part in by_sender.items() if part.default is None]
-        if key not in written and lacking:
+        if key not in written and key not in meant and lacking:
             text = f"`{name}` gives `{key}` no value, which goes into the checksum of its frames"
             hint = f"add `parts: {{{key}: VALUE}}`, or give the part a `default`"
             context.error_at_key("PG232", loc, text, hint)

@@ -86,21 +86,39 @@ class Selector(NamedTuple):
     expression: Expression
     type: Integer
     """A type that has just its values, and the names of those."""
+    allowed: Interval
+    """The least and the greatest value that an encoder allows."""
+    special: frozenset[int]
+    """Values out of these bounds that an encoder allows, too."""
+
+    @property
+    def named(self) -> frozenset[int]:
+        """The values that have a name."""
+        enum = self.type.enum
+        return frozenset(entry.value for entry in enum.values) if enum else frozenset()
+
+    def allows(self, value: int) -> bool:
+        """True if an encoder allows the value."""
+        least, greatest = self.allowed
+        is_closed = self.type.is_closed and value not in self.named
+        return not is_closed and (least <= value <= greatest or value in self.special)
 
 
 def selector_of(found: Worked) -> Selector:
     """The expression as what chooses between cases."""
-    item = found.expression
+    item, allowed = found.expression, found.bounds
     if not isinstance(item, Operand):
-        return Selector(item, _type_of(*bounds_of(item, partial(capacity_in, found.fields))))
-    type_ = found.fields[item.name].type
-    assert is_integer(type_)
+        type_ = _type_of(*bounds_of(item, partial(capacity_in, found.fields)))
+        return Selector(item, type_, allowed, frozenset())
+    field = found.fields[item.name]
+    assert is_integer(field.type)
     if item.run is None:
-        return Selector(item, type_)
-    enum = next((run.enum for run in type_.bit_fields if run.name == item.bits), None)
+        special = frozenset(entry.value for entry in field.special)
+        return Selector(item, field.type, allowed, special)
+    enum = next((run.enum for run in field.type.bit_fields if run.name == item.bits), None)
     low, high = item.run
     role: IntegerRole = "bool" if low == high and enum is None else "number"
-    return Selector(item, Integer(bits=high - low + 1, role=role, enum=enum))
+    return Selector(item, Integer(bits=high - low + 1, role=role, enum=enum), allowed, frozenset())
 
 
 def _type_of(least: int, greatest: int) -> Integer:

@@ -44,8 +44,9 @@ def _worked_out(
     if isinstance(found.expression, Number):
         least = greatest = found.expression.value
     if greatest < 0:
-        text = f"`{found.expression.text}` is never more than {greatest}, and counts nothing"
-        context.error("PG203", loc, text)
+        text = f"`{found.expression.text}` is never more than {greatest}"
+        what = "is no number of bytes" if loc[-1] == "size" else "counts nothing"
+        context.error("PG203", loc, f"{text}, and {what}")
         return Fixed(count=0)
     if isinstance(found.expression, Number):
         return Fixed(count=greatest)

@@ -37,6 +37,7 @@ from protogen.passes.types.expressions import Selector, condition, number, selec
 from protogen.passes.types.extents import Written, extent_of
 from protogen.passes.types.field_keys import check_keys, has_one_form
 from protogen.passes.types.named_types import NamedTypes
+from protogen.passes.types.other_cases import ELSE, check_else, hint_at_else, is_else
 from protogen.passes.types.packing import (
     check_packing,
     order_of_elements,
@@ -284,10 +285,12 @@ class FieldBuilder:
             self._case(key, case, (*places, key), selector, item.setting)
             for key, case in item.syntax.cases.items()
         ]
-        known = tuple(case for case in cases if case is not None)
+        found = [case for case in cases if case is not None]
+        known = tuple(sorted(found, key=lambda case: case.value is None))
         self._distinct(known, places)
         if not known:
             return None
+        check_else(self._context, known, selector, item.syntax.cases, places)
         return Switch(
             selector=selector.expression,
             cases=known,
@@ -303,8 +306,11 @@ class FieldBuilder:
     def _rest(self, cases: Sequence[Case], item: Effective) -> int | None:
         """Greatest number of bytes for a value without a case; None where the end is not known.
 
-        Bytes that nobody knows could hold a separator, or begin without one.
+        No value is without one beside `else`. Bytes that nobody knows could hold a separator, or
+        begin without one.
         """
+        if cases[-1].value is None:
+            return None
         separated = item.setting.layout.separator is not None
         ends = item.setting.delimited and item.setting.last and not separated
         self._same_everywhere(ends, item)
@@ -335,10 +341,11 @@ class FieldBuilder:
     def _case(
         self, key: object, item: FieldSyntax, loc: Loc, selector: Selector, setting: Setting
     ) -> Case | None:
-        named = named_raw_value(selector.type, key)
+        named = (None, ELSE) if is_else(key) else named_raw_value(selector.type, key)
         if named is None:
             enum = selector.type.enum
-            hint = hint_for(str(key), [entry.name for entry in enum.values] if enum else [])
+            names = [entry.name for entry in enum.values] if enum else []
+            hint = hint_for(str(key), names) or hint_at_else(key)
             text = f"`{selector.expression.text}` has no value {key}"
             self._context.error_at_key("PG121", loc, text, hint)
             return None
@@ -359,7 +366,7 @@ class FieldBuilder:
         return type_ if isinstance(type_, Struct) else Struct(name=setting.owner, fields=())
 
     def _distinct(self, cases: Sequence[Case], loc: Loc) -> None:
-        seen: set[int] = set()
+        seen: set[int | None] = set()
         for case in cases:
             if case.value in seen:
                 self._context.error("PG121", loc, f"two cases for the value {case.value}")

@@ -15,6 +15,7 @@ from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.parts import PART_CODES
 from protogen.problems.catalogue.silences import SILENCE_CODES
 from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
+from protogen.problems.catalogue.switch_cases import SWITCH_CASE_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
 from protogen.problems.catalogue.trimming import TRIMMING_CODES
@@ -30,6 +31,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *VIRTUAL_PART_CODES,
     *SILENCE_CODES,
     *SIZED_ARRAY_CODES,
+    *SWITCH_CASE_CODES,
     *EXPRESSION_CODES,
     *FRAME_CODES,
     *FRAMING_CODES,

@@ -153,13 +153,14 @@ def _as_list(obj: Any, path: str, stream: BinaryIO) -> list[Any]:
 class Cases(Piece):
     """One of several pieces, chosen by earlier fields.
 
-    A value without a case is parsed by `rest`, or is an error where there is none.
+    The case under None is that of all other values. Without it, a value without a case is parsed by
+    `rest`, or is an error where there is none.
     """
 
     def __init__(
         self,
         selector: str | Formula,
-        cases: Mapping[int, Construct],
+        cases: Mapping[int | None, Construct],
         rest: Construct | None = None,
     ) -> None:
         super().__init__()
@@ -177,7 +178,7 @@ class Cases(Piece):
     def case(self, stream: BinaryIO, context: Any, path: str) -> Any:
         """The piece that the earlier fields choose. Raises PayloadError if there is none."""
         value = said(self._selector, context, path)
-        case = self._cases.get(value, self._rest)
+        case = self._cases.get(value, self._cases.get(None, self._rest))
         if case is None:
             problem = f"there is no case for {self._selector} = {value}"
             raise PayloadError("value", path, stream.tell(), problem)

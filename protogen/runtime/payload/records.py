@@ -267,13 +267,14 @@ class _Absent(NothingRule):
 class SwitchRule(Rule):
     """One of several rules, chosen by the raw values of earlier fields.
 
-    A case of None has no bytes. A value without a case is `rest`, or can't be sent without one.
+    A case of None has no bytes. The case under None is that of all other values; without it, a
+    value without a case is `rest`, or can't be sent.
     """
 
     def __init__(
         self,
         selector: str | Formula,
-        cases: Mapping[int, Rule | None],
+        cases: Mapping[int | None, Rule | None],
         rest: OctetsRule | None = None,
     ) -> None:
         self.selector = selector
@@ -283,9 +284,10 @@ class SwitchRule(Rule):
     def chosen(self, scope: Scope) -> Rule:
         """The rule that the selector chooses. Raises EncodeError if there is none."""
         value = number_of(self.selector, scope.__getitem__)
-        if value in self.cases:
-            return (self.cases[value] or _NOTHING).chosen(scope)
+        key = value if value in self.cases else None
+        if key in self.cases:
+            return (self.cases[key] or _NOTHING).chosen(scope)
         if self.rest is None:
-            known = ", ".join(str(int(case)) for case in self.cases)
+            known = ", ".join(str(int(case)) for case in self.cases if case is not None)
             raise EncodeError("", f"there is no case for {self.selector} = {value}, only {known}")
         return self.rest

@@ -186,7 +186,8 @@ class FieldSyntax(Syntax):
     )
     cases: dict[CaseKey, FieldRef] | None = Field(
         None,
-        description="What the field is for each value (name or number) of the switch.",
+        description="What the field is for each value (name or number) of the switch; under else, "
+        "for all other values.",
     )
     count: Extent | None = Field(
         None,

@@ -153,6 +153,18 @@ Literals = Annotated[
 """Fixed bytes, or several literals of which a frame has one."""
 
 
+def _trimming(value: Any) -> Any:
+    """What was written; a key without a value says as little as another word."""
+    return "" if value is None else value
+
+
+_Trimming = Annotated[
+    Literal["trimmed"] | None,
+    BeforeValidator(_trimming, json_schema_input_type=Literal["trimmed"]),
+]
+"""How zeros at the end of a payload are left out."""
+
+
 class Part(Syntax):
     """One item of a frame. Its keys give its role; the part called `payload` holds the fields."""
 
@@ -215,7 +227,7 @@ class Part(Syntax):
         None,
         description="The part is present only in frames whose payload is not empty.",
     )
-    trailing_zeros: Literal["trimmed"] | None = Field(
+    trailing_zeros: _Trimming = Field(
         None,
         description="Zero bytes at the end of the payload are left out; receivers fill it up "
         "with them: trimmed.",

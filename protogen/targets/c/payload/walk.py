@@ -316,12 +316,15 @@ class Walk:
         number = self.number_of(step.selector)
         with self.lines.switch(f"(uint8_t){number}" if selector.role == "bool" else number):
             for case in step.cases:
-                label = f"case {constant(case.value, selector)}"
+                label = "default"
+                if case.value is not None:
+                    label = f"case {constant(case.value, selector)}"
                 with self.lines.case(label), self.branch():
                     self._chosen(case.step, place)
                     self.end_branch(step)
-            with self.lines.case("default"), self.branch():
-                self._chosen(step.rest, place)
+            if step.otherwise is None:
+                with self.lines.case("default"), self.branch():
+                    self._chosen(step.rest, place)
 
     def optional(self, step: OptionalStep, place: str) -> None:
         """A step that is there only where a condition holds."""

@@ -23,7 +23,7 @@ from protogen.model.payload_plan import (
 from protogen.model.sizes import SizeSet
 from protogen.targets.emitted import EmittedNames
 from protogen.targets.markdown.fields.paths import ROOT, Path
-from protogen.targets.markdown.fields.types import type_text
+from protogen.targets.markdown.fields.types import end_of, type_text
 from protogen.targets.markdown.fields.values import Anchors, range_text, unit_text
 from protogen.targets.markdown.frames.layout import (
     INDICES,
@@ -79,6 +79,8 @@ class _PayloadRows:
         self._payload = payload
         self._anchors = anchors
         self._names = names
+        self._region: RegionStep | None = None
+        """The innermost region of so many bytes around the rows."""
 
     def of_record(self, steps: Sequence[AnyStep], place: Place, path: Path) -> Iterator[Row]:
         for step in steps:
@@ -101,12 +103,17 @@ class _PayloadRows:
                 path = path.element()
                 first = element(place, inner.sizes.fixed, path.shown)
                 if not isinstance(inner, RecordStep):
-                    yield self._row(first, inner.sizes, type_text(inner), code(path.shown))
+                    text = type_text(inner, self._region)
+                    yield self._row(first, inner.sizes, text, code(path.shown))
                 yield from self._inside(inner, first, path)
             case ChooseStep() as choice:
                 yield from self._choice(choice, place, path)
-            case OptionalStep(step=inner) | RegionStep(step=inner):
+            case OptionalStep(step=inner):
                 yield from self._inside(inner, place, path)
+            case RegionStep(step=inner) as region:
+                around, self._region = self._region, region
+                yield from self._inside(inner, place, path)
+                self._region = around
 
     def _packed_fields(self, steps: Sequence[AnyStep], path: Path) -> Iterator[Row]:
         first = 0
@@ -129,31 +136,43 @@ class _PayloadRows:
 
     def _choice(self, step: ChooseStep, place: Place, path: Path) -> Iterator[Row]:
         for case in step.cases:
-            name = f"{code(path.shown)} if {code(step.expression.text)} is {_case_value(case)}"
+            name = f"{code(path.shown)} {_condition(step, case)}"
             inner = path.case(case.name)
             alone = _only_value(case.step)
             if alone is None:
-                yield self._case(case.step, place, name)
+                yield self._case(step, case.step, place, name)
                 yield from self._inside(case.step, place, inner)
             else:
                 # The schema gave the case a type alone; the model makes it a struct of one field.
                 inner = Path(path.shown, inner.field(alone.name).anchor)
-                yield self._field(alone, place, inner, name)
+                sizes = self._filling(step, alone.sizes)
+                yield self._row(place, sizes, *self._cells(alone, inner, name))
                 yield from self._inside(alone, place, inner)
+        if step.otherwise is not None:
+            return
         otherwise, rest = "invalid", SizeSet.exactly(0)
         if step.rest is not None:
             most = plural(step.rest.count.greatest, "byte")
-            otherwise, rest = f"raw bytes to the end, at most {most}", step.rest.sizes
+            otherwise = f"raw bytes to {end_of(self._region)}, at most {most}"
+            rest = self._filling(step, step.rest.sizes)
         yield self._row(place, rest, otherwise, f"{code(path.shown)} otherwise")
 
-    def _case(self, step: AnyStep, place: Place, name: str) -> Row:
-        type_ = type_text(step) if step.sizes.greatest else "nothing"
+    def _filling(self, step: ChooseStep, sizes: SizeSet) -> SizeSet:
+        """Return the sizes of a case that fills the region, if the choice alone lies in one."""
+        region = self._region
+        if region is None or region.step is not step:
+            return sizes
+        return sizes.within(region.region.least, region.region.greatest) or sizes
+
+    def _case(self, choice: ChooseStep, step: AnyStep, place: Place, name: str) -> Row:
+        type_ = type_text(step, self._region) if step.sizes.greatest else "nothing"
         values = meaning = ""
         if isinstance(step, IntegerStep):
             values = bounds(Fraction(step.type.least), Fraction(step.type.greatest))
         if isinstance(step, RecordStep):
             meaning = about_line(step.type.about)
-        return self._row(place, step.sizes, type_, name, "", values, meaning)
+        sizes = self._filling(choice, step.sizes)
+        return self._row(place, sizes, type_, name, "", values, meaning)
 
     def _field(self, step: AnyStep, place: Place, path: Path, name: str) -> Row:
         return self._row(place, step.sizes, *self._cells(step, path, name))
@@ -164,10 +183,12 @@ class _PayloadRows:
         values = range_text(field, path, self._anchors)
         unknown = _UNKNOWN if field.unknown else ""
         meaning = about_line(field.about, unknown, in_code(self._names.field(field.name)))
-        return (type_text(step), name, unit_text(field), values, meaning)
+        return (type_text(step, self._region), name, unit_text(field), values, meaning)
 
     def _row(self, place: Place, sizes: SizeSet, *cells: str) -> Row:
         """Return a row with these cells from that of the type on."""
+        if self._region is not None:
+            sizes = sizes.within(0, self._region.region.greatest) or sizes
         size, payload = sizes.fixed, self._payload
         in_frame = ""
         if payload.start is not None and not place.base:
@@ -183,6 +204,10 @@ def _only_value(step: AnyStep) -> AnyStep | None:
     return None
 
 
-def _case_value(case: CaseStep) -> str:
+def _condition(step: ChooseStep, case: CaseStep) -> str:
+    """Return on which condition there is a case."""
+    if case.value is None:
+        return "otherwise"
     value = code(short_number(case.value))
-    return value if case.name == f"case_{case.value}" else f"{value} {case.name}"
+    name = "" if case.name == f"case_{case.value}" else f" {case.name}"
+    return f"if {code(step.expression.text)} is {value}{name}"

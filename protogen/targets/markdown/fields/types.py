@@ -27,26 +27,33 @@ _BIT_ORDERS = {
 }
 
 
-def type_text(step: AnyStep) -> str:
-    """Print a type with its byte order: ``uint16 LE``."""
+def type_text(step: AnyStep, region: RegionStep | None = None) -> str:
+    """Print a type with its byte order: ``uint16 LE``. It lies in a region, or in none."""
     match step:
         case NumberStep():
             return number_text(step.type)
         case BytesStep():
             name = "ascii" if isinstance(step.type, Text) else "bytes"
-            return _extended(code(name), step.count, "byte")
+            return _extended(code(name), step.count, "byte", region)
         case RepeatStep():
-            return _extended(type_text(step.element), step.count, "element") + _packed(step)
+            element = type_text(step.element, region)
+            return _extended(element, step.count, "element", region) + _packed(step)
         case ConstantStep():
-            return type_text(step.value)
+            return type_text(step.value, region)
         case ChooseStep():
             return f"depends on {code(step.expression.text)}"
         case RecordStep():
             return "struct" + _packed(step)
         case OptionalStep():
-            return f"{type_text(step.step)}, if {code(step.expression.text)}"
+            return f"{type_text(step.step, region)}, if {code(step.expression.text)}"
         case RegionStep():
-            return f"{type_text(step.step)}, in {_region(step.region)}"
+            inner = type_text(step.step, step)
+            return inner if step.step.fills else f"{inner}, in {_region(step.region)}"
+
+
+def end_of(region: RegionStep | None) -> str:
+    """Print the end of what is left: that of a region, or of the payload."""
+    return "the end" if region is None else f"the end of {_region(region.region)}"
 
 
 def _region(region: Count) -> str:
@@ -106,12 +113,12 @@ def _digits_of_free(form: FreeNumeral) -> str:
     return front if form.base == 10 else f"{front} ({'upper' if form.upper else 'lower'} case)"
 
 
-def _extended(element: str, count: Count, noun: str) -> str:
+def _extended(element: str, count: Count, noun: str, region: RegionStep | None) -> str:
     if count.is_delimited:
         amount = plural(count.greatest, noun)
         amount = f"{count.least} to {amount}" if count.least else f"at most {amount}"
-        end = "to the end" if count.until is None else f"up to {code(f'{count.until:02X}')}"
-        return f"{element} {end}, {amount}"
+        end = f"up to {code(f'{count.until:02X}')}" if count.until is not None else ""
+        return f"{element} {end or f'to {end_of(region)}'}, {amount}"
     if count.expression is not None:
         return f"{element} x {code(count.expression.text)}"
     return element if noun == "byte" else f"{element} x {count.known}"

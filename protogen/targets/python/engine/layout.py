@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
+    CaseStep,
+    ChooseStep,
     Count,
     FloatStep,
     IntegerStep,
@@ -143,3 +145,15 @@ def outer_names(struct: Struct) -> tuple[str, ...]:
 def outer_parameters(struct: Struct) -> dict[str, str]:
     """The parameters that stand for them."""
     return {name: f"{name.replace('.', '__')}_" for name in outer_names(struct)}
+
+
+def patterns(step: ChooseStep) -> Iterator[tuple[str, CaseStep | None]]:
+    """Yield what the cases of a choice match, with each case; None for those without bytes."""
+    empty = [str(case.value) for case in step.cases if case.is_empty and case.value is not None]
+    if empty:
+        yield " | ".join(empty), None
+    for case in step.cases:
+        if case.value is None:
+            yield "_", None if case.is_empty else case
+        elif not case.is_empty:
+            yield str(case.value), case

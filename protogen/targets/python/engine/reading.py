@@ -39,6 +39,7 @@ from protogen.targets.python.engine.layout import (
     outer_parameters,
     outside,
     outside_of,
+    patterns,
 )
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.packing import Record, unpack_record
@@ -347,16 +348,15 @@ class _Reader(Converter, Raw):
         self.lines.add(f"{value}: _typing.Any = None")
         # Python compiles only so many levels of `elif`; a `match` of any length is one level.
         with self.lines.block(f"match {selector}:"):
-            empty = [str(case.value) for case in step.cases if case.is_empty]
-            if empty:
-                with self.lines.block(f"case {' | '.join(empty)}:"):
-                    self.lines.add("pass")
-            for case in step.cases:
-                if not case.is_empty:
-                    with self.lines.block(f"case {case.value}:"):
+            for pattern, case in patterns(step):
+                with self.lines.block(f"case {pattern}:"):
+                    if case is None:
+                        self.lines.add("pass")
+                    else:
                         self._case(value, case.step)
-            with self.lines.block("case _:"):
-                self._rest(value, step.rest)
+            if step.otherwise is None:
+                with self.lines.block("case _:"):
+                    self._rest(value, step.rest)
         return value
 
     def _optional(self, step: OptionalStep) -> str:

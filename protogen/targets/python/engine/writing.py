@@ -38,6 +38,7 @@ from protogen.targets.python.engine.layout import (
     outer_parameters,
     outside,
     outside_of,
+    patterns,
 )
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.packing import Record, packed, packed_record
@@ -395,21 +396,20 @@ class _Writer(Raw):
         data = self.lines.local("case")
         selector = in_python(step.expression, self.raw_of)
         with self.lines.block(f"match {selector}:"):
-            empty = [str(case.value) for case in step.cases if case.is_empty]
-            if empty:
-                with self.lines.block(f"case {' | '.join(empty)}:"):
-                    self.lines.refuse_if(f"{value} is not None")
-                    self.lines.add(f'{data} = b""')
-            for case in step.cases:
-                if not case.is_empty:
-                    with self.lines.block(f"case {case.value}:"):
+            for pattern, case in patterns(step):
+                with self.lines.block(f"case {pattern}:"):
+                    if case is None:
+                        self.lines.refuse_if(f"{value} is not None")
+                        self.lines.add(f'{data} = b""')
+                    else:
                         self.lines.add(f"{data} = {self._apart(value, case.step, None)}")
-            with self.lines.block("case _:"):
-                if step.rest is None:
-                    self.lines.add("raise _fast.NeedsReference")
-                else:
+            if step.rest is not None:
+                with self.lines.block("case _:"):
                     self._rest(value, step.rest)
                     self.lines.add(f"{data} = {value}")
+            elif step.otherwise is None:
+                with self.lines.block("case _:"):
+                    self.lines.add("raise _fast.NeedsReference")
         self._bytes.piece(data)
 
     def _optional(self, value: str, step: OptionalStep) -> None:
