@@ -18,6 +18,7 @@ from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case, cases
 from protogen.library import FOLDER
+from protogen.model.frame_plan import EndRule
 from protogen.runtime.attributes import arguments
 
 FRAMES = 500
@@ -40,7 +41,7 @@ class Peer(Protocol):
         """Decode a frame of the message of a case."""
 
     def found(self, endpoint: str, data: bytes) -> Iterable[bytes]:
-        """Yield the frames that it finds in a stream, in order."""
+        """Yield the frames that it finds in a stream, or between two silences, in order."""
 
 
 def peer_module(name: str) -> ModuleType:
@@ -107,17 +108,20 @@ def compare_recovery(
 ) -> None:
     """Of a stream with damaged bytes, no frame is lost that the peer finds.
 
-    `shared` is the delimiter that may both end a frame and begin the next one.
+    `shared` is the delimiter that may both end a frame and begin the next one. Where a silence ends
+    frames, there is one behind each.
     """
-    engine = engine_of(name)
     dice = Random(name)
     drawn = [case for case in drawn if endpoint_of(name, case) == endpoint]
     frames = [encoded(name, case) for case in drawn]
     dice.shuffle(frames)
-    data = damaged(b"".join(frames), dice)
+    bursts = [
+        damaged(burst, dice)
+        for burst in (frames if ends_idle(name, drawn[0]) else [b"".join(frames)])
+    ]
     sent = Counter(frames)
-    ours = Counter(found(engine, drawn[0].sender, data, shared)) & sent
-    theirs = Counter(peer.found(endpoint, data)) & sent
+    ours = Counter(found(name, endpoint, bursts, shared)) & sent
+    theirs = Counter(frame for burst in bursts for frame in peer.found(endpoint, burst)) & sent
     assert theirs <= ours, [frame.hex(" ") for frame in theirs - ours]
     assert len(frames) / 10 < ours.total() < len(frames)
     assert theirs
@@ -128,11 +132,19 @@ def damaged(data: bytes, dice: Random) -> bytes:
     return bytes(byte ^ dice.randrange(1, 256) if dice.random() < ERRORS else byte for byte in data)
 
 
-def found(engine: PythonEngine, sender: str, data: bytes, shared: bytes = b"") -> Iterator[bytes]:
-    """Yield the frames of known messages that we find in a stream, in all forms of the endpoint."""
-    at = 0
-    for event in engine.events(sender, [data]):
-        if event.kind == "message":
-            frame = data[at : at + event.size]
-            yield frame if frame.startswith(shared) else shared + frame
-        at += event.size
+def ends_idle(name: str, case: Case) -> bool:
+    """True if only a silence ends the frame of a case."""
+    plan = protocol_of(FOLDER / f"{name}.yaml").sender(case.sender).plan
+    return plan.end_rule is EndRule.IDLE
+
+
+def found(name: str, endpoint: str, bursts: Iterable[bytes], shared: bytes) -> Iterator[bytes]:
+    """Yield the frames of known messages that we find, in all forms of the endpoint.
+
+    There is a silence behind each burst.
+    """
+    decoder = module_at(FOLDER / f"{name}.yaml").Decoder(endpoint, engine="construct")
+    for burst in bursts:
+        for event in (*decoder.feed(burst), *decoder.idle()):
+            if event.kind == "message":
+                yield event.raw if event.raw.startswith(shared) else shared + event.raw

@@ -348,6 +348,16 @@ def test_the_silence_that_ends_frames_goes_before_that_of_the_line(tmp_path: Pat
     assert kinds(str(path), "--input", "log", "--timed", input=log) == found
 
 
+def test_frames_without_the_silences_between_them_are_told_of_with_a_hint(tmp_path: Path) -> None:
+    path = tmp_path / "bus.yaml"
+    path.write_text(IDLE)
+    hint = "hint: only a silence ends a frame of station; --timed takes it from a log with times\n"
+    assert run("decode", str(path), "--hex", "0101 0101").stderr == hint
+    assert run("decode", str(path), "--hex", "0101").stderr == ""
+    log = "(1) bus0 02\n(2) bus0 01 01\n"
+    assert run("decode", str(path), "--input", "log", "--timed", input=log).stderr == ""
+
+
 def test_bytes_of_a_line_without_a_time_are_decoded_and_complained_of(meter: str) -> None:
     result = run("decode", meter, "--tagged", "--timed", input=f"pump meter: {LEVEL}\n")
     assert result.exit_code == 1

@@ -135,6 +135,18 @@ def test_c_finds_the_same(path: Path, sender: str, events: Any) -> None:
     check_events(process, module_at(path), sender, [*steps, ("flush",)])
 
 
+@EVERY_SENDER
+def test_both_engines_find_the_same(path: Path, sender: str) -> None:
+    material, dice = material_of(path, sender), Random(sender)
+    fast, slow = (module_at(path).Decoder(sender, engine=name) for name in ("fast", "construct"))
+    for _ in range(150):
+        wrong = damaged(dice.choice(list(DAMAGES)), dice.choice(material.frames), material, dice)
+        burst = wrong * dice.randrange(1, 4) + dice.choice((b"", dice.choice(material.frames)))
+        pieces = (burst[:3], burst[3:]) if dice.random() < 0.5 else (burst,)
+        found = [event for piece in pieces for event in fast.feed(piece)] + fast.idle()
+        assert found == slow.feed(burst) + slow.idle()
+
+
 # --- what is planned and told ---------------------------------------------------------------------
 
 

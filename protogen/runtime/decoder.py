@@ -8,6 +8,7 @@ from typing import Generic, Literal
 
 from protogen.runtime.errors import PayloadFault, Reason
 from protogen.runtime.events import Event, InvalidEvent, frame_event
+from protogen.runtime.framing.damage import IdleJudge, idle_judge_of
 from protogen.runtime.framing.forms import (
     FormsCandidate,
     FormsCutter,
@@ -58,6 +59,8 @@ class _Search(Generic[MessageT_co, PartsT_co]):
     starts: Starts | FormStarts
     cutter: PlainCutter[MessageT_co, PartsT_co] | FormsCutter | None
     """Takes what is plainly in order; None where only the reference does."""
+    idle_judge: IdleJudge | None
+    """Judges what begins in front of a silence; None where only the reference does."""
 
     def __init__(
         self, senders: Sequence[SenderSpec[MessageT_co, PartsT_co]], engine: Engine
@@ -67,7 +70,9 @@ class _Search(Generic[MessageT_co, PartsT_co]):
             cut = senders[0].cut if engine == "fast" else None
             self.starts = starts_of(senders[0].frame)
             self.cutter = None if cut is None else PlainCutter(senders[0], cut, self.starts)
+            self.idle_judge = idle_judge_of(senders[0]) if engine == "fast" else None
             return
+        self.idle_judge = None
         check_together(senders)
         self._forms = FormStarts(senders)
         self.starts = self._forms
@@ -331,6 +336,10 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
             return True
         if self._plain_cut is not None:
             self._failure = self._plain_cut.verdict(self._data, start, is_all=final)
+            if self._failure is not None:
+                return True
+        elif final and self._search.idle_judge is not None:
+            self._failure = self._search.idle_judge.verdict(self._data, start, -1, is_all=True)
             if self._failure is not None:
                 return True
         self._wanted = 0 if final else self._wanted_at(start)

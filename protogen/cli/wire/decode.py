@@ -23,7 +23,7 @@ from protogen.cli.wire.capture import (
 )
 from protogen.cli.wire.complaints import Complaints
 from protogen.cli.wire.line_times import LineTimes
-from protogen.cli.wire.silences import Silences
+from protogen.cli.wire.silences import Silences, ends_of_frames
 from protogen.cli.wire.tagged import Complain, Piece, tagged_pieces
 from protogen.convert.inputs.hex_digits import parse_hex
 
@@ -95,7 +95,16 @@ def decode(  # noqa: PLR0913 - each option is one argument
                 show(event)
             sys.stdout.flush()
     complaints.report()
+    if has_invalid and not timed:
+        _hint_at_silences(codec)
     return FINDINGS if complaints.count or (strict and has_invalid) else CLEAN
+
+
+def _hint_at_silences(codec: Codec) -> None:
+    """Say what may be wrong where frames end by silences, and none was told of."""
+    if ended := ends_of_frames(codec.protocol):
+        text = f"only a silence ends a frame of {', '.join(ended)}; --timed takes it from a log"
+        typer.echo(f"hint: {text} with times", err=True)
 
 
 # --- in -------------------------------------------------------------------------------------------

@@ -27,7 +27,7 @@ class Silences:
 
         Raises UsageError where there is neither.
         """
-        link, ends = protocol.link, _ends(protocol)
+        link, ends = protocol.link, ends_of_frames(protocol)
         if link.idle_timeout is None and not ends:
             raise UsageError(
                 "the schema does not say which silence ends a frame",
@@ -63,7 +63,7 @@ class Silences:
         return passed >= silence * _SECOND
 
 
-def _ends(protocol: Protocol) -> dict[str, Fraction]:
+def ends_of_frames(protocol: Protocol) -> dict[str, Fraction]:
     """The silence that ends a frame of each endpoint whose frames one ends."""
     silences: dict[str, Fraction] = {}
     for sender in protocol.senders:

@@ -48,6 +48,16 @@ def judge_of(sender: SenderSpec[Any, Any]) -> Judge | None:
     return SliceJudge(sender) if is_plain and _is_stuffed_plainly(sender) else None
 
 
+def idle_judge_of(sender: SenderSpec[Any, Any]) -> IdleJudge | None:
+    """The judge of what a silence ends; None where only the reference can judge it."""
+    layout = sender.layout
+    sums_alone = all(isinstance(p, ChecksumPart) and not p.when_payload for p in layout.tail)
+    is_plain = sums_alone and bool(layout.checksums) and layout.length is None
+    if not (layout.ends_idle and is_plain) or layout.has_wire_checksum or layout.stuffed:
+        return None
+    return IdleJudge(sender)
+
+
 def _is_stuffed_plainly(sender: SenderSpec[Any, Any]) -> bool:
     """True if nothing is stuffed, or all between start and end, in one way only."""
     layout, stuffing = sender.layout, sender.frame.transparency
@@ -191,6 +201,21 @@ class SizeJudge(Judge):
             return self._of_whole(content, size, limit)
         problem = "the input ends inside the frame"
         return Failure(len(content), "truncated", problem) if is_all else None
+
+
+class IdleJudge(Judge):
+    """Judge of frames that only a silence ends: what is in front of it is all of a candidate."""
+
+    def verdict(self, data: bytes, start: int, end: int, *, is_all: bool) -> Failure | None:
+        """The verdict on the candidate that starts there."""
+        content = data[start:]
+        size = len(content) - self._around
+        if not is_all or size < 0 or len(content) > self._greatest:
+            return None
+        numbers = self._numbers(content[: self._layout.head_size])
+        if numbers is None or not self._may_hold(content, size) or not self._fits(size, numbers):
+            return None
+        return self._of_whole(content, size, len(content))
 
 
 class SliceJudge(Judge):
