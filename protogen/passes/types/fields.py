@@ -266,7 +266,7 @@ class FieldBuilder:
         if isinstance(syntax.until, Until) and syntax.size is None:
             self._expansion.vary()
             return until_of(self._context, syntax.until, item.at("until"), item.setting)
-        if syntax.size is None:
+        if syntax.size is None and syntax.until is None:
             text = f"{syntax.type} needs a `size`: a number, an earlier field, or fill"
             hint = "or a terminator that ends it: `until: 0`"
             self._context.error_at_key("PG110", item.chain[0][1], text, hint)

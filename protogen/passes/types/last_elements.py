@@ -28,6 +28,10 @@ def check_last_element(context: Context, name: str, item: Effective) -> None:
         text = f"a field of the last element ends an array of structs; `{name}` has no fields"
         hint = "give the elements `fields`, or name a type that has some"
         context.error_at_key("PG265", loc, text, hint)
+    elif item.setting.layout.separator is not None:
+        text = f"`{name}` has fields that are text, and ends where its last separator does"
+        hint = "take as many as there are, `count: fill`, or count them"
+        context.error_at_key("PG265", loc, text, hint)
     elif syntax.count is not None or syntax.size is not None:
         key = "size" if syntax.count is None else "count"
         text = f"the last element ends `{name}`, so nothing else says how many there are"

@@ -13,7 +13,8 @@ LAST_ELEMENT_CODES: tuple[Code, ...] = (
         """\
 `until: {element: NAME}` makes an array of a struct: it ends with the first element in which that
 field is not 0. Only structs have fields that can say so. Nothing else says how many elements there
-are, neither a `count` nor a `size`. A text or bytes end in front of a byte: `until: 0`.
+are, neither a `count` nor a `size`, and beside separators numbers are text. A text or bytes end in
+front of a byte: `until: 0`.
 """,
         with_fields("hops: {count: 3, until: {element: last}, fields: {last: bool, to: uint8}}"),
         with_fields(
