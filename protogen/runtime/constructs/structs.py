@@ -156,7 +156,7 @@ class UpToLast(Around):
         elements: list[Any] = []
         while not elements or not self._is_last(elements[-1]):
             if len(elements) == self._greatest:
-                problem = f"none of {self._greatest} elements says by {self._mark} that it is last"
+                problem = f"no {self._mark} of {self._greatest} elements says that it is the last"
                 raise PayloadError("size", path, stream.tell(), problem)
             place = f"{path} -> [{len(elements)}]"
             elements.append(self.subcon._parsereport(stream, context, place))
