@@ -318,11 +318,11 @@ def _array(draw: st.DrawFn, type_: Array, field: Field | None, scope: Scope) -> 
         return [few[index % 3] for index in range(count)]
     found = [draw(elements) for _ in range(count)]
     if isinstance(type_.extent, Marked):
-        _mark_last(type_.extent.mark, found)
+        _mark_last(type_, type_.extent.mark, found)
     return found
 
 
-def _mark_last(mark: Operand, elements: list[dict[str, Any]]) -> None:
+def _mark_last(type_: Array, mark: Operand, elements: list[dict[str, Any]]) -> None:
     """Have the last of the elements say that it is the last, and no other."""
     *outer, name = mark.path
     for index, element in enumerate(elements):
@@ -331,12 +331,23 @@ def _mark_last(mark: Operand, elements: list[dict[str, Any]]) -> None:
         if isinstance(record[name], bool):
             record[name] = is_last
         elif mark.run is None:
-            record[name] = (record[name] or 1) if is_last else 0
+            record[name] = (record[name] or _other_than_zero(type_, mark)) if is_last else 0
         else:
             low, high = mark.run
             bits = sum(1 << bit for bit in range(low, high + 1))
             record[name] &= ~bits
             record[name] |= bits if is_last else 0
+
+
+def _other_than_zero(type_: Array, mark: Operand) -> int:
+    """A value that the last element may have."""
+    found: Type = type_.element
+    for name in mark.path:
+        assert isinstance(found, Struct)
+        found = next(field.type for field in found.fields if field.name == name)
+    assert isinstance(found, Integer)
+    closed = found.enum.values if found.enum is not None and found.enum.closed else ()
+    return next((item.value for item in closed if item.value), 1)
 
 
 @st.composite
