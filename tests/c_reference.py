@@ -25,6 +25,7 @@ from protogen.model.types import (
     Fixed,
     Float,
     Integer,
+    Marked,
     Octets,
     Struct,
     Switch,
@@ -176,7 +177,7 @@ class _Reader:
     def _count(self, extent: Extent, scope: Scope, *, constant: bool) -> int | None:
         if isinstance(extent, Fixed):
             return extent.count
-        if isinstance(extent, Fill | Until):
+        if isinstance(extent, Fill | Until | Marked):
             return None
         count = worked_out(extent.by, scope)
         if not constant:
@@ -217,12 +218,25 @@ class _Reader:
         if count is not None:
             return [self._value(type_.element, scope) for _ in range(count)]
         found: list[Any] = []
+        if isinstance(type_.extent, Marked):
+            return self._up_to_last(type_.element, type_.extent, scope)
         assert isinstance(type_.extent, Fill)
         while self._left:
             if len(found) == type_.extent.greatest:
                 raise Wrong("size")
             found.append(self._value(type_.element, scope))
         if len(found) < type_.extent.least:
+            raise Wrong("size")
+        return found
+
+    def _up_to_last(self, element: Type, extent: Marked, scope: Scope) -> list[Any]:
+        """Elements up to the first that says that it is the last."""
+        found: list[Any] = []
+        while not found or not worked_out(extent.mark, found[-1]):
+            if len(found) == extent.greatest:
+                raise Wrong("size")
+            found.append(self._value(element, scope))
+        if len(found) < extent.least:
             raise Wrong("size")
         return found
 

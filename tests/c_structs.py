@@ -21,6 +21,7 @@ from protogen.model.types import (
     Fixed,
     Float,
     Integer,
+    Marked,
     Octets,
     Struct,
     Switch,
@@ -58,7 +59,7 @@ def _members(fields: Sequence[Field], field: Field) -> list[tuple[str, Any]]:
     if field.const is not None:
         return []
     found = []
-    if isinstance(_extent(field.type), Fill | Until):
+    if isinstance(_extent(field.type), Fill | Until | Marked):
         found.append((count_name(fields, field), _counting(_extent(field.type))))
     if has_room(field.type):
         found.append((field.name, _type(field.type)))
@@ -158,7 +159,7 @@ def fill(record: Any, fields: Sequence[Field], values: Mapping[str, Any], scope:
             inner[field.name] = value
         if field.const is not None:
             continue
-        if isinstance(_extent(field.type), Fill | Until):
+        if isinstance(_extent(field.type), Fill | Until | Marked):
             size = len(value) // (2 if isinstance(field.type, Octets) else 1)
             _set(record, count_name(fields, field), size)
         if has_room(field.type):
@@ -239,7 +240,7 @@ def read(record: Any, fields: Sequence[Field], scope: Scope) -> Values:
             found[field.name] = _shown(field.type, field.const)
         else:
             count = 0
-            if isinstance(_extent(field.type), Fill | Until):
+            if isinstance(_extent(field.type), Fill | Until | Marked):
                 count = getattr(record, count_name(fields, field))
             found[field.name] = _take(record, field.name, field.type, count, inner)
         if isinstance(field.type, Integer | Struct):
@@ -285,7 +286,7 @@ def _count(extent: Extent, count: int, scope: Scope) -> int:
     match extent:
         case Fixed(count=number):
             return number
-        case Fill() | Until():
+        case Fill() | Until() | Marked():
             return count
         case _:
             return worked_out(extent.by, scope)

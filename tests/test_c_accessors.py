@@ -12,7 +12,7 @@ from test_c_codecs import FLAGS, MACHINES, SAMPLERS, Case, run
 from tooling import require_compiler, require_tool
 
 from protogen.model.payload_builder import plan_of
-from protogen.model.types import Array, Field, Fill, Fixed, Struct
+from protogen.model.types import Array, Field, Fill, Fixed, Marked, Struct
 from protogen.targets.c.emit import unit_of
 from protogen.targets.c.formulas import FormulaPrinter
 from protogen.targets.c.options import COptions
@@ -118,7 +118,7 @@ def count_of(fields: tuple[Field, ...], field: Field, names: Names) -> str:
     extent = field.type.extent
     if isinstance(extent, Fixed):
         return f"{extent.count}u"
-    if isinstance(extent, Fill):
+    if isinstance(extent, Fill | Marked):
         return f"message.{count_name(fields, field)}"
     count = next(step.count for step in plan_of(fields).steps if step.field is field)
     assert count is not None

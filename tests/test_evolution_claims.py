@@ -266,6 +266,47 @@ class TestTerminators:
         }
 
 
+class TestLastElements:
+    """What becomes of messages with lists whose last element says so."""
+
+    BEFORE = "  order: {id: 2, from: host, fields: {mode: mode}}\n"
+    FIELDS = "fields: {a: uint8, flags: {type: uint8, flags: {end: 0, last: 7}}}"
+
+    def pair(self, folder: Path, *forms: str) -> list[Protocol]:
+        after = "  order: {id: 2, from: host, fields: {list: {FORM}, x: uint16}}\n"
+        return [
+            compiled(
+                folder / f"{index}.yaml", SCHEMA.replace(self.BEFORE, after.replace("FORM", form))
+            )
+            for index, form in enumerate(forms)
+        ]
+
+    @pytest.mark.parametrize(
+        ("form", "rule"),
+        [
+            (f"until: {{element: flags.end, max: 4}}, {FIELDS}", "field-encoding"),
+            (f"count: 3, {FIELDS}", "field-encoding"),
+            (f"until: {{element: flags.last, max: 3}}, {FIELDS}", "field-count"),
+            (f"until: {{element: flags.last, min: 2, max: 4}}, {FIELDS}", "field-count"),
+        ],
+    )
+    def test_frames_show_what_changed(self, form: str, rule: str, tmp_path: Path) -> None:
+        base = f"until: {{element: flags.last, max: 4}}, {self.FIELDS}"
+        old, new = self.pair(tmp_path, base, form)
+        found = [item for item in findings(old, new)[1] if item.category.value == "WIRE"]
+        assert rule in {item.rule.name for item in found}
+        assert all(item.witnesses for item in found)
+
+    def test_another_name_of_what_says_so_changes_no_byte(self, tmp_path: Path) -> None:
+        old, new = self.pair(
+            tmp_path,
+            f"until: {{element: flags.last, max: 4}}, {self.FIELDS}",
+            "until: {element: bits.done, max: 4}, fields: {a: uint8, bits: "
+            "{type: uint8, flags: {end: 0, done: 7}, renamed_from: flags}}",
+        )
+        assert {item.category.value for item in findings(old, new)[1]} == {"SOURCE"}
+
+
 class TestCases:
     def test_each_case_has_a_frame_that_selects_it(self, tmp_path: Path) -> None:
         old = "  order: {id: 2, from: host, fields: {mode: mode}}\n"

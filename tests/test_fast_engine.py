@@ -544,6 +544,7 @@ CUT_BY_THE_REFERENCE = {
     ("checksum_only", "station"),
     ("idle_end", "station"),
     ("sequences_marked", "station"),  # What was put in has to be found.
+    ("last_elements_alone", "device"),
     ("terminated_alone", "device"),
     *SENT_BY_THE_REFERENCE,
 } - {("mavlink_like", "craft_plain")}

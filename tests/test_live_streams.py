@@ -125,8 +125,10 @@ AWAITED_BY_THE_REFERENCE = {
     ("told_numbers", "station"),
     ("told_presence", "station"),
     ("terminated", "station"),
+    ("last_elements", "station"),
     ("sized_arrays", "station"),
     ("regions", "station"),
+    ("last_elements_alone", "device"),
     ("terminated_alone", "device"),  # Nothing marks where these frames start.
 }
 

@@ -42,7 +42,12 @@ from protogen.runtime.framing.starts import starts_of
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
 SEEDS = range(max(10, settings().max_examples // 6))
 PIECES = 60
-PEAKS = {"packed_bits": 70_000, "terminated_alone": 400_000, "told_regions": 200_000}
+PEAKS = {
+    "packed_bits": 70_000,
+    "terminated_alone": 400_000,
+    "last_elements_alone": 400_000,
+    "told_regions": 200_000,
+}
 """Bytes while a portion of noise is decoded. The first has the smallest frames; the others look at
 the payload again with each byte, and what these looks leave is collected later."""
 BY_CHANCE = {

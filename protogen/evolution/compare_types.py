@@ -20,6 +20,7 @@ from protogen.model.types import (
     Fixed,
     Float,
     Integer,
+    Marked,
     Octets,
     Struct,
     Switch,
@@ -59,7 +60,7 @@ class TypeComparison:
             case _ if type(old) is not type(new) and _bytes(old) == _bytes(new) is not None:
                 yield self._report("field-kind", path, named(old.label, new.label))
             case Array(), Array():
-                yield from self._extents(old.extent, new.extent, path)
+                yield from self._extents(_with_new_names(old, new), new.extent, path)
                 yield from self._packing(old, new, path)
                 yield from self.compare(old.element, new.element, path)
             case Struct(), Struct():
@@ -115,7 +116,7 @@ class TypeComparison:
             old = replace(old, by=self.now(old.by))
         if old == new:
             return
-        ends = [extent.byte if isinstance(extent, Until) else None for extent in (old, new)]
+        ends = [_end(extent) for extent in (old, new)]
         rule = "field-count" if ends[0] == ends[1] else "field-encoding"
         yield self._report(rule, path, named(_amount(old), _amount(new)))
 
@@ -323,6 +324,29 @@ def _bytes(kind: Type) -> tuple[Extent, int] | None:
     return None
 
 
+def _end(extent: Extent) -> int | Operand | None:
+    """What ends bytes or elements where neither a number nor the payload does."""
+    match extent:
+        case Until():
+            return extent.byte
+        case Marked():
+            return extent.mark
+    return None
+
+
+def _with_new_names(old: Array, new: Array) -> Extent:
+    """The old extent with the new names of members of an element that were renamed."""
+    if not isinstance(old.extent, Marked):
+        return old.extent
+    names, element = list[str](), new.element
+    for name in old.extent.mark.path:
+        fields = element.fields if isinstance(element, Struct) else ()
+        found = next((it for it in fields if name in (it.name, it.renamed_from)), None)
+        names.append(found.name if found is not None else name)
+        element = found.type if found is not None else element
+    return replace(old.extent, mark=replace(old.extent.mark, path=tuple(names)))
+
+
 def _packed(order: BitOrder | None) -> str:
     return "whole bytes" if order is None else f"packed bits, {order}"
 
@@ -341,9 +365,11 @@ def _amount(extent: Extent) -> str:
             return f"{_bounds(extent)}, to the end"
         case Until():
             return f"{_bounds(extent)}, in front of {extent.byte:02X}"
+        case Marked():
+            return f"{_bounds(extent)}, to the first whose {extent.mark.label} is not 0"
 
 
-def _bounds(extent: Fill | Until) -> str:
+def _bounds(extent: Fill | Until | Marked) -> str:
     return f"{extent.least} to {extent.greatest}" if extent.least else f"up to {extent.greatest}"
 
 

@@ -73,7 +73,7 @@ _MODULES = (
 
 _NOW = {before: name for name, before in CALLED.items()}
 """Names of members that were called otherwise."""
-_NAMES = frozenset({"by", "selector", "when", "left", "right", "operand"})
+_NAMES = frozenset({"by", "mark", "selector", "when", "left", "right", "operand"})
 """Members that are expressions."""
 
 

@@ -25,6 +25,7 @@ from protogen.fuzzing.choices import (
     scalar_choices,
     unspecified_choices,
 )
+from protogen.fuzzing.last_elements import Mark
 from protogen.model.expression_bounds import linear
 from protogen.model.frame import Frame
 from protogen.model.messages import Message
@@ -197,15 +198,19 @@ class _Sampler:
         self._records: list[Values] = []
         self._said_of: set[tuple[int, str]] = set()
         """Numbers that told something already, by their records."""
+        self._mark: Mark | None = None
+        """What the next record says of being the last, where it has to."""
 
     def record(self, steps: tuple[AnyStep, ...], chooser: Chooser) -> Values:
         """The values of a record."""
-        level = len(self._records)
+        level, mark, self._mark = len(self._records), self._mark, None
         needs = needs_of(steps, level)
         values: Values = {}
         self._records.append(values)
         for step in steps:
             values[step.name] = self._value(step, chooser, needs.get((level, step.name)))
+            if mark is not None and step.name == mark.operand.path[0]:
+                mark.set_in(values, steps)
         self._records.pop()
         return values
 
@@ -249,6 +254,7 @@ class _Sampler:
         values: list[Any] = []
         while len(values) < length or (count.fills and self.size < self._sizes.least):
             before = self.size
+            self._mark = Mark.of(count, is_last=len(values) == length - 1)
             value = self._value(step.element, chooser.element(len(values)))
             if count.fills and (self.size > self._sizes.greatest or self.size == before):
                 self.size = before  # There is no room for it, or it takes none.
@@ -306,6 +312,8 @@ class _Sampler:
     def _lengths(self, count: Count, size: int) -> tuple[int, int]:
         """The least and the greatest number of elements that have at least `size` bytes."""
         least, greatest = lengths_of(count, 0 if count.by is None else self._said(count, count.by))
+        if count.mark is not None and size:
+            greatest = min(greatest, max(least, (self._sizes.greatest - self.size) // size))
         if count.fills and size:
             greatest = min(greatest, max(0, self._sizes.greatest - self.size) // size)
             needed = -(min(0, self.size - self._sizes.least) // size)

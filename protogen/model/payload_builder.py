@@ -40,6 +40,7 @@ from protogen.model.types import (
     Fixed,
     Float,
     Integer,
+    Marked,
     Octets,
     Struct,
     Switch,
@@ -228,7 +229,7 @@ class _Builder:
     def _repeat(
         self, field: Field, type_: Array, name: str, is_last: bool, member: str
     ) -> RepeatStep:
-        element = self._step(field, type_.element, "", is_last=False)
+        element = self._element(field, type_)
         packing = packing_of(type_)
         checks = element.checks | _count_checks(type_.extent) | packing_checks(packing)
         return RepeatStep(
@@ -241,9 +242,18 @@ class _Builder:
             is_last=is_last,
             type=type_,
             element=element,
-            count=self._count(type_.extent, member),
+            count=self._count(type_.extent, member, type_.element),
             packing=packing,
         )
+
+    def _element(self, field: Field, type_: Array) -> AnyStep:
+        """The step of an element, of which a member may say that it is the last."""
+        needed = self._needed
+        if isinstance(type_.extent, Marked):
+            self._needed = frozenset({f".{type_.extent.mark.name}"})
+        step = self._step(field, type_.element, "", is_last=False)
+        self._needed = needed
+        return step
 
     def _choose(self, field: Field, type_: Switch, name: str, is_last: bool) -> ChooseStep:
         cases = tuple(self._case(field, case, is_last) for case in type_.cases)
@@ -267,11 +277,23 @@ class _Builder:
         step = self._step(field, case.type, case.name, is_last)
         return CaseStep(value=case.value, name=case.name, step=step)
 
-    def _count(self, extent: Extent, member: str) -> Count:
+    def _mark(self, extent: Extent, element: Type | None) -> Formula | None:
+        """The formula of what says that an element is the last."""
+        if not isinstance(extent, Marked):
+            return None
+        type_ = element
+        for name in extent.mark.path:
+            assert isinstance(type_, Struct)
+            type_ = next(item.type for item in type_.fields if item.name == name)
+        assert isinstance(type_, Integer)
+        name = extent.mark.name
+        return Formula(extent.mark, {name: Reference(name, self._level + 1, type_)})
+
+    def _count(self, extent: Extent, member: str, element: Type | None = None) -> Count:
         counts, number = extent.counts, None
         if isinstance(extent, Counted):
             number = self._formula(extent.by)
-        known = None if isinstance(extent, Fill | Until) else counts.fixed
+        known = None if isinstance(extent, Fill | Until | Marked) else counts.fixed
         if known is None and isinstance(number, int):
             known = number
         return Count(
@@ -281,6 +303,7 @@ class _Builder:
             member=member,
             fills=isinstance(extent, Fill),
             until=extent.byte if isinstance(extent, Until) else None,
+            mark=self._mark(extent, element),
             least=counts.least,
             greatest=counts.greatest,
             stated=extent.stated,

@@ -146,6 +146,8 @@ class Count(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
     """True if all that is left of the payload is taken."""
     until: int | None = None
     """The byte that ends what is taken, and stands behind it."""
+    mark: Formula | None = None
+    """What is not 0 in the last of the elements, as a formula over the members of one."""
     least: int
     greatest: int
     stated: bool
@@ -158,8 +160,8 @@ class Count(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
 
     @property
     def is_delimited(self) -> bool:
-        """True if the payload's end or a terminator says the number."""
-        return self.fills or self.until is not None
+        """True if the payload's end, a terminator or the last element says the number."""
+        return self.fills or self.until is not None or self.mark is not None
 
 
 class Step(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):

@@ -13,7 +13,7 @@ from typing import ClassVar, Literal, TypeGuard
 
 import msgspec
 
-from protogen.model.expressions import Expression, names_in
+from protogen.model.expressions import Expression, Operand, names_in
 from protogen.model.meanings import NamedValue
 from protogen.model.names import free_name
 from protogen.model.numbers import (
@@ -46,6 +46,7 @@ __all__ = [
     "Fixed",
     "Float",
     "Integer",
+    "Marked",
     "NumberType",
     "Octets",
     "Scalar",
@@ -167,7 +168,31 @@ class Until:
         return SizeSet.between(self.least, self.greatest)
 
 
-Extent = Fixed | Counted | Fill | Until
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Marked:
+    """As many elements as there are up to the first whose mark is not 0, `least` to `greatest`."""
+
+    mark: Operand
+    """The field of the element, or the bits of one, that says that it is the last."""
+    least: int = 1
+    greatest: int
+    stated: bool = dataclass_field(default=False, compare=False)
+    """True if the schema bounds the number; else `greatest` is what the frame can take, in a
+    declared type wherever it has the most room."""
+    needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def label(self) -> str:
+        """The number in the words of the schema language."""
+        return f"until {self.mark.label}"
+
+    @property
+    def counts(self) -> SizeSet:
+        """Possible numbers of elements."""
+        return SizeSet.between(self.least, self.greatest)
+
+
+Extent = Fixed | Counted | Fill | Until | Marked
 
 
 class _Bytes(msgspec.Struct, frozen=True, kw_only=True):
@@ -464,7 +489,7 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def has_count(self) -> bool:
         """True if a record keeps the number of elements or bytes, which no earlier field says."""
-        return self.const is None and isinstance(self.type.extent, Fill | Until)
+        return self.const is None and isinstance(self.type.extent, Fill | Until | Marked)
 
     @property
     def constant_number(self) -> int | None:

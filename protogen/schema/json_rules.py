@@ -23,6 +23,8 @@ _FORMS = ("fields", "switch")
 _NUMERIC = ("scale", "offset", "unit", "special", "range")
 _NAMED = ("values", "flags", "bits")
 _LENGTHS = ("size", "until")
+_LAST_ELEMENT: JsonObject = {"type": "object", "required": ["element"]}
+"""What ends an array, and no text."""
 _WRITTEN = ("digits", "code", "chars")
 _PART_ROLES = ("literal", "id", "virtual", "counts", "counter", "algorithm", "idle")
 
@@ -97,8 +99,15 @@ _FIELD_RULES = (
     _where(
         _any_of(_FORMS),
         "These are for numbers.",
-        _none_of((*_NUMERIC, *_NAMED, *_WRITTEN, "until", "const", "default", "closed")),
+        _none_of((*_NUMERIC, *_NAMED, *_WRITTEN, "const", "default", "closed")),
     ),
+    _where(
+        _with("fields"),
+        "An array of structs is ended by what an element says.",
+        {"properties": {"until": _LAST_ELEMENT}},
+    ),
+    _where(_with("switch"), "Nothing ends a switch but its cases.", _none_of(("until",))),
+    {"$comment": "Elements are counted, or the last one says so.", "not": _with("count", "until")},
     _where(
         _with("count", "size"),
         "As many elements as the bytes hold.",
@@ -108,6 +117,11 @@ _FIELD_RULES = (
         _type_like("ascii|bytes"),
         "These are for numbers; the length is the `size`.",
         _none_of((*_NUMERIC, *_NAMED, "count", "closed", "packed")),
+    ),
+    _where(
+        _type_like("ascii|bytes"),
+        "What an element says ends an array of structs.",
+        {"properties": {"until": {"not": _LAST_ELEMENT}}},
     ),
     {"$comment": "A size is told, or a terminator ends it.", "not": _with(*_LENGTHS)},
     {

@@ -22,6 +22,7 @@ from protogen.schema.syntax.names import (
     Formula,
     Kind,
     Mark,
+    Member,
     Ref,
 )
 from protogen.schema.syntax.protocol import SCHEMA, is_by_sender
@@ -121,6 +122,8 @@ class _Walk:
                 yield Reference(kind, spot, written, scopes, missing=missing)
             case Formula() if isinstance(written, str):
                 yield from self._in_formula(str(written), spot)
+            case Member() if isinstance(written, str):
+                yield from self._in_element(written, spot)
             case FieldPath():
                 yield from _field_path(str(written), spot)
 
@@ -147,6 +150,13 @@ class _Walk:
                 at += len(operand.path[depth - 1]) + 1
                 scopes = self._scopes.inside_path(operand.path[:depth], spot.place)
                 yield Reference(Kind.FIELD, spot, name, scopes, at)
+
+    def _in_element(self, written: str, spot: Spot) -> Iterator[Reference]:
+        """Yield the members, and bits, that a name inside of an element goes by."""
+        names = written.split(".")
+        for depth, name in enumerate(names):
+            scopes = self._scopes.inside_element(names[:depth], spot.place)
+            yield Reference(Kind.FIELD, spot, name, scopes, len(".".join([*names[:depth], ""])))
 
     def _values_of_fields(
         self, values: Any, scopes: tuple[Place, ...], place: Place

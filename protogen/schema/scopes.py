@@ -96,6 +96,17 @@ class Scopes:
         keys = ("fields", *_BITS)
         return tuple(scope for field in found for scope in self.inside_field(field, *keys))
 
+    def inside_element(self, path: Sequence[str], place: Place) -> tuple[Place, ...]:
+        """Mappings that may declare what stands behind a dotted name in elements of an array.
+
+        The place is that of a key in a mapping of the array's.
+        """
+        scopes = self.inside_field(place[:-2], "fields")
+        for name in path:
+            inside = (self.inside_field((*scope, name), "fields", *_BITS) for scope in scopes)
+            scopes = tuple(scope for each in inside for scope in each)
+        return scopes
+
     def values_of(self, path: Sequence[str], place: Place) -> tuple[Place, ...]:
         """Mappings that may declare the values of what a dotted name stands for."""
         found = self._of_path(path, place)

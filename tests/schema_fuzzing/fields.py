@@ -208,6 +208,8 @@ def _hiding(setting: Setting, name: str) -> Setting:
 def _kinds(setting: Setting) -> list[str]:
     """Kinds of fields that may be drawn here."""
     kinds = ["number"] * 6 + ["string", "string", "array", "array", "counted", "counted", "switch"]
+    if setting.depth < GREATEST_DEPTH and setting.budget > 4:
+        kinds += ["last element", "last element"]
     if setting.depth < GREATEST_DEPTH:
         kinds += ["struct", "struct", "region"] if setting.budget > 2 else ["struct", "struct"]
     if setting.budget > 1:
@@ -351,6 +353,39 @@ def _until(draw: st.DrawFn, setting: Setting) -> Built:
 
 
 @st.composite
+def _up_to_last(draw: st.DrawFn, setting: Setting) -> Built:
+    """Structs up to the one that says that it is the last."""
+    inner = replace(setting.inside(last=False), budget=min(setting.budget // 2 - 1, _USUAL_BYTES))
+    built = draw(structs(inner, greatest=2))
+    name, mark, field = draw(st.sampled_from(_MARKS))
+    first = {name: field} if draw(st.booleans()) else {}  # No field is called so.
+    fields = {**first, **built.data, name: field}
+    each = built.size + Size(1, 1)
+    most = min(_USUAL_BYTES, setting.budget // each.greatest)
+    until: dict[str, Any] = {"element": mark}
+    is_bounded_by_room = setting.may_fill and setting.exact and setting.room is not None
+    least = 1
+    if is_bounded_by_room and each.fixed and draw(st.booleans()):
+        most = (setting.room or 0) // each.least
+    else:
+        until["max"] = most = draw(st.integers(2, most))
+        if most > 2 and draw(forms.one_in(3)):
+            until["min"] = least = draw(st.integers(1, most - 1))
+    data = {"fields": fields, "until": until, **draw(forms.about())}
+    return Built(data, each * Size(least, most))
+
+
+_MARKS: tuple[tuple[str, str, Any], ...] = (
+    ("is_last", "is_last", "bool"),
+    ("is_last", "is_last", "uint7"),
+    ("last_flags", "last_flags.ends", {"type": "uint7", "flags": {"ends": 4, "x": 0}}),
+    ("last_bits", "last_bits.ends", {"type": "uint7", "bits": {"x": "1..3", "ends": "4..5"}}),
+    ("last_head", "last_head.ends", {"fields": {"ends": "bool"}}),
+)
+"""Names of fields of one byte, of what says in them which element is the last, and the fields."""
+
+
+@st.composite
 def _fixed_array(draw: st.DrawFn, setting: Setting) -> Built:
     inner = replace(setting, last=False)
     element = draw(_elements(inner))
@@ -465,6 +500,7 @@ _ITEMS: Mapping[str, Callable[[Setting], st.SearchStrategy[Built]]] = {
     "number": number,
     "string": _string,
     "until": _until,
+    "last element": _up_to_last,
     "array": _fixed_array,
     "struct": _struct,
     "declared": _declared,

@@ -39,7 +39,7 @@ COMMON = (
     "bytes: fill", "number: fill from a least number",
     "number: worked out", "ascii: worked out", "switch by an expression",
     "case of all others",
-    "number in bytes", "region", "trailing zeros left out",
+    "number in bytes", "region", "last element", "trailing zeros left out",
     "greatest frame", *(f"field with {key}" for key in _FIELD_KEYS),
     *(f"identity parts: {count}" for count in range(4)),
     *(f"checksums: {count}" for count in range(3)),
@@ -186,6 +186,8 @@ def _field(item: Any) -> Iterator[str]:
         if key in item:
             element = kind if kind in ("ascii", "bytes", "struct") else "number"
             yield f"{element}: {_extent(item[key])}"
+    if "element" in (item.get("until") if isinstance(item.get("until"), dict) else ()):
+        yield "last element"
     if "size" in item and kind not in ("ascii", "bytes"):
         yield "region" if "fields" in item and "count" not in item else "number in bytes"
     inner = [*item.get("fields", {}).values(), *item.get("cases", {}).values()]

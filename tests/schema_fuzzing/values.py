@@ -5,14 +5,16 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from functools import reduce
 from math import ceil, floor, lcm
+from operator import getitem
 from typing import Any
 
 from expression_oracle import worked_out
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from protogen.model.expressions import Expression, Quotient, plain_name
+from protogen.model.expressions import Expression, Operand, Quotient, plain_name
 from protogen.model.frame import ChoicePart, CounterPart, Frame, IdentityPart, ValuePart
 from protogen.model.messages import Message
 from protogen.model.types import (
@@ -23,6 +25,7 @@ from protogen.model.types import (
     Fixed,
     Float,
     Integer,
+    Marked,
     Octets,
     Struct,
     Switch,
@@ -313,10 +316,41 @@ def _size(extent: Extent, scope: Scope) -> st.SearchStrategy[int]:
 def _array(draw: st.DrawFn, type_: Array, field: Field | None, scope: Scope) -> list[Any]:
     count = draw(_size(type_.extent, scope))
     elements = _value(type_.element, field, scope)
-    if count > _USUAL_COUNT:
+    if count > _USUAL_COUNT and not isinstance(type_.extent, Marked):
         few = [draw(elements) for _ in range(3)]
         return [few[index % 3] for index in range(count)]
-    return [draw(elements) for _ in range(count)]
+    found = [draw(elements) for _ in range(count)]
+    if isinstance(type_.extent, Marked):
+        _mark_last(type_, type_.extent.mark, found)
+    return found
+
+
+def _mark_last(type_: Array, mark: Operand, elements: list[dict[str, Any]]) -> None:
+    """Have the last of the elements say that it is the last, and no other."""
+    *outer, name = mark.path
+    for index, element in enumerate(elements):
+        is_last = index == len(elements) - 1
+        record = reduce(getitem, outer, element)
+        if isinstance(record[name], bool):
+            record[name] = is_last
+        elif mark.run is None:
+            record[name] = (record[name] or _other_than_zero(type_, mark)) if is_last else 0
+        else:
+            low, high = mark.run
+            bits = sum(1 << bit for bit in range(low, high + 1))
+            record[name] &= ~bits
+            record[name] |= bits if is_last else 0
+
+
+def _other_than_zero(type_: Array, mark: Operand) -> int:
+    """A value that the last element may have."""
+    found: Type = type_.element
+    for name in mark.path:
+        assert isinstance(found, Struct)
+        found = next(field.type for field in found.fields if field.name == name)
+    assert isinstance(found, Integer)
+    closed = found.enum.values if found.enum is not None and found.enum.closed else ()
+    return next((item.value for item in closed if item.value), 1)
 
 
 @st.composite

@@ -22,6 +22,7 @@ from protogen.model.payload_plan import (
     ConstantStep,
     Count,
     FloatStep,
+    Formula,
     IntegerStep,
     OptionalStep,
     PackedNumber,
@@ -172,7 +173,7 @@ class _Reader:
             return
         match step:
             case RecordStep() | RepeatStep() if step.packing is not None:
-                self._packed(step, step.packing, path)
+                self._packed(step, step.packing, path, scope)
             case RecordStep():
                 inner = scope.new_child()
                 scope[step.name] = inner.maps[0]
@@ -205,12 +206,25 @@ class _Reader:
         self._cursor = outside
 
     def _elements(self, step: RepeatStep, path: str, scope: Scope) -> None:
+        if step.count.mark is not None:
+            self._up_to_last(step, path, scope, step.count.mark)
+            return
         count = _count(step.count, scope)
         index = 0
         while not self._short and (self._cursor.left if count is None else index < count):
             element = replace(step.element, field=_element(step.field, index))
             self._step(element, f"{path}[{index}]", scope)
             index += 1
+
+    def _up_to_last(self, step: RepeatStep, path: str, scope: Scope, mark: Formula) -> None:
+        """Elements up to the one that says that it is the last; one at least."""
+        for index in range(step.count.greatest):
+            self._step(step.element, f"{path}[{index}]", scope)
+            # An element has no name, under which its members are found behind it.
+            if self._short or _said(mark.expression, scope.new_child(scope[step.element.name])):
+                return
+        fault = f"none of {step.count.greatest} elements says that it is the last"
+        self.rows.append(self._cursor.take(0, path, step.type.label, fault=fault))
 
     def _case(self, step: ChooseStep, path: str, scope: Scope) -> None:
         chosen = _said(step.expression, scope)
@@ -224,7 +238,9 @@ class _Reader:
             row = self._cursor.take(left, path, "bytes", fault=fault, subject=step.field)
             self.rows.append(row)
 
-    def _packed(self, step: RecordStep | RepeatStep, packing: Packing, path: str) -> None:
+    def _packed(
+        self, step: RecordStep | RepeatStep, packing: Packing, path: str, scope: Scope
+    ) -> None:
         """A row for the bytes of packed numbers, and one for each of the numbers."""
         is_record = isinstance(step, RecordStep)
         row = self._cursor.take(packing.size, path, f"packed {packing.order}", subject=step.field)
@@ -238,8 +254,11 @@ class _Reader:
         run = BitReader(row.bytes, packing.order)
         steps = step.steps if isinstance(step, RecordStep) else (replace(step, name=""),)
         base = f"{path}." if is_record else path
+        members = scope[step.name] = {}
         for item in packed_numbers(steps):
-            self.rows.append(_bits(item, run, base, row.offset))
+            found = _bits(item, run, base, row.offset)
+            self.rows.append(found)
+            members[item.name] = found.value
 
     def _scalar(self, step: ScalarStep, path: str, scope: Scope) -> None:
         size = self._size_of(step, scope)

@@ -15,6 +15,7 @@ from protogen.model.types import (
     Field,
     Fill,
     Integer,
+    Marked,
     Octets,
     Struct,
     Text,
@@ -44,7 +45,7 @@ def _most(extent: Extent) -> int:
 
 
 def _fewest(extent: Extent) -> int:
-    stated = extent.stated and not isinstance(extent, Fill | Until)
+    stated = extent.stated and not isinstance(extent, Fill | Until | Marked)
     return extent.counts.least if stated else extent.counts.greatest
 
 

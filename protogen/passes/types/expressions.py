@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import NamedTuple
@@ -149,6 +150,24 @@ def condition(context: Context, written: str, loc: Loc, setting: Setting) -> Wor
     return _worked(context, written, loc, setting, _Reader(setting.outer).condition)
 
 
+def inside_of(
+    context: Context, written: str, loc: Loc, struct: Struct, code: str
+) -> tuple[Operand, Field] | None:
+    """A member of a struct, or bits of one, and the field; None where it was reported with `code`.
+
+    What can't be told from outside of the struct, because it is not always there, is none.
+    """
+    reader = _Reader(ChainMap({field.name: field for field in struct.fields}))
+    try:
+        return reader.inside(parse_expression(written), struct)
+    except ExpressionError as wrong:
+        context.error_inside(code, loc, (wrong.at, 1), wrong.text, wrong.hint)
+    except _WrongError as wrong:
+        place = (wrong.at, wrong.width)
+        context.error_inside(code, loc, place, wrong.text, wrong.hint)
+    return None
+
+
 def _worked(
     context: Context,
     written: str,
@@ -184,6 +203,17 @@ class _Reader:
     def condition(self, parsed: Expression) -> Worked:
         """The expression of a condition, or of a number that is one."""
         return self._within(self._read(parsed, _NO_NAMES))
+
+    def inside(self, parsed: Expression, struct: Struct) -> tuple[Operand, Field]:
+        """A member, or bits of one, and the field that has them."""
+        if not isinstance(parsed, Operand):
+            text = f"`{parsed.text}` is no name of a field of `{struct.name}`"
+            raise _WrongError("", *_place(parsed), text, "an expression can't stand here")
+        if parsed.path[0] not in self._scope:
+            text = f"`{struct.name}` has no field `{parsed.path[0]}`"
+            raise _WrongError("", *_place(parsed), text, hint_for(parsed.path[0], [*self._scope]))
+        found = self._found(parsed)
+        return found, self._member(found)
 
     def _within(self, found: Expression) -> Worked:
         """Check that every machine can hold the numbers on the way."""

@@ -36,6 +36,7 @@ from protogen.passes.types.declared import Declarations, Effective, Expansion
 from protogen.passes.types.expressions import Selector, condition, number, selector_of
 from protogen.passes.types.extents import Written, extent_of
 from protogen.passes.types.field_keys import check_keys, has_one_form
+from protogen.passes.types.last_elements import is_marked_array, marked_extent
 from protogen.passes.types.named_types import NamedTypes
 from protogen.passes.types.other_cases import ELSE, check_else, hint_at_else, is_else
 from protogen.passes.types.packing import (
@@ -59,7 +60,7 @@ from protogen.passes.types.text_numbers import says_text, text_number, with_text
 from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
 from protogen.passes.types.value_names import with_names
 from protogen.problems import hint_for
-from protogen.schema.syntax.fields import FieldSyntax
+from protogen.schema.syntax.fields import FieldSyntax, Until, UntilElement
 from protogen.schema.syntax.fields import Fill as FillSyntax
 
 
@@ -155,6 +156,8 @@ class FieldBuilder:
             return self._string(item)
         if item.syntax.count is not None or is_sized_array(item.syntax):
             return self._array(item)
+        if is_marked_array(item.syntax) and item.syntax.fields is not None:
+            return self._array(item)
         return self._element(item, item.setting)
 
     def _element(self, item: Effective, setting: Setting) -> Type:
@@ -214,6 +217,7 @@ class FieldBuilder:
 
     def _array(self, item: Effective) -> Array:
         key = "size" if is_sized_array(item.syntax) else "count"
+        key = key if item.syntax.count is not None or not is_marked_array(item.syntax) else "until"
         written, loc = getattr(item.syntax, key), item.at(key)
         setting = packed_elements(self._context, item, replace(item.setting, last=False))
         element = self._element(item, setting)
@@ -231,6 +235,10 @@ class FieldBuilder:
 
     def _number_of(self, element: Type, written: Written, loc: Loc, item: Effective) -> Extent:
         """The number of elements of an array; where its bytes are told, that of those."""
+        until = item.syntax.until
+        if isinstance(until, UntilElement) and item.syntax.count is None:
+            self._expansion.vary()
+            return marked_extent(self._context, until, item.at("until"), element, item.setting)
         if not is_sized_array(item.syntax):
             return self._extent(written, loc, max(1, element.sizes.least), item.setting)
         extent, size = self._extent(written, loc, 1, item.setting), element.sizes.fixed
@@ -256,10 +264,10 @@ class FieldBuilder:
     def _length(self, item: Effective) -> Extent:
         """The number of bytes of a text, or of bytes."""
         syntax = item.syntax
-        if syntax.until is not None and syntax.size is None:
+        if isinstance(syntax.until, Until) and syntax.size is None:
             self._expansion.vary()
             return until_of(self._context, syntax.until, item.at("until"), item.setting)
-        if syntax.size is None:
+        if syntax.size is None and syntax.until is None:
             text = f"{syntax.type} needs a `size`: a number, an earlier field, or fill"
             hint = "or a terminator that ends it: `until: 0`"
             self._context.error_at_key("PG110", item.chain[0][1], text, hint)
@@ -356,7 +364,8 @@ class FieldBuilder:
     def _case_struct(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Struct:
         """A case that is no struct, or not always one, becomes one of a single field."""
         effective = self._effective(item, loc, setting).syntax
-        is_bare = (effective.count or effective.when) is None and effective.size is None
+        others = (effective.count, effective.when, effective.size, effective.until)
+        is_bare = all(other is None for other in others)
         if effective.fields is None or not is_bare:
             inner = replace(setting, owner=f"{setting.owner}_value", position=0)
             field = self.field("value", item, loc, inner)

@@ -22,6 +22,7 @@ from protogen.model.types import (
     Field,
     Fill,
     Fixed,
+    Marked,
     Octets,
     Struct,
     Switch,
@@ -191,6 +192,8 @@ def _extent(one: Extent, other: Extent) -> Extent | None:
                 stated=one.stated and other.stated,
             )
         case Fill(), Fill() if one.stated == other.stated:
+            return replace(one, greatest=max(one.greatest, other.greatest))
+        case Marked(), Marked() if (one.mark, one.stated) == (other.mark, other.stated):
             return replace(one, greatest=max(one.greatest, other.greatest))
         case Until(), Until() if (one.byte, one.stated) == (other.byte, other.stated):
             return replace(one, greatest=max(one.greatest, other.greatest))

@@ -5,8 +5,10 @@ from __future__ import annotations
 from protogen.model.types import Until
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.declared import Effective
+from protogen.passes.types.last_elements import check_last_element
 from protogen.passes.types.setting import Setting
 from protogen.schema.syntax.fields import Until as UntilSyntax
+from protogen.schema.syntax.fields import UntilElement
 
 _STRINGS = ("ascii", "bytes")
 
@@ -16,7 +18,9 @@ def check_until(context: Context, name: str, item: Effective) -> None:
     syntax, loc = item.syntax, item.at("until")
     if syntax.until is None:
         return
-    if syntax.type not in _STRINGS:
+    if isinstance(syntax.until, UntilElement):
+        check_last_element(context, name, item)
+    elif syntax.type not in _STRINGS:
         text = f"`until` is for ascii and bytes; `{name}` is neither"
         hint = "elements are counted by `count`; bytes up to a terminator are `type: bytes`"
         context.error_at_key("PG229", loc, text, hint)

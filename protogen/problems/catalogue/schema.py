@@ -10,6 +10,7 @@ from protogen.problems.catalogue.frame_sizes import FRAME_SIZE_CODES
 from protogen.problems.catalogue.frames import FRAME_CODES
 from protogen.problems.catalogue.framing import FRAMING_CODES
 from protogen.problems.catalogue.keys_and_names import KEY_AND_NAME_CODES
+from protogen.problems.catalogue.last_elements import LAST_ELEMENT_CODES
 from protogen.problems.catalogue.messages import MESSAGE_CODES
 from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.parts import PART_CODES
@@ -28,6 +29,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *PACKING_CODES,
     *TEXT_NUMBER_CODES,
     *TERMINATOR_CODES,
+    *LAST_ELEMENT_CODES,
     *VIRTUAL_PART_CODES,
     *SILENCE_CODES,
     *SIZED_ARRAY_CODES,

@@ -21,7 +21,7 @@ from protogen.runtime.constructs.pieces import (
     read,
     said,
 )
-from protogen.runtime.payload.formula import Formula
+from protogen.runtime.payload.formula import Formula, number_of
 
 
 class Struct(construct.Struct):  # type: ignore[misc]
@@ -138,6 +138,51 @@ class Fill(Around):
 
     def _sizeof(self, context: Any, path: str) -> int:
         raise construct.SizeofError("the size depends on what is left", path=path)
+
+
+class UpToLast(Around):
+    """Elements up to the first whose mark is not 0, `least` to `greatest` of them."""
+
+    def __init__(
+        self, element: Construct, mark: str | Formula, greatest: int, least: int = 1
+    ) -> None:
+        super().__init__(element)
+        self._mark = mark
+        self._least = least
+        self._greatest = greatest
+        self.flagbuildnone = False
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> list[Any]:
+        elements: list[Any] = []
+        while not elements or not self._is_last(elements[-1]):
+            if len(elements) == self._greatest:
+                problem = f"no {self._mark} of {self._greatest} elements says that it is the last"
+                raise PayloadError("size", path, stream.tell(), problem)
+            place = f"{path} -> [{len(elements)}]"
+            elements.append(self.subcon._parsereport(stream, context, place))
+        if len(elements) < self._least:
+            problem = f"at least {self._least} elements are needed, and there are {len(elements)}"
+            raise PayloadError("size", path, stream.tell(), problem)
+        return elements
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
+        elements = _as_list(obj, path, stream)
+        if not self._least <= len(elements) <= self._greatest:
+            problem = f"needs {self._least} to {self._greatest} elements, not {len(elements)}"
+            raise PayloadError("size", path, stream.tell(), problem)
+        for index, element in enumerate(elements):
+            place = f"{path} -> [{index}]"
+            if self._is_last(element) != (index == len(elements) - 1):
+                problem = f"only the last element is the last, by {self._mark}"
+                raise PayloadError("value", place, stream.tell(), problem)
+            self.subcon._build(element, stream, context, place)
+        return obj
+
+    def _is_last(self, element: Any) -> bool:
+        return number_of(self._mark, element.__getitem__) != 0
+
+    def _sizeof(self, context: Any, path: str) -> int:
+        raise construct.SizeofError("the size depends on the elements", path=path)
 
 
 def _as_list(obj: Any, path: str, stream: BinaryIO) -> list[Any]:

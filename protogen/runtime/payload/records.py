@@ -123,7 +123,11 @@ def _seen(value: Any) -> Any:
 
 
 class ArrayRule(SeveralRule[Sequence[Any]]):
-    """Values of one kind: `count` of them, or as many as earlier fields say."""
+    """Values of one kind: `count` of them, or as many as earlier fields say.
+
+    With a `mark`, which is a member of each or a formula over its members, that is not 0 in the
+    last of them, and in no other.
+    """
 
     def __init__(
         self,
@@ -132,9 +136,11 @@ class ArrayRule(SeveralRule[Sequence[Any]]):
         greatest: int | None = None,
         const: Sequence[Any] | None = None,
         least: int = 0,
+        mark: str | Formula | None = None,
     ) -> None:
         super().__init__(count, greatest, const, least)
         self.element = element
+        self.mark = mark
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> list[Any]:
         """The elements."""
@@ -143,7 +149,10 @@ class ArrayRule(SeveralRule[Sequence[Any]]):
         self._check_count(len(value), scope, "elements")
         if self.const is not None and list(value) != list(self.const):
             raise EncodeError("", f"must be {list(self.const)}")
-        return list(_each(self.element.to_wire, value, scope, strict))
+        found = list(_each(self.element.to_wire, value, scope, strict))
+        if self.mark is not None:
+            _check_marks(self.mark, found)
+        return found
 
     def from_wire(self, raw: Any, scope: Scope) -> list[Any]:
         """The elements."""
@@ -167,6 +176,20 @@ class ArrayRule(SeveralRule[Sequence[Any]]):
         if not isinstance(data, list | tuple):
             raise EncodeError("", f"must be a list, not {data!r}")
         return list(_each(self.element.from_json, data, scope))
+
+
+def _check_marks(mark: str | Formula, elements: Sequence[Mapping[str, Any]]) -> None:
+    """Refuse elements of which another one than the last says that it is the last."""
+    last = len(elements) - 1
+    for index, element in enumerate(elements):
+        says = number_of(mark, element.__getitem__) != 0
+        if says and index < last:
+            problem = f"must be 0, as other elements follow: this is {index + 1} of {last + 1}"
+        elif not says and index == last:
+            problem = "must not be 0, as this is the last element"
+        else:
+            continue
+        raise EncodeError(str(mark), problem).inside(f"[{index}]")
 
 
 def _each(convert: Any, elements: Sequence[Any], *context: Any) -> Iterator[Any]:

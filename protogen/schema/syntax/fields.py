@@ -27,7 +27,7 @@ from protogen.schema.syntax.base import (
     pair_of,
 )
 from protogen.schema.syntax.digits import CharacterCode, Digits, Positive
-from protogen.schema.syntax.names import CaseKey, ExpressionText, Kind, Ref, TypeName
+from protogen.schema.syntax.names import CaseKey, ExpressionText, Kind, MemberText, Ref, TypeName
 from protogen.schema.syntax.octets import OctetsForm, to_octets
 from protogen.schema.syntax.parts import ByteOrder
 
@@ -116,14 +116,40 @@ class Until(Syntax):
     )
 
 
+class UntilElement(Syntax):
+    """As many elements as there are up to one that says that it is the last."""
+
+    element: MemberText = Field(
+        description="The field of an element, or bits of one, that is not 0 in the last element "
+        "and 0 in all others."
+    )
+    min: Positive = Field(1, description="The least number of elements, the last one included.")
+    max: Positive | None = Field(
+        None, description="The greatest number of elements, the last one included."
+    )
+
+
 def _to_until(value: Any) -> Any:
     return {"byte": value} if isinstance(value, int | str) else value
 
 
+def _until_form(value: Any) -> str:
+    is_of_elements = isinstance(value, UntilElement) or (
+        isinstance(value, dict) and "element" in value
+    )
+    return "last element" if is_of_elements else "terminator"
+
+
 UntilRef = Annotated[
-    Until, BeforeValidator(_to_until, json_schema_input_type=ByteForm | Character | Until)
+    Annotated[
+        Until,
+        BeforeValidator(_to_until, json_schema_input_type=ByteForm | Character | Until),
+        Tag("terminator"),
+    ]
+    | Annotated[UntilElement, Tag("last element")],
+    Discriminator(_until_form),
 ]
-"""A byte or character, or a mapping."""
+"""A byte or character, or a mapping; of an array, what its last element says."""
 
 
 BitOrder = Literal["lsb_first", "msb_first"]
@@ -203,7 +229,8 @@ class FieldSyntax(Syntax):
     until: UntilRef | None = Field(
         None,
         description="In place of a size: an ascii or bytes field ends in front of this byte, "
-        "which is on the wire and no part of the value.",
+        "which is on the wire and no part of the value. In place of a count: an array of structs "
+        "ends with the element that says so.",
     )
     packed: BitOrder | None = Field(
         None,

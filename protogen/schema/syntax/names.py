@@ -44,6 +44,10 @@ class Formula(msgspec.Struct, frozen=True):
     """Mark of an expression over fields, in front of this one or around it."""
 
 
+class Member(msgspec.Struct, frozen=True):
+    """Mark of a field of the elements of the array whose key holds the mapping around it."""
+
+
 class FieldPath(msgspec.Struct, frozen=True):
     """Mark of keys that are MESSAGE.FIELD, or a declared type."""
 
@@ -56,7 +60,7 @@ class BySender(msgspec.Struct, frozen=True):
     """Mark of a mapping from endpoints to what may also stand there once, for all of them."""
 
 
-Mark = Ref | Formula | FieldPath | FieldValues | BySender
+Mark = Ref | Formula | Member | FieldPath | FieldValues | BySender
 
 EndpointName = Annotated[Name, Ref(Kind.ENDPOINT, missing="PG108")]
 """An endpoint."""
@@ -74,6 +78,11 @@ ExpressionText = Annotated[
     Text, written_as(Annotated[str, Field(min_length=1, max_length=GREATEST_LENGTH)]), Formula()
 ]
 """An expression over fields in front: `count`, `n - 2`, `header.flags.has_gps`."""
+
+MemberText = Annotated[
+    Text, written_as(Annotated[str, Field(min_length=1, max_length=GREATEST_LENGTH)]), Member()
+]
+"""A field of an element, or bits of one: `is_last`, `head.flags.last`."""
 
 FormName = Annotated[Name, Ref(Kind.FORM, missing="PG170")]
 """A form of frame."""

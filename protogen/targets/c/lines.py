@@ -15,7 +15,7 @@ _PLACE = re.compile(
     r"| +const (?:bool|u?int\d+_t) (?P<remembered>\w+) = "
 )
 """A line that says where the next value lies, or remembers one; one that moves is in no loop."""
-_DECLARATION = re.compile(r"const |size_t |uint8_t \*")
+_DECLARATION = re.compile(r"const |size_t |bool |uint8_t \*")
 
 
 class Lines:

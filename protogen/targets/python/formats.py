@@ -18,6 +18,7 @@ from protogen.model.types import (
     Fixed,
     Float,
     Integer,
+    Marked,
     Octets,
     Struct,
     Switch,
@@ -171,19 +172,23 @@ def extent(of: Extent) -> str:
             return call("_c.Count", formula(of.by), str(of.least), str(of.greatest))
         case Counted():
             return formula(of.by)
-        case Fill() | Until():
+        case Fill() | Until() | Marked():
             return str(of.greatest)
 
 
-def least(of: Fill | Until) -> str | None:
-    """The least number, where there is one."""
-    return str(of.least) if of.least else None
+def least(of: Fill | Until | Marked) -> str | None:
+    """The least number, where it is not the least that there can be."""
+    usual = 1 if isinstance(of, Marked) else 0
+    return str(of.least) if of.least > usual else None
 
 
 def _array(type_: Array, names: Names) -> str:
     element = _checked(type_.element, names)
     if isinstance(type_.extent, Fill):
         return call("_c.Fill", element, str(type_.extent.greatest), least=least(type_.extent))
+    if isinstance(type_.extent, Marked):
+        of = type_.extent
+        return call("_c.UpToLast", element, formula(of.mark), str(of.greatest), least=least(of))
     counted = call("_c.Counted", extent(type_.extent), element)
     return counted if type_.packed is None else call("_c.Packed", text(type_.packed), counted)
 

@@ -15,6 +15,7 @@ from protogen.model.types import (
     Fixed,
     Float,
     Integer,
+    Marked,
     Octets,
     Struct,
     Switch,
@@ -123,6 +124,9 @@ def _extent(key: str, extent: Extent) -> dict[str, str | None]:
         case Fill() | Until():
             until = f"0x{extent.byte:02X}" if isinstance(extent, Until) else None
             return {"greatest": str(extent.greatest), "least": least(extent), "until": until}
+        case Marked(mark=mark, greatest=greatest):
+            bounds = {"greatest": str(greatest), "least": str(extent.least)}
+            return {**bounds, "mark": formula(mark)}
 
 
 def _array(type_: Array, field: Field | None, names: Names) -> str:

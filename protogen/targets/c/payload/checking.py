@@ -389,6 +389,8 @@ class Checker(CheckedWalk):
         element, size = step.element, step.element.known_size
         if step.count.fills:
             self._filling(step, place)
+        elif step.count.mark is not None:
+            self._up_to_last(step, place, step.count.mark)
         elif size is not None and not element.can_be_wrong:
             self._run(count, size)
         elif isinstance(count, int) and self._is_seven_bit_run(element):
@@ -436,6 +438,21 @@ class Checker(CheckedWalk):
             self._secured = self._offset
         else:
             self._require_nothing(times(count, size))
+
+    def _up_to_last(self, step: RepeatStep, place: str, mark: Formula) -> None:
+        """Check elements up to the one that says that it is the last."""
+        self._settle()
+        count, index, last = step.count, self.variable("count"), self.variable("is_last")
+        self.lines.add(f"size_t {index} = 0U;", f"bool {last} = false;")
+        with self.lines.block(f"while (!{last})"):
+            self._refuse(f"{index} == {unsigned(count.greatest)}", "SIZE")
+            self._secured = 0
+            self.step(step.element, f"{place}[{index}]")
+            self._settle()
+            self.lines.add(f"{last} = {self.is_last(mark, f'{place}[{index}]')};", f"{index}++;")
+        if count.least > 1:
+            self._refuse(f"{index} < {unsigned(count.least)}", "SIZE")
+        self._secured = 0
 
     @contextmanager
     def _places(self, size: int, count: int | str) -> Iterator[str]:

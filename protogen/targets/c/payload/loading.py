@@ -10,6 +10,7 @@ from protogen.model.payload_plan import (
     BytesStep,
     ConstantStep,
     Count,
+    Formula,
     IntegerStep,
     NumberStep,
     PayloadPlan,
@@ -178,6 +179,8 @@ class Load(PlacedWalk):
         element, size = step.element, step.element.known_size
         if step.count.fills:
             self._filling(step, place, str(count))
+        elif step.count.mark is not None:
+            self._up_to_last(step, place, str(count), step.count.mark)
         elif is_bytes(element):
             self._copy(place, count)
         elif size is not None and not element.holds_values:
@@ -188,6 +191,17 @@ class Load(PlacedWalk):
             self.skip(times(count, element.type.size))
         else:
             self.elements(step, place, count)
+
+    def _up_to_last(self, step: RepeatStep, place: str, member: str, mark: Formula) -> None:
+        """Take elements up to the one that says that it is the last."""
+        self.settle()
+        last = self.variable("is_last")
+        self.lines.add(f"{member} = 0U;", f"bool {last} = false;")
+        with self.lines.block(f"while (!{last})"):
+            self.step(step.element, f"{place}[{member}]")
+            self.settle()
+            condition = self.is_last(mark, f"{place}[{member}]")
+            self.lines.add(f"{last} = {condition};", f"{member}++;")
 
     def _filling(self, step: RepeatStep, place: str, member: str) -> None:
         if is_bytes(step.element) or step.count.greatest == 0:

@@ -134,6 +134,14 @@ class Validate(Walk):
             self._refuse(_outside(element, found))
         elif element.is_refusable:
             self.elements(step, place, count)
+        if step.count.mark is not None:
+            self._marked(step.count.mark, place, count)
+
+    def _marked(self, mark: Formula, place: str, count: int | str) -> None:
+        """Refuse elements of which another one than the last says that it is the last."""
+        with self.loop(count) as index:
+            says = self.is_last(mark, f"{place}[{index}]")
+            self._refuse(f"({says}) != ({index} + 1U == {amount(count)})")
 
     def region(self, step: RegionStep, place: str) -> None:
         """What takes just so many bytes."""

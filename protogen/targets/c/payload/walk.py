@@ -250,6 +250,13 @@ class Walk:
         whole = lambda operand: self.referred(formula.references[operand.name])  # noqa: E731
         return _Formula(self.helpers, formula, whole)
 
+    def is_last(self, mark: Formula, element: str) -> str:
+        """The condition that an element says that it is the last."""
+        self._records.append(f"{element}.")
+        condition = self.printer(mark).condition(mark.expression)
+        self._records.pop()
+        return condition
+
     def differs(self, formula: Formula, value: int) -> str:
         """The condition that a number that earlier ones say is another one."""
         number = self.number_of(formula)

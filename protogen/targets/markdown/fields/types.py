@@ -113,12 +113,20 @@ def _digits_of_free(form: FreeNumeral) -> str:
     return front if form.base == 10 else f"{front} ({'upper' if form.upper else 'lower'} case)"
 
 
+def _end(count: Count, region: RegionStep | None) -> str:
+    """Print what ends bytes or elements that nothing counts."""
+    if count.until is not None:
+        return f"up to {code(f'{count.until:02X}')}"
+    if count.mark is not None:
+        return f"up to the first whose {code(count.mark.label)} is not 0"
+    return f"to {end_of(region)}"
+
+
 def _extended(element: str, count: Count, noun: str, region: RegionStep | None) -> str:
     if count.is_delimited:
         amount = plural(count.greatest, noun)
         amount = f"{count.least} to {amount}" if count.least else f"at most {amount}"
-        end = f"up to {code(f'{count.until:02X}')}" if count.until is not None else ""
-        return f"{element} {end or f'to {end_of(region)}'}, {amount}"
+        return f"{element} {_end(count, region)}, {amount}"
     if count.expression is not None:
         return f"{element} x {code(count.expression.text)}"
     return element if noun == "byte" else f"{element} x {count.known}"

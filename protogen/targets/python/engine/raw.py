@@ -6,6 +6,11 @@ from protogen.model.expressions import Operand
 from protogen.runtime.attributes import attribute
 
 
+def member_of(record: str, operand: Operand) -> str:
+    """The expression of a member of a record that an expression names, without bits."""
+    return ".".join([record, *map(attribute, operand.path)])
+
+
 class Raw:
     """Names of variables for raw values. A record's variable stands for its members, too."""
 

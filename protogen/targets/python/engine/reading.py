@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import msgspec
 
@@ -16,6 +17,7 @@ from protogen.model.payload_plan import (
     ConstantStep,
     Count,
     FloatStep,
+    Formula,
     IntegerStep,
     OptionalStep,
     RecordStep,
@@ -44,7 +46,7 @@ from protogen.targets.python.engine.layout import (
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.packing import Record, unpack_record
 from protogen.targets.python.engine.place import Place
-from protogen.targets.python.engine.raw import Raw
+from protogen.targets.python.engine.raw import Raw, member_of
 from protogen.targets.python.formats import constant
 from protogen.targets.python.formulas import in_python
 from protogen.targets.python.literals import octets_in_class, tuple_of
@@ -408,6 +410,8 @@ class _Reader(Converter, Raw):
     # --- arrays -----------------------------------------------------------------------------------
 
     def _array(self, step: RepeatStep) -> str:
+        if step.count.mark is not None:
+            return self._up_to_last(step, step.count.mark)
         element, size = step.element, step.element.sizes.fixed
         if not size:
             return self._array_of_varying(step)
@@ -534,6 +538,24 @@ class _Reader(Converter, Raw):
         self.lines.add(f"{values}: list[_typing.Any] = []")
         with self.lines.block(f"for {value} in {unpacked}:"):
             self.lines.add(f"{values}.append({self.converted(value, step.element)})")
+        return values
+
+    def _up_to_last(self, step: RepeatStep, mark: Formula) -> str:
+        """Elements one by one, up to the one that says that it is the last."""
+        values, count = self.lines.local(), step.count
+        self.lines.add(f"{values}: list[_typing.Any] = []")
+        self._move_to(self.place.text)
+        at = self.place.text
+        with self.lines.block("while True:"):
+            item = self._value(step.element)
+            self._move_to(self.place.text)
+            self.lines.add(f"{values}.append({item})")
+            with self.lines.block(f"if {in_python(mark.expression, partial(member_of, item))}:"):
+                self.lines.add("break")
+            self.lines.refuse_if(f"len({values}) == {count.greatest}")
+            assert self.place.text == at
+        if count.least > 1:
+            self.lines.refuse_if(f"len({values}) < {count.least}")
         return values
 
     def _array_of_varying(self, step: RepeatStep, count: str | None = None) -> str:

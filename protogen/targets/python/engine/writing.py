@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import msgspec
 
@@ -16,6 +17,7 @@ from protogen.model.payload_plan import (
     ConstantStep,
     Count,
     FloatStep,
+    Formula,
     IntegerStep,
     OptionalStep,
     RecordStep,
@@ -42,7 +44,7 @@ from protogen.targets.python.engine.layout import (
 )
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.packing import Record, packed, packed_record
-from protogen.targets.python.engine.raw import Raw
+from protogen.targets.python.engine.raw import Raw, member_of
 from protogen.targets.python.formats import constant
 from protogen.targets.python.formulas import in_python
 from protogen.targets.python.literals import number, octets_in_class, tuple_of
@@ -464,6 +466,16 @@ class _Writer(Raw):
             self._bytes.piece(self._packed(value, step))
         else:
             self._one_by_one(value, element, item)
+        if step.count.mark is not None:
+            self._marked(value, step.count.mark)
+
+    def _marked(self, value: str, mark: Formula) -> None:
+        """Refuse elements of which another one than the last says that it is the last."""
+        last, each = (
+            in_python(mark.expression, partial(member_of, item))
+            for item in (f"{value}[-1]", "each")
+        )
+        self.lines.refuse_if(f"not ({last}) or any({each} for each in {value}[:-1])")
 
     def _plain_records(self, value: str, element: RecordStep) -> None:
         """Records of integers, written together with what stands in front of them."""
