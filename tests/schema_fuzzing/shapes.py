@@ -175,13 +175,9 @@ def _field(item: Any) -> Iterator[str]:
         return
     kind = item.get("type", "struct" if "fields" in item else "switch")
     yield f"type: {kind}"
-    for key in _FIELD_KEYS:
-        if key in item:
-            yield f"field with {key}"
-    if "switch" in item and not item["switch"].replace("_", "").isalnum():
-        yield "switch by an expression"
-    if ELSE in item.get("cases", ()):
-        yield "case of all others"
+    yield from (f"field with {key}" for key in _FIELD_KEYS if key in item)
+    if "switch" in item:
+        yield from _switch(item)
     for key in ("count", "size"):
         if key in item:
             element = kind if kind in ("ascii", "bytes", "struct") else "number"
@@ -193,6 +189,13 @@ def _field(item: Any) -> Iterator[str]:
     inner = [*item.get("fields", {}).values(), *item.get("cases", {}).values()]
     for field in inner:
         yield from _field(field)
+
+
+def _switch(item: Any) -> Iterator[str]:
+    if not item["switch"].replace("_", "").isalnum():
+        yield "switch by an expression"
+    if ELSE in item["cases"]:
+        yield "case of all others"
 
 
 def _extent(extent: Any) -> str:
