@@ -10,7 +10,7 @@ from functools import lru_cache
 from protogen.model.messages import Message
 from protogen.model.origin import About, Source
 from protogen.model.protocol import Link, Protocol
-from protogen.model.types import Array, Field, Integer
+from protogen.model.types import Array, Field, Integer, Marked
 from protogen.targets.escape import paragraphs
 
 
@@ -70,8 +70,12 @@ def step_of(item: Field) -> str:
 
 
 def extent_of(item: Field) -> list[str]:
-    """Number of elements of an array."""
-    return [f"{item.type.extent.counts} elements"] if isinstance(item.type, Array) else []
+    """Number of elements of an array, and what says which is the last."""
+    if not isinstance(item.type, Array):
+        return []
+    extent = item.type.extent
+    last = [f"the last by {extent.mark.label}"] if isinstance(extent, Marked) else []
+    return [f"{extent.counts} elements", *last]
 
 
 def range_of(item: Field) -> str:

@@ -1,0 +1,132 @@
+"""Extents: the number of elements or bytes of a field."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from dataclasses import field as dataclass_field
+from typing import ClassVar
+
+import msgspec
+
+from protogen.model.expressions import Expression, Operand, names_in
+from protogen.model.sizes import SizeSet
+
+_NO_NAMES: frozenset[str] = frozenset()
+
+
+class Fixed(msgspec.Struct, frozen=True, kw_only=True):
+    """A number of elements (or bytes) that never changes."""
+
+    count: int
+    stated: ClassVar[bool] = True
+    needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def label(self) -> str:
+        """The number in the words of the schema language."""
+        return str(self.count)
+
+    @property
+    def counts(self) -> SizeSet:
+        """Possible numbers of elements."""
+        return SizeSet.exactly(self.count)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Counted:
+    """As many as earlier fields of the same struct or message, or of those around it, say."""
+
+    by: Expression
+    least: int
+    greatest: int
+    stated: bool = dataclass_field(default=False, compare=False)
+    """True if the schema bounds the number; else `greatest` is what the fields or frame can take,
+    in a declared type wherever it has the most room."""
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """The names of the fields that count."""
+        return names_in(self.by)
+
+    @property
+    def label(self) -> str:
+        """The number in the words of the schema language."""
+        return self.by.text
+
+    @property
+    def counts(self) -> SizeSet:
+        """Possible numbers of elements."""
+        return SizeSet.between(self.least, self.greatest)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fill:
+    """As many as the payload has left, `least` to `greatest`."""
+
+    least: int = 0
+    greatest: int
+    stated: bool = dataclass_field(default=False, compare=False)
+    """True if the schema bounds the number; else `greatest` is what the frame can take, in a
+    declared type wherever it has the most room."""
+    needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def label(self) -> str:
+        """The number in the words of the schema language."""
+        return "fill"
+
+    @property
+    def counts(self) -> SizeSet:
+        """Possible numbers of elements."""
+        return SizeSet.between(self.least, self.greatest)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Until:
+    """As many as stand in front of a terminator, `least` to `greatest`."""
+
+    byte: int
+    """The terminator, which is no part of the value."""
+    least: int = 0
+    greatest: int
+    stated: bool = dataclass_field(default=False, compare=False)
+    """True if the schema bounds the number; else `greatest` is what the frame can take, in a
+    declared type wherever it has the most room."""
+    needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def label(self) -> str:
+        """The number in the words of the schema language."""
+        return f"until 0x{self.byte:02X}"
+
+    @property
+    def counts(self) -> SizeSet:
+        """Possible numbers of bytes, without the terminator."""
+        return SizeSet.between(self.least, self.greatest)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Marked:
+    """As many elements as there are up to the first whose mark is not 0, `least` to `greatest`."""
+
+    mark: Operand
+    """The field of the element, or the bits of one, that says that it is the last."""
+    least: int = 1
+    greatest: int
+    stated: bool = dataclass_field(default=False, compare=False)
+    """True if the schema bounds the number; else `greatest` is what the frame can take, in a
+    declared type wherever it has the most room."""
+    needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def label(self) -> str:
+        """The number in the words of the schema language."""
+        return f"until {self.mark.label}"
+
+    @property
+    def counts(self) -> SizeSet:
+        """Possible numbers of elements."""
+        return SizeSet.between(self.least, self.greatest)
+
+
+Extent = Fixed | Counted | Fill | Until | Marked
