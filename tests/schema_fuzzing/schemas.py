@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -149,9 +149,10 @@ class _Drawing:
                 bounded = bounded.trimmed()
             payload = self._payload
             if self._byte_bits == 8:
+                senders = self._senders if key == _SHARED else [key]
+                of_each = [[item.data for item in sent if name in item.senders] for name in senders]
                 declared = {item.name: item.built.data for item in types}
-                sent_data = [message.data for message in sent]
-                payload = payload_alphabet(sent_data, declared, delimited=frame.delimited)
+                payload = _alphabet(of_each, declared, delimited=frame.delimited)
             finished[key] = bounded.with_unprotected(payload, DECISION)
         return finished
 
@@ -233,3 +234,11 @@ def _links(draw: st.DrawFn) -> dict[str, Any]:
     }
     chosen = draw(names.several(tuple(options), 0, len(options)))
     return {key: draw(st.sampled_from(options[key])) for key in chosen}
+
+
+def _alphabet(
+    of_each: Iterable[Sequence[Any]], declared: Mapping[str, Any], *, delimited: bool
+) -> frozenset[int]:
+    """The bytes of payloads of any sender; its messages are one item of `of_each`."""
+    found = [payload_alphabet(own, declared, delimited=delimited) for own in of_each if own]
+    return frozenset().union(*found)
