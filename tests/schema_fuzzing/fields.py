@@ -280,7 +280,8 @@ def _use(draw: st.DrawFn, setting: Setting, declared: Declared) -> Built:
 def _extended(draw: st.DrawFn, element: Built, count: Any, bounds: Size) -> Built:
     """So many of an element, or a text or bytes of this size."""
     is_string = element.data.get("type") in ("ascii", "bytes")
-    is_told = element.size.fixed and element.size.least > 0
+    # The number may be one of bytes, in which one element must have room at least.
+    is_told = element.size.fixed and 0 < element.size.least <= bounds.greatest
     if not is_string and is_told and draw(forms.one_in(4)):
         return draw(_sized(element, count, bounds))
     data = {**element.data, "size" if is_string else "count": count}
