@@ -18,6 +18,7 @@ from protogen.runtime.framing.frame import (
     StartLiteral,
     StartMark,
     ValuePart,
+    written_apart,
 )
 from protogen.runtime.payload.number import Characters
 
@@ -66,15 +67,16 @@ class Layout:
             if isinstance(part, LengthPart)
             for has_payload in (False, True)
         }
-        self.identity = tuple(part for part in self.parts if isinstance(part, IdentityPart))
-        self.early_identity = bool(self.identity) and self.identity[-1] in self.head
+        head, apart = written_apart(self.head), written_apart(self.parts)
+        self.identity = tuple(part for part in apart if isinstance(part, IdentityPart))
+        self.early_identity = bool(self.identity) and self.identity[-1] in head
         """True if there is an identity, and all of it in front of the payload."""
-        self.values = tuple(part for part in spec.parts if isinstance(part, ValuePart))
-        early = self.head if spec.rescans else ()
+        self.values = tuple(part for part in apart if isinstance(part, ValuePart))
+        early = head if spec.rescans else ()
         self.bounded = tuple(part for part in self.values if part in early or part.values)
         """The values that a receiver holds to their bounds."""
         self.shown = tuple(
-            part.name for part in self.parts if isinstance(part, IdentityPart | ValuePart)
+            part.name for part in apart if isinstance(part, IdentityPart | ValuePart)
         )
         """The names of the parts that events show."""
         self.checksums = tuple(part for part in self.parts if isinstance(part, ChecksumPart))
@@ -112,7 +114,8 @@ class Layout:
     @cached_property
     def texts(self) -> tuple[tuple[int, Characters], ...]:
         """The parts that events show as texts, by their places among all that they show."""
-        shown = (part for part in self.parts if isinstance(part, IdentityPart | ValuePart))
+        apart = written_apart(self.parts)
+        shown = (part for part in apart if isinstance(part, IdentityPart | ValuePart))
         return tuple(
             (index, part.number)
             for index, part in enumerate(shown)
