@@ -196,7 +196,7 @@ class _Frame:
                 value_type=member.type,
             )
             value = codec(member.type).decode(row.bytes)
-            own = replace(own, bits=f"{value:0{member.type.bits}b}")
+            own = replace(own, offset=row.offset, bits=f"{value:0{member.type.bits}b}")
             yield self._number(member, value, own)
 
     def _number(self, part: NumberPart, value: int, row: Row) -> Row:

@@ -39,7 +39,7 @@ from protogen.passes.framing.capacity import (
     stated_range,
 )
 from protogen.passes.framing.literals import literal_of
-from protogen.passes.framing.part_bits import are_whole, bits_part, check_names
+from protogen.passes.framing.part_bits import are_whole, bits_part, check_names, holders_of
 from protogen.passes.framing.part_digits import (
     digits_type,
     is_written,
@@ -423,7 +423,7 @@ class FrameBuilder:
             self._context.error_at_key("PG131", loc, text, "add `covers: FIRST..LAST`")
             return None
         place = (*self._loc, name, "covers")
-        if not are_whole(self._context, self._syntax, item.covers, place):
+        if not are_whole(self._context, holders_of(self._syntax), item.covers, place):
             return None
         covers = written_out(self._context, self._names, item.covers, place)
         if name in covers:

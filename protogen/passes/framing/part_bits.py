@@ -88,7 +88,7 @@ class _Reader:
         const = item.const or 0
         for key in _NO_CONST:
             if getattr(item, key) is not None:
-                text = f"`{key}` does not go together with `const`, of which receivers take nothing"
+                text = f"`{key}` does not go together with `const`"
                 self._context.error("PG260", (*loc, key), text, f"remove `{key}`")
         if const > type_.greatest:
             text = f"{const} does not fit {type_.label}"
@@ -136,23 +136,31 @@ class _Reader:
 
 def check_names(context: Context, loc: Loc, parts: Mapping[str, Part]) -> None:
     """Report bits that are called as another part of the frame is, or as other bits."""
-    seen = dict.fromkeys(parts, "another part")
+    seen = dict.fromkeys(parts, "another part of the frame")
     for holder, item in parts.items():
         for name in item.bits or {}:
             if name in seen:
-                text = f"`{name}` is {seen[name]} of the frame, and these bits are called so, too"
+                text = f"`{name}` is {seen[name]}, and these bits are called so, too"
                 place = (*loc, holder, "bits", name)
                 context.error_at_key("PG258", place, text, "give one of them another name")
             seen[name] = f"some bits of `{holder}`" if name not in parts else seen[name]
 
 
+def holders_of(parts: Mapping[str, Part]) -> dict[str, str]:
+    """The parts that have bits with names, by these."""
+    return {
+        name: holder
+        for holder, item in parts.items()
+        for name in item.bits or {}
+        if name not in parts
+    }
+
+
 def are_whole(
-    context: Context, parts: Mapping[str, Part], written: Sequence[str], loc: Loc
+    context: Context, holders: Mapping[str, str], written: Sequence[str], loc: Loc
 ) -> bool:
-    """True if a run of parts names whole ones; bits that it names are reported."""
-    holders = {name: holder for holder, item in parts.items() for name in item.bits or {}}
-    named = _names(written)
-    found = [name for name in dict.fromkeys(named) if name in holders and name not in parts]
+    """True if a run of parts names no bits, whose holders these are; else that is reported."""
+    found = [name for name in dict.fromkeys(_names(written)) if name in holders]
     for name in found:
         text = f"`{name}` is some bits of `{holders[name]}`, and whole bytes are meant here"
         context.error("PG259", loc, text, f"name `{holders[name]}`")

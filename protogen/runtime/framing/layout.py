@@ -67,12 +67,10 @@ class Layout:
             if isinstance(part, LengthPart)
             for has_payload in (False, True)
         }
-        head, apart = written_apart(self.head), written_apart(self.parts)
+        apart = written_apart(self.parts)
         self.identity = tuple(part for part in apart if isinstance(part, IdentityPart))
-        self.early_identity = bool(self.identity) and self.identity[-1] in head
-        """True if there is an identity, and all of it in front of the payload."""
         self.values = tuple(part for part in apart if isinstance(part, ValuePart))
-        early = head if spec.rescans else ()
+        early = written_apart(self.head) if spec.rescans else ()
         self.bounded = tuple(part for part in self.values if part in early or part.values)
         """The values that a receiver holds to their bounds."""
         self.shown = tuple(
@@ -100,6 +98,11 @@ class Layout:
         self.stuffed = tuple(
             index for index, part in enumerate(self.parts) if part.name in spec.stuffed
         )
+
+    @cached_property
+    def early_identity(self) -> bool:
+        """True if there is an identity, and all of it in front of the payload."""
+        return bool(self.identity) and self.identity[-1] in written_apart(self.head)
 
     @cached_property
     def ends_idle(self) -> bool:

@@ -74,7 +74,7 @@ class Number(Frozen):
 
 
 class BitsNumber(Number):
-    """An integer of `bits` bits that are some of those of an integer of `size` bytes, from `low` on.
+    """An integer of `bits` bits, from `low` on, of an integer of `size` bytes.
 
     Its bytes have nothing but its own bits; in bytes that are read, the others may be anything.
     """

@@ -95,7 +95,9 @@ def numbers_of(
 ) -> tuple[NumberView, ...]:
     """Those of the parts that are numbers of which something is checked or known early."""
     views = (
-        _bits(plan, item, numbers) if isinstance(item.part, BitsPart) else _number(plan, item, numbers)
+        _bits(plan, item, numbers)
+        if isinstance(item.part, BitsPart)
+        else _number(plan, item, numbers)
         for item in items
         if isinstance(item.part, NumberPart | BitsPart)
     )

@@ -113,7 +113,7 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
         """Place, size and part, then those of the parts that are bits of it."""
         yield self.place, self.size, self.part
         for part in members_of(self.part):
-            yield part.type.label, "", part
+            yield ", ".join(filter(None, (self.place, part.type.label))), "", part
 
     @property
     def place(self) -> str:

@@ -412,8 +412,8 @@ class _Cutter(ChecksumFunction):
                     first, source = first + self.frame.skipped, "raw"
                 self.stop_if(f"not {source}.startswith({literal(part.bytes)}, {first})")
             elif isinstance(part, BitsPart) and part.mask:
-                first = Place("", self.frame.offset(part))
-                number = self.number_at(self.content, part, first)
+                place = Place("", self.frame.offset(part))
+                number = self.number_at(self.content, part, place)
                 self.stop_if(f"{number} & 0x{part.mask:02X} != 0x{part.fixed:02X}")
 
         for item in self.plan.bounded:
