@@ -389,9 +389,14 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         return self.plan.start is StartRule.SET and is_told and is_raw
 
     @property
+    def identity_is_bits(self) -> bool:
+        """True if bytes that are no start may have the bits of an identity."""
+        return isinstance(self.plan.head[0].part, BitsPart) if self.plan.head else False
+
+    @property
     def gives_up_high_bytes(self) -> bool:
         """True if a high byte is either the identity of a frame, or ends what goes before it."""
         all_end = self.identity_is_start and self.plan.seven_bit and not self.plan.end_bytes
-        if self.plan.head and isinstance(self.plan.head[0].part, BitsPart):
+        if self.identity_is_bits:
             all_end = all_end and len(self.plan.start_set) == 128
         return all_end and self.plan.start_set[0] == 128
