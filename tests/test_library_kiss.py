@@ -87,7 +87,9 @@ def pyham_kiss() -> PyhamKiss:
 
 def drawn() -> list[Case]:
     """Cases that it can send: half or full duplex, and not data of port 12: see the decision."""
-    cases = [case for case in cases_of("kiss") if case.message != "data" or case.parts["port"] != 12]
+    cases = [
+        case for case in cases_of("kiss") if case.message != "data" or case.parts["port"] != 12
+    ]
     return [
         replace(case, values={"duplex": case.values["duplex"] % 2})
         if case.message == "full_duplex"
