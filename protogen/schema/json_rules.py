@@ -24,7 +24,7 @@ _NUMERIC = ("scale", "offset", "unit", "special", "range")
 _NAMED = ("values", "flags", "bits")
 _LENGTHS = ("size", "until")
 _WRITTEN = ("digits", "code", "chars")
-_PART_ROLES = ("bits", "literal", "id", "virtual", "counts", "counter", "algorithm", "idle")
+_PART_ROLES = ("literal", "bits", "id", "virtual", "counts", "counter", "algorithm", "idle")
 
 
 def _with(*keys: str) -> JsonObject:
