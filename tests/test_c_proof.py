@@ -33,6 +33,8 @@ DIGITS = ROOT / "tests" / "framings" / "digit_words.yaml"
 """Digits around a payload, which a decoder reads and compares."""
 IDLE = ROOT / "tests" / "framings" / "idle_end.yaml"
 """Frames that only a silence ends, so that a decoder holds one byte more than they have."""
+BITS = ROOT / "tests" / "c_schemas" / "part_bits.yaml"
+"""Parts of frames whose bits are parts, which a decoder reads and compares."""
 DECODES = [
     (path, machine)
     for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS)
@@ -46,6 +48,8 @@ PUSHES: list[tuple[Path, Events, str]] = (
         *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS, DIGITS, IDLE)),
         *((path, events, NARROW) for path in DOCUMENTS for events in EVENTS),
         (TRIMMED, "messages", WIDE),
+        (BITS, "all", WIDE),
+        (BITS, "messages", NARROW),
     ]
 )
 FIRST = [ROOT / "schemas" / f"{name}.yaml" for name in ("matty", "rn1")]

@@ -102,7 +102,7 @@ def pyham_ax25() -> PyhamAx25:
 def drawn() -> list[Case]:
     """Packets that it can make, but not from port 12: see the decision of `kiss`."""
     dice = Random("ax25")
-    cases = [case for case in cases_of("ax25", ["data"]) if case.parts.get("type") != 0xC0]
+    cases = [case for case in cases_of("ax25", ["data"]) if case.parts["port"] != 12]
     return [replace(case, values=_as_heard(case.values, dice)) for case in cases]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from protogen.copying import replace
@@ -10,6 +10,7 @@ from protogen.evolution.change import Change, named
 from protogen.evolution.shapes import are_crossed, encoding_shape
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
+    BitsPart,
     ChecksumPart,
     ChoicePart,
     CounterPart,
@@ -97,16 +98,48 @@ class _Frames:
             if old.bytes != new.bytes:
                 words = named(old.bytes.hex(" ").upper(), new.bytes.hex(" ").upper())
                 yield self._change("frame-literal", old.name, words)
-        elif isinstance(old, NumberPart) and isinstance(new, NumberPart):
-            yield from self._number(old, new, renamed)
         elif isinstance(old, PayloadPart) and isinstance(new, PayloadPart):
             if old.is_trimmed != new.is_trimmed:
                 words = "zeros at the end are " + ("left out" if new.is_trimmed else "sent")
                 yield self._change("frame-trailing-zeros", old.name, words)
+        else:
+            yield from self._typed(old, new, renamed)
+
+    def _typed(self, old: Part, new: Part, renamed: dict[str, str]) -> Iterator[Change]:
+        if isinstance(old, NumberPart) and isinstance(new, NumberPart):
+            yield from self._number(old, new, renamed)
+        elif isinstance(old, BitsPart) and isinstance(new, BitsPart):
+            yield from self._bits(old, new, renamed)
         elif isinstance(old, ChecksumPart) and isinstance(new, ChecksumPart):
             yield from self._checksum(old, new, renamed)
         elif isinstance(old, VirtualPart) and isinstance(new, VirtualPart):
             yield from self._virtual(old, new)
+
+    def _bits(self, old: BitsPart, new: BitsPart, renamed: dict[str, str]) -> Iterator[Change]:
+        if _layout(old.type) != _layout(new.type):
+            labels = named(old.type.label, new.type.label)
+            yield self._change("frame-part-type", old.name, labels)
+        if (old.mask, old.fixed) != (new.mask, new.fixed):
+            words = named(*(f"{it.fixed:X} of the bits {it.mask:X}" for it in (old, new)))
+            yield self._change("frame-literal", old.name, words)
+        yield from self._members(old.members, new.members, renamed)
+
+    def _members(
+        self, old: Sequence[Part], new: Sequence[Part], renamed: dict[str, str]
+    ) -> Iterator[Change]:
+        """Changes of the parts that are bits of one; where they lie is what counts."""
+        found = {part.name: part for part in new}
+        for part in old:
+            other = found.pop(renamed.get(part.name, part.name), None)
+            if other is None:
+                yield self._change("frame-part-deleted", part.name, _kind(part))
+                continue
+            if other.name != part.name:
+                change = self._change("frame-part-renamed", part.name, named(part.name, other.name))
+                yield replace(change, old_part=part.name, new_part=other.name)
+            yield from self._part(part, other, renamed)
+        for part in found.values():
+            yield self._change("frame-part-added", part.name, _kind(part))
 
     def _number(
         self, old: NumberPart, new: NumberPart, renamed: dict[str, str]
@@ -189,7 +222,20 @@ def renamed_parts(old: Frame, new: Frame) -> dict[str, str]:
     for one, other in zip(old.declared, new.declared, strict=False):
         if one.name not in after and other.name not in before and type(one) is type(other):
             found[one.name] = other.name
+        if isinstance(one, BitsPart) and isinstance(other, BitsPart):
+            found |= _renamed_bits(one, other)
     return found
+
+
+def _renamed_bits(old: BitsPart, new: BitsPart) -> dict[str, str]:
+    """Parts that are the same bits of one, under another name."""
+    before, after = ({part.type: part.name for part in it.members} for it in (old, new))
+    names = {name: after[type_] for type_, name in before.items() if type_ in after}
+    return {
+        name: other
+        for name, other in names.items()
+        if name not in after.values() and other not in before.values()
+    }
 
 
 def _fits(sender: Sender, receiver: Sender) -> bool:
@@ -221,7 +267,7 @@ def _default(part: Part) -> int | str | None:
 
 def _layout(type: PartType) -> tuple[object, ...]:
     """Layout of its bytes; how the number is shown does not count."""
-    return type.bits, type.signed, type.byte_bits, type.byte_order, type.text
+    return type.bits, type.signed, type.byte_bits, type.byte_order, type.text, type.within
 
 
 def _sum(algorithm: ChecksumSpec) -> object:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 from functools import cached_property
 from math import ceil, floor, log10
@@ -148,6 +149,32 @@ class ChoicePart(ValuePart, frozen=True, kw_only=True):
     def is_bounded(self) -> bool:
         """True, as receivers refuse whatever is none of the literals."""
         return True
+
+
+class BitsPart(TypedPart, frozen=True, kw_only=True):
+    """A number whose bits are parts; those of none are the same in each frame."""
+
+    members: tuple[IdentityPart | CounterPart | ValuePart, ...]
+    """These parts, in the order of the schema."""
+    fixed: int
+    """The bits that are the same, as a number whose other bits are 0."""
+
+    @property
+    def mask(self) -> int:
+        """The bits of no member."""
+        every = (1 << self.type.byte_bits * self.type.size) - 1
+        return every & ~sum(place_mask(part.type) for part in self.members)
+
+    @property
+    def has_identity(self) -> bool:
+        """True if some of its bits tell which message the frame carries."""
+        return any(isinstance(part, IdentityPart) for part in self.members)
+
+
+def place_mask(type_: Integer) -> int:
+    """The bits that a member of a part has among those of the part."""
+    low = 0 if type_.within is None else type_.within.low
+    return ((1 << type_.bits) - 1) << low
 
 
 class PayloadPart(Part, frozen=True, kw_only=True):
@@ -346,7 +373,24 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     @cached_property
     def identity(self) -> tuple[IdentityPart, ...]:
         """The identity parts in wire order."""
-        return tuple(part for part in self.parts if isinstance(part, IdentityPart))
+        return tuple(part for part in self.numbers if isinstance(part, IdentityPart))
+
+    @cached_property
+    def numbers(self) -> tuple[Part, ...]:
+        """All parts in wire order, in place of those whose bits are parts these."""
+        return written_apart(self.parts)
+
+    @cached_property
+    def identity_is_early(self) -> bool:
+        """True if nothing of the identity stands behind the payload."""
+        return set(self.identity) <= set(written_apart(self.head))
+
+    def holder(self, name: str) -> Part:
+        """The part of that name, or the one that has it among its bits; raises KeyError."""
+        for part in self.parts:
+            if part.name == name or any(item.name == name for item in members_of(part)):
+                return part
+        raise KeyError(name)
 
     def key(self, identity: tuple[int, ...]) -> int:
         """Values of the identity parts as one number, the first part in its highest bits."""
@@ -374,9 +418,19 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     def shown_parts(self) -> tuple[IdentityPart | CounterPart | ValuePart, ...]:
         """The parts that events show."""
         kinds = IdentityPart | CounterPart | ValuePart
-        return tuple(part for part in self.parts if isinstance(part, kinds))
+        return tuple(part for part in self.numbers if isinstance(part, kinds))
 
     @cached_property
     def caller_parts(self) -> tuple[CounterPart | ValuePart, ...]:
         """The parts whose values come from the caller."""
-        return tuple(part for part in self.parts if isinstance(part, CounterPart | ValuePart))
+        return tuple(part for part in self.numbers if isinstance(part, CounterPart | ValuePart))
+
+
+def members_of(part: Part) -> tuple[IdentityPart | CounterPart | ValuePart, ...]:
+    """The parts that are bits of this one."""
+    return part.members if isinstance(part, BitsPart) else ()
+
+
+def written_apart(parts: Iterable[Part]) -> tuple[Part, ...]:
+    """The parts in order, in place of those whose bits are parts these."""
+    return tuple(item for part in parts for item in members_of(part) or (part,))

@@ -6,6 +6,7 @@ The *head* is the parts in front of the payload, the *tail* those behind it, wit
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import Enum, auto
 from functools import cached_property
 
@@ -27,6 +28,8 @@ from protogen.model.frame import (
     Part,
     ValuePart,
     VirtualPart,
+    members_of,
+    written_apart,
 )
 from protogen.model.identities import Identities
 from protogen.model.messages import Message
@@ -403,11 +406,31 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return (*self.head, *self.tail)
 
     def part(self, name: str) -> PlacedPart:
-        """The part of the head or the tail of that name; raises KeyError."""
+        """The part of the head or the tail of that name; raises KeyError.
+
+        One that is bits of another lies where that does.
+        """
         for item in self.placed:
             if item.name == name:
                 return item
-        raise KeyError(name)
+        return self._members[name]
+
+    @cached_property
+    def _members(self) -> dict[str, PlacedPart]:
+        """The parts that are bits of others, where these lie."""
+        return {
+            part.name: PlacedPart(part, item.place, item.is_stuffed)
+            for item in self.placed
+            for part in members_of(item.part)
+        }
+
+    def written_apart(self, items: Iterable[PlacedPart]) -> tuple[PlacedPart, ...]:
+        """Some parts, in place of those whose bits are parts these."""
+        return tuple(
+            self._members[part.name] if item.part is not part else item
+            for item in items
+            for part in written_apart((item.part,))
+        )
 
     @property
     def identity(self) -> tuple[IdentityPart, ...]:
@@ -422,7 +445,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     @property
     def identity_is_early(self) -> bool:
         """True if there is an identity, and all of it stands in front of the payload."""
-        return bool(self.identity) and any(item.part is self.identity[-1] for item in self.head)
+        return bool(self.identity) and self.part(self.identity[-1].name).in_head
 
     @property
     def bounded(self) -> tuple[PlacedPart, ...]:
@@ -434,11 +457,13 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         kinds = CounterPart | ValuePart
         early = tuple(
             item
-            for item in self.head
+            for item in self.written_apart(self.head)
             if self.rescans and isinstance(item.part, kinds) and item.part.is_bounded
         )
         return tuple(
-            item for item in self.placed if item in early or isinstance(item.part, ChoicePart)
+            item
+            for item in self.written_apart(self.placed)
+            if item in early or isinstance(item.part, ChoicePart)
         )
 
     @property
@@ -458,7 +483,9 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     def shown(self) -> tuple[PlacedPart, ...]:
         """The parts that events show: identity, counters and values."""
         kinds = IdentityPart | CounterPart | ValuePart
-        return tuple(item for item in self.placed if isinstance(item.part, kinds))
+        return tuple(
+            item for item in self.written_apart(self.placed) if isinstance(item.part, kinds)
+        )
 
     # --- start and end ----------------------------------------------------------------------------
 

@@ -13,7 +13,7 @@ import msgspec
 
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.sizes import SizeSet
-from protogen.runtime.payload.number import Characters, Number
+from protogen.runtime.payload.number import BitsNumber, Characters, Number
 from protogen.runtime.payload.numerals import FreeNumeral as WrittenFreely
 from protogen.runtime.payload.numerals import Numeral as WrittenNumeral
 from protogen.runtime.payload.numerals import Separated
@@ -99,6 +99,15 @@ class Numeral(msgspec.Struct, frozen=True, kw_only=True, cache_hash=True):
     def name(self) -> str:
         """What the digits are: `base10`, `base16-upper`, or `base64 from 0x30`."""
         return self.known or f"base{self.base} from 0x{self.alphabet[0]:02X}"
+
+
+class BitPlace(msgspec.Struct, frozen=True, kw_only=True, cache_hash=True):
+    """Place of an integer that is some bits of another one."""
+
+    low: int
+    """The lowest of these bits, counted from the least significant one."""
+    size: int
+    """Wire bytes of the other one."""
 
 
 class FreeNumeral(msgspec.Struct, frozen=True, kw_only=True, cache_hash=True):
@@ -202,10 +211,14 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     """True if it has no bytes of its own: its bits lie among those of its neighbours."""
     text: Numeral | FreeNumeral | None = None
     """How it is written as text, if it is."""
+    within: BitPlace | None = None
+    """Where its bits lie, if they are those of another integer, whose bytes it shares."""
 
     @cached_property
     def size(self) -> int:
         """Wire bytes; none where it is packed, or where their number varies."""
+        if self.within is not None:
+            return self.within.size
         if isinstance(self.text, Numeral):
             return self.text.size
         return 0 if self.packed or self.is_free else -(-self.bits // self.byte_bits)
@@ -216,6 +229,12 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
         if isinstance(self.text, FreeNumeral):
             return self.text.sizes(signed=self.signed)
         return SizeSet.exactly(self.size)
+
+    @property
+    def whole(self) -> Integer:
+        """All bits of the bytes in which its bits lie."""
+        bits = self.byte_bits * self.size
+        return Integer(bits=bits, byte_bits=self.byte_bits, byte_order=self.byte_order)
 
     @property
     def is_free(self) -> bool:
@@ -253,6 +272,9 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
             return self.text.label
         if self.text is not None:
             return f"{self.name} as {self.text.size} digits {self.text.name}"
+        if self.within is not None:
+            low, high = self.within.low, self.within.low + self.bits - 1
+            return f"bit {low}" if low == high else f"bits {low}..{high}"
         plain = self.size <= 1 or self.is_text
         return self.name if plain else f"{self.name} {self.byte_order}"
 
@@ -385,4 +407,8 @@ def codec(type_: NumberType) -> Codec:
         )
     if form is not None:
         return WrittenNumeral(type_.bits, form.alphabet, form.size, type_.signed)
+    within = type_.within if isinstance(type_, Integer) else None
+    if within is not None:
+        seven_bit = type_.byte_bits == 7
+        return BitsNumber(type_.bits, within.low, within.size, type_.byte_order, seven_bit)
     return Number(type_.bits, type_.signed, type_.byte_order, seven_bit=type_.byte_bits == 7)

@@ -12,6 +12,7 @@ from protogen.runtime.events import Event, InvalidEvent, MessageEvent, UnknownEv
 from protogen.runtime.framing.frame import (
     AfterEnd,
     Anywhere,
+    BitsPart,
     ChecksumPart,
     CounterPart,
     End,
@@ -31,7 +32,7 @@ from protogen.runtime.identities import Identities
 from protogen.runtime.lazy import importer, lazily
 from protogen.runtime.payload.enums import Flags, OpenEnum
 from protogen.runtime.payload.message import Message, Record, Sizes
-from protogen.runtime.payload.number import Characters, Number
+from protogen.runtime.payload.number import BitsNumber, Characters, Number
 from protogen.runtime.payload.numerals import FreeNumeral, Numeral, Separated
 from protogen.runtime.payload.physical import (
     BitRange,
@@ -50,6 +51,8 @@ __all__ = [
     "Anywhere",
     "ArrayRule",
     "BitRange",
+    "BitsNumber",
+    "BitsPart",
     "BoolRule",
     "BytesLike",
     "Characters",

@@ -26,7 +26,7 @@ _LENGTHS = ("size", "until")
 _LAST_ELEMENT: JsonObject = {"type": "object", "required": ["element"]}
 """What ends an array, and no text."""
 _WRITTEN = ("digits", "code", "chars")
-_PART_ROLES = ("literal", "id", "virtual", "counts", "counter", "algorithm", "idle")
+_PART_ROLES = ("literal", "bits", "id", "virtual", "counts", "counter", "algorithm", "idle")
 
 
 def _with(*keys: str) -> JsonObject:
@@ -203,6 +203,11 @@ _PART_RULES = (
         _none_of(("range", "default")),
     ),
     _where(
+        _with("bits"),
+        "Bits of a number are parts, and it is none itself.",
+        {"propertyNames": {"enum": ["type", "bits", "byte_order", "unprotected", "doc", "source"]}},
+    ),
+    _where(
         _with("virtual"),
         "What is not sent has no bounds, and no delimiter can be mistaken for it.",
         _none_of(("range", "unprotected")),
@@ -210,6 +215,15 @@ _PART_RULES = (
     *(_bounded(f"uint{bits}", 0, 2**bits - 1) for bits in (8, 16, 32)),
     _where(_with("over"), "This is for a checksum or a length.", _any_of(("algorithm", "counts"))),
     _together("These are for a checksum.", {key: ["algorithm"] for key in ("covers", "when")}),
+)
+
+_PART_BITS_RULES = (
+    _where(
+        _with("const"),
+        "Bits that are the same in each frame are no part.",
+        _none_of(("id", "counter", "range", "default")),
+    ),
+    _where(_with("id"), "What tells the message is not chosen.", _none_of(("counter", "default"))),
 )
 
 _MESSAGE_RULES = (
@@ -264,6 +278,7 @@ _ROOT_RULES = (
 RULES: Mapping[str, tuple[JsonObject, ...]] = {
     "FieldSyntax": _FIELD_RULES,
     "Part": _PART_RULES,
+    "PartBits": _PART_BITS_RULES,
     "MessageSyntax": _MESSAGE_RULES,
     "Example": _EXAMPLE_RULES,
     "Overload": _OVERLOAD_RULES,

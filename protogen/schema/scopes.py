@@ -74,6 +74,17 @@ class Scopes:
         return ((_EVERYWHERE[kind],),)
 
     def of_parts(self, place: Place) -> tuple[Place, ...]:
+        """Frames that a place is about, and the parts of them whose bits are parts."""
+        frames = self._of_frames(place)
+        bits = (
+            (*frame, part, "bits")
+            for frame in frames
+            for part in keys_at(self._data, frame)
+            if keys_at(self._data, (*frame, part, "bits"))
+        )
+        return (*frames, *bits)
+
+    def _of_frames(self, place: Place) -> tuple[Place, ...]:
         """The frame of all, or those of the senders or the forms that a place is about."""
         if keys_at(self._data, ("forms",)):
             return tuple(("forms", form, "frame") for form in self._forms(place))

@@ -228,7 +228,8 @@ class _Drawing:
         self._draw = draw
         self._payload = payload
         self._maker = Maker(draw, byte_bits, order)
-        self._maker.take([part.name for part in identity])
+        for part in identity:
+            self._maker.take([part.name, *part.data.get("bits", ())])
         self._code = draw(codes())
         self._start = draw(st.sampled_from(STARTS))
         self._end = draw(st.sampled_from(ENDS))
@@ -346,6 +347,8 @@ class _Drawing:
         head = self._mixed(identity, others)
         if self._start == "set" and not (head and head[0].data.get("range") and head[0].size == 1):
             head.insert(0, maker.number("value", start=True))
+        elif head and "bits" in head[0].data and self._start == "none":
+            head.insert(0, maker.number("counter"))  # Bits might mark a start.
         tail += sums
         self._mark(head, tail)
         return head, tail

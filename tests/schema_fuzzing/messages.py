@@ -151,7 +151,9 @@ def _written_identity(
             found.append(first if is_one else {"range": [first, last]})
         if is_text(part):
             found = [text_of(first, part.type) for first, _ in runs]
-        written[part.name] = found if len(found) > 1 or draw(forms.one_in(9)) else found[0]
+        written[part.identity or part.name] = (
+            found if len(found) > 1 or draw(forms.one_in(9)) else found[0]
+        )
     if len(written) == 1 and not draw(forms.one_in(4)):
         return next(iter(written.values()))
     return dict(draw(st.permutations(list(written.items()))))

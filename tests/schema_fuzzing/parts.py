@@ -12,6 +12,7 @@ from protogen.copying import replace
 from schema_fuzzing import forms
 from schema_fuzzing.names import PARTS, fresh
 from schema_fuzzing.numbers import ORDERS
+from schema_fuzzing.part_bits import Run, bytes_of, fill
 from schema_fuzzing.part_digits import ONE_OF_16, Digits, digits_of
 
 ALGORITHMS = (
@@ -74,6 +75,8 @@ class PartPlan:
     bounds: tuple[int, int] = (0, 0)
     words: tuple[bytes, ...] = ()
     """The literals of a choice."""
+    identity: str = ""
+    """The name of the bits of it that are an identity, whose type and bounds these are."""
 
     @property
     def size(self) -> int:
@@ -168,6 +171,8 @@ class Maker:
         """A counter or a value; `start`: one byte with a range, which marks the frame's start."""
         if role == "value" and not start and self._draw(forms.one_in(5)):
             return self._text_part(role)
+        if role == "value" and not start and self._draw(forms.one_in(5)):
+            return self._bits(tells=False)
         type_, keys = self.type(one_byte=start)
         least, greatest = 0, type_.greatest
         if start or self._draw(forms.one_in(3)):
@@ -180,6 +185,35 @@ class Maker:
         keys.update(self._draw(forms.about()))
         values = type_.bytes_between(least, greatest)
         return PartPlan(self.name(), role, keys, values, type=type_, bounds=(least, greatest))
+
+    def _bits(self, *, tells: bool) -> PartPlan:
+        """A number whose bits are parts, an identity among them if it `tells` the message."""
+        size, byte_bits = self._draw(st.sampled_from([1, 1, 1, 2])), self._byte_bits
+        keys: dict[str, Any] = {"type": f"uint{size * byte_bits}"}
+        if size == 1 and self._draw(forms.one_in(3)):
+            keys["type"], byte_bits = "byte", 8
+        order = self._order or "little"
+        if size > 1 and (self._order is None or self._draw(forms.one_in(4))):
+            order = keys["byte_order"] = self._draw(ORDERS)
+        given, type_, bounds = None, None, (0, 0)
+        if tells:
+            width = self._draw(st.integers(3, size * byte_bits))
+            low = self._draw(st.integers(0, size * byte_bits - width))
+            type_ = PartType(f"uint{width}", width, byte_bits, order)
+            own: dict[str, Any] = {"id": True}
+            bounds = 0, type_.greatest
+            if width > 4 and self._draw(forms.one_in(4)):
+                bounds = self._small_bounds(type_)
+                own["range"] = list(bounds)
+            given = self.name(), own, Run(low, width, *bounds)
+        keys["bits"], runs = fill(self._draw, size * byte_bits, self.name, given)
+        keys.update(self._draw(forms.about()))
+        values = bytes_of(runs, size, byte_bits)
+        values = values if order == "little" else values[::-1]
+        role, told = ("id", given[0]) if given is not None else ("value", "")
+        return PartPlan(
+            self.name(), role, keys, tuple(values), type=type_, bounds=bounds, identity=told
+        )
 
     def _written_range(self, type_: PartType, least: int, greatest: int) -> list[Any]:
         character = type_.type == "char" and greatest < 0x7F
@@ -225,6 +259,8 @@ class Maker:
         """An identity part; `start`: its range sets it apart from 7-bit bytes."""
         if not start and self._draw(forms.one_in(6)):
             return self._text_part("id", id=True)
+        if not start and self._draw(forms.one_in(4)):
+            return self._bits(tells=True)
         type_, keys = self.type(one_byte=start)
         keys["id"] = True
         if start and type_.bits == 8 and self._draw(st.booleans()):

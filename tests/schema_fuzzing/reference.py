@@ -16,6 +16,7 @@ from expression_oracle import worked_out
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
     Base16,
+    BitsPart,
     ChecksumPart,
     Cobs,
     Encoding,
@@ -241,6 +242,12 @@ class _Assembly:
                 return number_bytes(part.type, self._checksum(part))
             case LengthPart():
                 return number_bytes(part.type, self._length(part))
+            case BitsPart():
+                bits = part.fixed
+                for member in part.members:
+                    assert member.type.within is not None
+                    bits |= int(self._numbers[member.name]) << member.type.within.low
+                return number_bytes(part.type, bits)
             case NumberPart():
                 value = self._numbers[part.name]
                 if isinstance(value, str):
@@ -262,7 +269,7 @@ class _Assembly:
                 return len(part.bytes)
             case PayloadPart():
                 return len(self._payload)
-            case NumberPart() | ChecksumPart():
+            case NumberPart() | ChecksumPart() | BitsPart():
                 return part.type.size
         raise AssertionError(part)
 

@@ -28,6 +28,8 @@ COMMON = (
     "counter", "value", "choice", "start: choice", "start: by position",
     "checksum over wire", "checksum when payload", "algorithm: parameters",
     "text as a part: id", "text as a part: literal", "text as a part: value",
+    "bits as parts", "bits as parts: id", "bits as parts: const", "bits as parts: counter",
+    "bits as parts: range", "bits as parts: default",
     "several identities", "overload by size", "overload by undecidable", "unspecified payload",
     "empty message",
     "separated fields", "separated fields, one in front", "virtual part",
@@ -141,6 +143,10 @@ def _part(data: dict[str, Any]) -> Iterator[str]:
             yield "checksum when payload"
     if "byte_order" in data:
         yield "byte order of a part"
+    if "bits" in data:
+        several = [item for item in data["bits"].values() if isinstance(item, dict)]
+        yield "bits as parts"
+        yield from (f"bits as parts: {key}" for item in several for key in item)
     if data.get("type") == "ascii":
         role = next((key for key in ("id", "literal") if key in data), "value")
         yield f"text as a part: {role}"

@@ -87,7 +87,7 @@ def all_parts(frame: Frame, message: Message, given: dict[str, int | str]) -> di
     """Parts that an event shows: identity, counters and values."""
     identity = dict(zip((part.name for part in frame.identity), message.identity, strict=True))
     shown: dict[str, int | str] = {}
-    for part in frame.parts:
+    for part in frame.numbers:
         if isinstance(part, IdentityPart):
             shown[part.name] = given.get(part.name, part.shown(identity[part.name]))
         elif isinstance(part, CounterPart | ValuePart):

@@ -20,7 +20,12 @@ def add_virtual(draw: st.DrawFn, data: Data, byte_bits: int, orders: dict[str, s
     """
     frame = data["frame"]
     shared = "payload" in frame
-    taken = {name for parts in ([frame] if shared else frame.values()) for name in parts}
+    taken = {
+        name
+        for parts in ([frame] if shared else frame.values())
+        for key, part in parts.items()
+        for name in (key, *part.get("bits", ()))
+    }
     for sender, written in ({"": frame} if shared else dict(frame)).items():
         parts = written
         sums = [name for name, part in parts.items() if "algorithm" in part]

@@ -14,6 +14,7 @@ from protogen.copying import replace
 from protogen.model.checksums import checksum_of
 from protogen.model.frame import (
     FULL_GROUP,
+    BitsPart,
     ChecksumPart,
     ChoicePart,
     IdentityPart,
@@ -129,7 +130,10 @@ class _Frame:
             self._found[part.name] = _Found(b"", b"")
             return
         else:
-            self._rows.append(self._fixed(part))
+            row = self._fixed(part)
+            self._rows.append(row)
+            if isinstance(part, BitsPart):
+                self._rows += self._bits(part, row)
         rows = self._rows[start:]
         content = b"".join(row.bytes for row in rows)
         self._found[part.name] = _Found(content, b"".join(row.wire for row in rows))
@@ -177,8 +181,23 @@ class _Frame:
             return replace(row, fault=str(error))
         if isinstance(part, ChecksumPart):
             return self._checksum(part, row.reads(value, ""))
+        if isinstance(part, BitsPart):
+            other = value & part.mask != part.fixed
+            fault = f"bits {part.mask:X} must be {part.fixed:X}" if other else ""
+            return row.reads(value, "bits that are parts", fault)
         assert isinstance(part, NumberPart)
         return self._number(part, value, row)
+
+    def _bits(self, part: BitsPart, row: Row) -> Iterator[Row]:
+        """The parts that are bits of one that was read, which have no bytes of their own."""
+        for member in part.members if isinstance(row.value, int) else ():
+            own = replace(
+                self._cursor.take(0, member.name, member.type.name, subject=member),
+                value_type=member.type,
+            )
+            value = codec(member.type).decode(row.bytes)
+            own = replace(own, offset=row.offset, bits=f"{value:0{member.type.bits}b}")
+            yield self._number(member, value, own)
 
     def _number(self, part: NumberPart, value: int, row: Row) -> Row:
         self._numbers[part.name] = value

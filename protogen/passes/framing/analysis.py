@@ -162,7 +162,7 @@ class _Analysis:
         """
         first = self.frame.parts[0]
         item = self._written.parts[first.name]
-        if item.range is None or first.name in self.frame.stuffed:
+        if first.name in self.frame.stuffed or (item.range is None and item.bits is None):
             return None
         values = part_bytes(first, self._payload)[0]
         used = (used for part, used in wire_bytes(self.frame, self._payload) if part != first)
@@ -180,7 +180,7 @@ class _Analysis:
         """True if the frame, or each message, says where it ends."""
         if self.frame.length is not None or self.frame.silence is not None or end is not None:
             return True
-        if not set(self.frame.identity) <= set(self.frame.head):
+        if not self.frame.identity_is_early:
             text = "the identity comes behind the payload, and nothing else tells where it ends"
             self._context.error_at_key("PG145", self._loc, text)
             return False

@@ -21,6 +21,7 @@ from protogen.model.frame import (
     PayloadPart,
     Substitution,
     VirtualPart,
+    written_apart,
 )
 from protogen.model.frame_plan import (
     ChecksumPlan,
@@ -312,7 +313,7 @@ class _Planner:
         region = self._region
         checksums = [self._placed(part.name) for part in self._frame.checksums]
         optional = any(part.when_payload for part in self._frame.checksums)
-        early = {item.part.name for item in self._head}
+        early = {part.name for part in written_apart([item.part for item in self._head])}
         told = [*self._frame.identity, *filter(None, [self._frame.length])]
         cuts_region = region is not None and region.behind and region.before < self._head_size
         if region is not None and region.insertion is not None:

@@ -39,6 +39,7 @@ from protogen.passes.framing.capacity import (
     stated_range,
 )
 from protogen.passes.framing.literals import literal_of
+from protogen.passes.framing.part_bits import are_whole, bits_part, check_names, holders_of
 from protogen.passes.framing.part_digits import (
     digits_type,
     is_written,
@@ -64,6 +65,7 @@ PAYLOAD = "payload"
 _TYPE = frozenset({"type", "byte_order", "digits", "chars", "code"})
 _NUMBER = _TYPE | {"range", "unprotected"}
 _ROLES: dict[str, frozenset[str]] = {
+    "bits": frozenset({"type", "byte_order", "bits", "size", "unprotected"}),
     "virtual": _TYPE | {"virtual", "size", "default"},
     "literal": frozenset({"literal", "unprotected", "type"}),
     "id": _NUMBER | {"id", "size"},
@@ -122,6 +124,7 @@ class FrameBuilder:
     def frame(self) -> Frame | None:
         """The frame, or None where something about it is wrong."""
         before = self._context.tally.errors
+        check_names(self._context, self._loc, self._syntax)
         parts = [self._part(name, item) for name, item in self._syntax.items()]
         if PAYLOAD not in self._syntax:
             text = "the frame has no part called `payload`"
@@ -187,6 +190,8 @@ class FrameBuilder:
         type_ = self._type(name, item)
         if type_ is None:
             return None
+        if role == "bits":
+            return bits_part(self._context, (*self._loc, name), item, type_, text)
         if role == "algorithm":
             return self._checksum(name, item, type_)
         least, greatest = self._range(name, item, type_)
@@ -417,7 +422,10 @@ class FrameBuilder:
             loc = (*self._loc, name)
             self._context.error_at_key("PG131", loc, text, "add `covers: FIRST..LAST`")
             return None
-        covers = written_out(self._context, self._names, item.covers, (*self._loc, name, "covers"))
+        place = (*self._loc, name, "covers")
+        if not are_whole(self._context, holders_of(self._syntax), item.covers, place):
+            return None
+        covers = written_out(self._context, self._names, item.covers, place)
         if name in covers:
             self._error("PG136", name, "covers", f"the checksum `{name}` covers itself")
         return covers

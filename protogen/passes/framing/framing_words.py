@@ -35,6 +35,10 @@ def finds_start(start: Start, *, is_idle: bool = False) -> str:
             )
 
 
+_MANY_WORDS = 16
+"""So many words are listed."""
+
+
 def finds_end(frame: Frame, start: Start, end: End | None, messages: list[Message]) -> str:
     """Sentence on how a receiver finds where a frame ends."""
     if frame.silence is not None:
@@ -113,6 +117,8 @@ def span(start: StartSet) -> str:
     *words, last = map(_hex, start.words)
     if start.is_run:
         return f"{words[0] if words else last} to {last}"
+    if len(words) > _MANY_WORDS:
+        words = [*words[:_MANY_WORDS], "..."]
     return f"{', '.join(words)} or {last}"
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from protogen.model.frame import Frame
 from protogen.passes.context import Context, Loc
+from protogen.passes.framing.part_bits import are_whole, holders_of
 from protogen.passes.framing.part_runs import written_out
 from protogen.schema.syntax.parts import Part
 
@@ -27,7 +28,7 @@ def sent_run(
     for name in dict.fromkeys(virtual):
         text = f"`{name}` is virtual: it has no bytes on the wire, and {what}"
         context.error("PG231", loc, text, "name parts that are sent")
-    if virtual:
+    if virtual or not are_whole(context, holders_of(parts), written, loc):
         return ()
     found = written_out(context, list(parts), written, loc)
     return tuple(name for name in found if not parts[name].virtual)

@@ -13,12 +13,13 @@ from typing import Any
 
 from protogen.copying import replace
 from protogen.model.expressions import Operand, value_of
-from protogen.model.frame import Frame
+from protogen.model.frame import Frame, members_of
 from protogen.model.messages import Contradiction, Example, Exchange, Message, Step
 from protogen.model.types import Array, Field, Octets, Struct, Switch, Type, is_integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.capacity import head_literals, joined_words
+from protogen.passes.framing.part_bits import are_whole
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.part_values import number_of
 from protogen.passes.types.constants import named_raw_value
@@ -146,6 +147,9 @@ def _covers(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) -> tu
         context.error_at_key("PG162", (*loc, "content"), text, "add `covers`, or `content_covers`")
         return ()
     place: Loc = (*loc, "covers") if item.covers else (*loc, "content")
+    bits = {part.name: whole.name for whole in frame.parts for part in members_of(whole)}
+    if not are_whole(context, bits, written, place):
+        return ()
     return written_out(context, [part.name for part in frame.parts], written, place)
 
 

@@ -74,7 +74,7 @@ def _number(
 def _report_unknown(
     context: Context, loc: Loc, name: str, frames: Mapping[str, Frame], known: list[str]
 ) -> None:
-    sent = any(part.name == name for frame in frames.values() for part in frame.parts)
+    sent = any(part.name == name for frame in frames.values() for part in frame.numbers)
     if sent:
         text = f"`{name}` is sent in each frame, so that a message does not give its value"
         hint = "messages give values of parts with `virtual: true`"

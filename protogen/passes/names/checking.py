@@ -65,8 +65,10 @@ def _usable(context: Context, name: str, loc: Loc) -> None:
 
 
 def _parts(context: Context, frame: Frame, loc: Loc) -> None:
-    for name in frame:
+    for name, item in frame.items():
         _usable(context, name, (*loc, name))
+        for own in item.bits or {}:
+            _usable(context, own, (*loc, name, "bits", own))
 
 
 def _fields(context: Context, fields: Mapping[str, FieldSyntax], loc: Loc) -> None:

@@ -9,6 +9,7 @@ import msgspec
 
 from protogen.model.checksums import checksum_of
 from protogen.model.frame import (
+    BitsPart,
     ChecksumPart,
     Frame,
     Insertion,
@@ -20,7 +21,7 @@ from protogen.model.frame import (
 from protogen.model.payload_plan import constant_bytes
 from protogen.model.types import Field
 from protogen.passes.framing.capacity import counted_size
-from protogen.passes.proofs.wire_code import ByteSet, code_of, part_bytes
+from protogen.passes.proofs.wire_code import ByteSet, bits_bytes, code_of, part_bytes
 
 
 class Stretch(msgspec.Struct, frozen=True):
@@ -78,6 +79,8 @@ def _part(
     value = identity.get(part.name)
     if isinstance(part, LengthPart) and not part.over_wire:
         value = _stated(frame, part, sum(stretch.count for stretch in payload))
+    if isinstance(part, BitsPart):
+        return tuple(Stretch(values) for values in bits_bytes(part, identity))
     if isinstance(part, NumberPart) and value is not None:
         return known_bytes(part.encode(value))
     return tuple(Stretch(values) for values in part_bytes(part, frozenset()))

@@ -41,7 +41,7 @@ def undetected_errors(
     frame: Frame, start: Start, end: End | None, messages: list[Message], payload: ByteSet
 ) -> tuple[str, ...]:
     """One sentence for each kind of wrong byte that a receiver takes for right."""
-    sentences = [_part(frame, part, end, messages, payload) for part in frame.parts]
+    sentences = [_part(frame, part, end, messages, payload) for part in frame.numbers]
     sentences.append(_misread_size(frame, end, messages))
     sentences.append(_misread_absence(frame, messages))
     sentences.append(_false_start(frame, start))
@@ -58,7 +58,8 @@ def _part(
 ) -> str:
     if isinstance(part, LiteralPart | ChecksumPart):
         return ""
-    covering = [checksum for checksum in frame.checksums if part.name in checksum.covers]
+    holder = frame.holder(part.name).name
+    covering = [checksum for checksum in frame.checksums if holder in checksum.covers]
     if covering:
         made_up = _made_up_for(frame, part, covering, messages)
         return made_up or _sometimes(part, covering, messages)
@@ -295,7 +296,7 @@ def _acceptable(frame: Frame, messages: list[Message]) -> list[SizeSet]:
 
     Behind the payload, another size makes another identity of it.
     """
-    first = set(frame.identity) <= set(frame.head)
+    first = frame.identity_is_early
     groups: dict[Identities | None, SizeSet] = {}
     for message in messages:
         key = message.told_by if first else None

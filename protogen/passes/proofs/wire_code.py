@@ -11,6 +11,7 @@ from functools import cache
 from protogen.copying import replace
 from protogen.model.frame import (
     Base16,
+    BitsPart,
     ChecksumPart,
     ChoicePart,
     Cobs,
@@ -64,6 +65,8 @@ def part_bytes(part: Part, payload: ByteSet) -> tuple[ByteSet, ...]:
             return tuple(frozenset({byte}) for byte in part.bytes)
         case ChoicePart():
             return tuple(map(frozenset, zip(*part.words, strict=True)))
+        case BitsPart():
+            return bits_bytes(part, {})
         case NumberPart():
             return _number_bytes(part, part.least, part.greatest)
         case ChecksumPart():
@@ -87,6 +90,35 @@ def _number_bytes(part: TypedPart, least: int, greatest: int) -> tuple[ByteSet, 
     top = frozenset(range(least >> shift, (greatest >> shift) + 1))
     rest = (every,) * (type_.size - 1)
     return (top, *rest) if type_.byte_order == "big" else (*rest, top)
+
+
+def bits_bytes(part: BitsPart, known: Mapping[str, int]) -> tuple[ByteSet, ...]:
+    """Values of each byte of a part whose bits are parts, some of which have known values."""
+    width = part.type.byte_bits
+    found: list[ByteSet] = []
+    for low in range(0, width * part.type.size, width):
+        values = {part.fixed >> low & (1 << width) - 1}
+        for item in part.members:
+            own = _bits_in(item, known.get(item.name), low, width)
+            values = {one | other for one in values for other in own}
+        found.append(frozenset(values))
+    return tuple(found if part.type.byte_order == "little" else reversed(found))
+
+
+def _bits_in(item: NumberPart, value: int | None, low: int, width: int) -> ByteSet:
+    """What the bits of a part can be in a byte that has `width` bits of a number, from `low`."""
+    every, within = (1 << width) - 1, item.type.within
+    shift = (0 if within is None else within.low) - low
+
+    def in_byte(number: int) -> int:
+        return (number << shift if shift >= 0 else number >> -shift) & every
+
+    if value is not None:
+        return frozenset({in_byte(value)})
+    if shift >= 0 and shift + item.type.bits <= width:
+        return frozenset(map(in_byte, range(item.least, item.greatest + 1)))
+    own = in_byte(item.type.greatest)
+    return frozenset(number & own for number in range(every + 1))
 
 
 def _digits(form: Numeral, least: int, greatest: int) -> tuple[ByteSet, ...]:

@@ -13,6 +13,7 @@ from protogen.problems.catalogue.keys_and_names import KEY_AND_NAME_CODES
 from protogen.problems.catalogue.last_elements import LAST_ELEMENT_CODES
 from protogen.problems.catalogue.messages import MESSAGE_CODES
 from protogen.problems.catalogue.packing import PACKING_CODES
+from protogen.problems.catalogue.part_bits import PART_BITS_CODES
 from protogen.problems.catalogue.parts import PART_CODES
 from protogen.problems.catalogue.silences import SILENCE_CODES
 from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
@@ -42,5 +43,6 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *TRIMMING_CODES,
     *MESSAGE_CODES,
     *PART_CODES,
+    *PART_BITS_CODES,
     *WIRE_COUNT_CODES,
 )

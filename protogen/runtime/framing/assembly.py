@@ -10,6 +10,7 @@ from typing import Any, Self
 from protogen.runtime.attributes import argument
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.frame import (
+    BitsPart,
     ChecksumPart,
     CounterPart,
     LengthPart,
@@ -193,6 +194,8 @@ class _Assembly:
             return part.value
         if isinstance(part, PayloadPart):
             return self._payload
+        if isinstance(part, BitsPart):
+            return part.encode(self._numbers)
         return self._number(part, self._value(part))
 
     def _value(self, part: NumberPart) -> int:

@@ -9,6 +9,7 @@ from typing import Any
 
 from protogen.runtime.errors import ByteError, PayloadFault, Reason
 from protogen.runtime.framing.frame import (
+    BitsPart,
     ChecksumPart,
     LengthPart,
     LiteralPart,
@@ -16,6 +17,7 @@ from protogen.runtime.framing.frame import (
     Part,
     PayloadPart,
     ValuePart,
+    members_of,
 )
 from protogen.runtime.framing.layout import Slice, is_optional
 from protogen.runtime.framing.sender import IdentityGroup, SenderSpec
@@ -127,10 +129,29 @@ class Content:
             self._measure()
             return
         part = self._part
-        if isinstance(part, NumberPart) and not isinstance(part, ChecksumPart):
-            self._read(part, bytes(self.bytes[-part.size :]))
+        self._read_part(part, bytes(self.bytes[-part.size :]))
         self.index += 1
         self._enter()
+
+    def _read_part(self, part: Part, data: bytes) -> None:
+        """Take the numbers of a part, and then what they tell."""
+        if isinstance(part, BitsPart):
+            self._read_bits(part, data)
+        elif isinstance(part, NumberPart) and not isinstance(part, ChecksumPart):
+            self._read(part, data)
+        identity = self._layout.identity
+        if part is self._layout.length:
+            self._read_length(self._layout.length)
+        elif self._layout.early_identity and identity[-1] in (part, *members_of(part)):
+            self._identify()
+
+    def _read_bits(self, part: BitsPart, data: bytes) -> None:
+        try:
+            part.check(data)
+        except ByteError as error:
+            raise Rejected(error.reason, f"{part.name}: {error}") from None
+        for member in part.members:
+            self._read(member, data)
 
     def _read(self, part: NumberPart, data: bytes) -> None:
         try:
@@ -139,10 +160,6 @@ class Content:
             raise Rejected(error.reason, f"{part.name}: {error}") from None
         if isinstance(part, ValuePart) and part in self._layout.bounded:
             self._check_bounds(part, number)
-        if part is self._layout.length:
-            self._read_length(self._layout.length)
-        elif self._layout.early_identity and part is self._layout.identity[-1]:
-            self._identify()
 
     def _check_bounds(self, part: ValuePart, number: int) -> None:
         if not part.holds(number):
@@ -259,8 +276,7 @@ class Content:
         data = self._slice(item)
         if isinstance(item.part, LiteralPart) and data != item.part.value:
             raise Rejected("value", f"{data.hex(' ')} is not {item.part.name}")
-        if isinstance(item.part, NumberPart) and not isinstance(item.part, ChecksumPart):
-            self._read(item.part, data)
+        self._read_part(item.part, data)
 
     def _slice(self, item: Slice) -> bytes:
         return bytes(self.bytes[item.start : item.end])

@@ -12,11 +12,13 @@ from typing import Any
 
 from protogen.runtime.errors import ByteError, Reason
 from protogen.runtime.framing.frame import (
+    BitsPart,
     ChecksumPart,
     LiteralPart,
     NumberPart,
     Part,
     StartMark,
+    written_apart,
 )
 from protogen.runtime.framing.layout import Place
 from protogen.runtime.framing.machine import Failure, wrong_sum
@@ -100,11 +102,17 @@ class Judge:
             for item in head
             if isinstance(item.part, LiteralPart) and item.start >= layout.start_size
         ]
-        self._checked = [
+        self._held = [
             (item.part, slice(item.start, item.end))
             for item in head
-            if isinstance(item.part, NumberPart)
-            and (item.part in checked or item.part.number.bits < 8 * item.part.size)
+            if isinstance(item.part, BitsPart)
+        ]
+        self._checked = [
+            (part, slice(item.start, item.end))
+            for item in head
+            for part in written_apart((item.part,))
+            if isinstance(part, NumberPart)
+            and (part in checked or part.number.bits < 8 * part.size)
         ]
 
     def verdict(self, data: bytes, start: int, end: int, *, is_all: bool) -> Verdict:
@@ -130,8 +138,10 @@ class Judge:
         if not self._sender.frame.virtual:
             return {}
         numbers = {
-            part.name: part.number.decode(content[slice(*places[part.name])])
-            for part in self._layout.identity
+            part.name: part.number.decode(content[slice(*places[held.name])])
+            for held in self._layout.parts
+            for part in written_apart((held,))
+            if part in self._layout.identity
         }
         return self._sender.virtual(numbers)
 
@@ -166,6 +176,8 @@ class Judge:
         if any(head[place] != value for value, place in self._literals):
             return None
         try:
+            for held, place in self._held:
+                held.check(head[place])
             numbers = {part.name: part.number.decode(head[place]) for part, place in self._checked}
         except ByteError:
             return None

@@ -6,9 +6,11 @@ and only stated here.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from protogen.runtime.checksum import Checksum
+from protogen.runtime.errors import ByteError, EncodeError
 from protogen.runtime.identities import Identities, Identity
 from protogen.runtime.payload.number import Characters, Number
 from protogen.runtime.payload.numerals import Numeral
@@ -103,6 +105,42 @@ class CounterPart(ValuePart):
     """Counts frames from `default` or `least` on; behind `greatest` comes `least`."""
 
 
+class BitsPart(NamedTuple):
+    """A number whose bits are parts, `members`; each of these has the bytes of all.
+
+    The bits of `mask` belong to none of them: they are those of `fixed` in each frame.
+    """
+
+    name: str
+    number: Number
+    members: tuple[IdentityPart | ValuePart, ...]
+    mask: int
+    fixed: int
+
+    @property
+    def size(self) -> int:
+        """Bytes before any stuffing."""
+        return self.number.size
+
+    def check(self, data: bytes) -> None:
+        """Raise ByteError where bits that are the same in each frame are others."""
+        number = self.number.decode(data)
+        if number & self.mask != self.fixed:
+            problem = f"the bits {self.mask:X} of {number:X} have to be {self.fixed:X}"
+            raise ByteError("value", problem)
+
+    def encode(self, numbers: Mapping[str, int]) -> bytes:
+        """The bytes for the values of its members. Raises EncodeError where one can't be."""
+        joined = self.fixed
+        for part in self.members:
+            try:
+                data = part.number.encode(numbers[part.name])
+            except ValueError as error:
+                raise EncodeError(part.name, str(error)) from None
+            joined |= self.number.decode(data)
+        return self.number.encode(joined)
+
+
 class PayloadPart(NamedTuple):
     """The message's fields.
 
@@ -155,7 +193,17 @@ class VirtualPart(NamedTuple):
 
 
 NumberPart = IdentityPart | LengthPart | ValuePart | ChecksumPart
-Part = LiteralPart | PayloadPart | NumberPart
+Part = LiteralPart | PayloadPart | BitsPart | NumberPart
+
+
+def members_of(part: Part) -> tuple[IdentityPart | ValuePart, ...]:
+    """The parts that are bits of this one."""
+    return part.members if isinstance(part, BitsPart) else ()
+
+
+def written_apart(parts: Iterable[Part]) -> tuple[Part, ...]:
+    """The parts in order, in place of those whose bits are parts these."""
+    return tuple(item for part in parts for item in members_of(part) or (part,))
 
 
 # --- start and end ----------------------------------------------------------------------------

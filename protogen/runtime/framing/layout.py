@@ -18,6 +18,7 @@ from protogen.runtime.framing.frame import (
     StartLiteral,
     StartMark,
     ValuePart,
+    written_apart,
 )
 from protogen.runtime.payload.number import Characters
 
@@ -66,15 +67,14 @@ class Layout:
             if isinstance(part, LengthPart)
             for has_payload in (False, True)
         }
-        self.identity = tuple(part for part in self.parts if isinstance(part, IdentityPart))
-        self.early_identity = bool(self.identity) and self.identity[-1] in self.head
-        """True if there is an identity, and all of it in front of the payload."""
-        self.values = tuple(part for part in spec.parts if isinstance(part, ValuePart))
-        early = self.head if spec.rescans else ()
+        apart = written_apart(self.parts)
+        self.identity = tuple(part for part in apart if isinstance(part, IdentityPart))
+        self.values = tuple(part for part in apart if isinstance(part, ValuePart))
+        early = written_apart(self.head) if spec.rescans else ()
         self.bounded = tuple(part for part in self.values if part in early or part.values)
         """The values that a receiver holds to their bounds."""
         self.shown = tuple(
-            part.name for part in self.parts if isinstance(part, IdentityPart | ValuePart)
+            part.name for part in apart if isinstance(part, IdentityPart | ValuePart)
         )
         """The names of the parts that events show."""
         self.checksums = tuple(part for part in self.parts if isinstance(part, ChecksumPart))
@@ -100,6 +100,11 @@ class Layout:
         )
 
     @cached_property
+    def early_identity(self) -> bool:
+        """True if there is an identity, and all of it in front of the payload."""
+        return bool(self.identity) and self.identity[-1] in written_apart(self.head)
+
+    @cached_property
     def ends_idle(self) -> bool:
         """True if a silence ends a frame, and no byte."""
         return self.spec.silence is not None
@@ -112,7 +117,8 @@ class Layout:
     @cached_property
     def texts(self) -> tuple[tuple[int, Characters], ...]:
         """The parts that events show as texts, by their places among all that they show."""
-        shown = (part for part in self.parts if isinstance(part, IdentityPart | ValuePart))
+        apart = written_apart(self.parts)
+        shown = (part for part in apart if isinstance(part, IdentityPart | ValuePart))
         return tuple(
             (index, part.number)
             for index, part in enumerate(shown)

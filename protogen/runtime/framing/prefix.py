@@ -14,10 +14,12 @@ from typing import Any
 
 from protogen.runtime.framing.frame import (
     Anywhere,
+    BitsPart,
     LiteralPart,
     NumberPart,
     Part,
     StartMark,
+    members_of,
 )
 from protogen.runtime.framing.layout import Layout
 from protogen.runtime.framing.machine import Candidate
@@ -55,8 +57,15 @@ def _ends_stuffed(sender: SenderSpec[Any, Any]) -> bool:
     return bool(layout.stuffed) and layout.stuffed[-1] == len(layout.parts) - 1
 
 
+def _tells(part: Part, told: tuple[Part, ...]) -> bool:
+    """True if a part, or one that is bits of it, is one of those that tell something."""
+    return any(item in told for item in (part, *members_of(part)))
+
+
 def _is_checked(part: Part, layout: Layout) -> bool:
-    """True if some bytes are no value of the part."""
+    """True if some bytes are no value of the part, or of one that is bits of it."""
+    if isinstance(part, BitsPart):
+        return bool(part.mask) or any(item in layout.bounded for item in part.members)
     if part in layout.bounded:
         return True
     if isinstance(part, NumberPart):
@@ -102,7 +111,7 @@ class Prefix:
         if layout.length is not None:
             told = (layout.length, *(told if layout.spec.rescans else ()))
         parts = (
-            part.size * BYTES[255 * (part in told or _is_checked(part, layout))]
+            part.size * BYTES[255 * (_tells(part, told) or _is_checked(part, layout))]
             for part in layout.head
         )
         mask = BYTES[255] * self._start_size + b"".join(parts)[self._start_size :]

@@ -52,18 +52,11 @@ class Number(Frozen):
 
     def encode(self, value: int) -> bytes:
         """The bytes for `value`. Raises ValueError if it is no integer that the bits can hold."""
-        raw = self.raw_of(value)
-        if self.seven_bit:
-            groups = bytes((raw >> shift) & 0x7F for shift in range(0, 7 * self.size, 7))
-            return groups if self.order == "little" else groups[::-1]
-        return raw.to_bytes(self.size, self.order)
+        return _bytes_of(self.raw_of(value), self.size, self.order, self.seven_bit)
 
     def decode(self, data: bytes) -> int:
         """The value of `size` bytes. Raises ByteError where no value has these bytes."""
-        if self.seven_bit:
-            raw = _join_groups(data if self.order == "big" else reversed(data))
-        else:
-            raw = int.from_bytes(data, self.order)
+        raw = _integer_of(data, self.order, self.seven_bit)
         if raw >> self.bits:
             raise ByteError("value", f"the bits above the lowest {self.bits} have to be zero")
         return self.value_of(raw)
@@ -78,6 +71,33 @@ class Number(Frozen):
     def value_of(self, raw: int) -> int:
         """The value that has these bits."""
         return raw - (1 << self.bits) if self.signed and raw >> (self.bits - 1) else raw
+
+
+class BitsNumber(Number):
+    """An integer of `bits` bits, from `low` on, of an integer of `size` bytes.
+
+    Its bytes have nothing but its own bits; in bytes that are read, the others may be anything.
+    """
+
+    __slots__ = ("low",)
+
+    low: int
+
+    def __init__(
+        self, bits: int, low: int, size: int, order: ByteOrder = "little", seven_bit: bool = False
+    ) -> None:
+        fields = {"bits": bits, "signed": False, "order": order, "seven_bit": seven_bit}
+        for name, value in {**fields, "size": size, "low": low}.items():
+            object.__setattr__(self, name, value)
+
+    def encode(self, value: int) -> bytes:
+        """The bytes with the bits of `value`. Raises ValueError if they can't hold it."""
+        return _bytes_of(self.raw_of(value) << self.low, self.size, self.order, self.seven_bit)
+
+    def decode(self, data: bytes) -> int:
+        """The value of the bits in `size` bytes."""
+        raw = _integer_of(data, self.order, self.seven_bit)
+        return raw >> self.low & self.greatest
 
 
 class Characters(Number):
@@ -145,6 +165,21 @@ def as_integer(value: object) -> int:
         return operator.index(value)  # type: ignore[arg-type]
     except TypeError:
         raise EncodeError("", f"must be an integer, not {value!r}") from None
+
+
+def _bytes_of(raw: int, size: int, order: ByteOrder, seven_bit: bool) -> bytes:
+    """The bytes of an unsigned integer that fits them."""
+    if not seven_bit:
+        return raw.to_bytes(size, order)
+    groups = bytes((raw >> shift) & 0x7F for shift in range(0, 7 * size, 7))
+    return groups if order == "little" else groups[::-1]
+
+
+def _integer_of(data: bytes, order: ByteOrder, seven_bit: bool) -> int:
+    """The unsigned integer of some bytes. Raises ByteError where 7-bit bytes have an eighth bit."""
+    if seven_bit:
+        return _join_groups(data if order == "big" else reversed(data))
+    return int.from_bytes(data, order)
 
 
 def _join_groups(groups: Iterable[int]) -> int:

@@ -9,6 +9,8 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from protogen.schema.syntax.base import (
     GREATEST_TEXT,
+    BitRange,
+    BitRangeForm,
     ByteForm,
     ByteNumber,
     Character,
@@ -165,6 +167,29 @@ _Trimming = Annotated[
 """How zeros at the end of a payload are left out."""
 
 
+class PartBits(Syntax):
+    """Some bits of a part: they are a part of their own, or the same in each frame."""
+
+    bits: BitRange = Field(description="Bit number, or LOW..HIGH counted from bit 0.")
+    id: OnlyTrue | None = Field(None, description="The bits tell which message this is.")
+    counter: OnlyTrue | None = Field(
+        None, description="The bits count frames; encoders advance them by one and wrap."
+    )
+    const: Count | None = Field(None, description="What the bits are in each frame.")
+    range: RawRange | None = Field(None, description="Least and greatest value of the bits.")
+    default: PartValue | None = Field(
+        None, description="What an encoder writes where the caller gives no value."
+    )
+    doc: Text | None = Field(None, description="What the bits mean.")
+    source: SourceRef | None = Field(None, description="Where the bits are written down.")
+
+
+PartBitsRef = Annotated[
+    PartBits,
+    BeforeValidator(ShortForm("bits"), json_schema_input_type=BitRangeForm | PartBits),
+]
+
+
 class Part(Syntax):
     """One item of a frame. Its keys give its role; the part called `payload` holds the fields."""
 
@@ -196,6 +221,11 @@ class Part(Syntax):
     )
     code: CharacterCode | None = Field(
         None, description="Each character is some bits of the number, the highest ones first."
+    )
+    bits: Annotated[dict[Name, PartBitsRef], Field(min_length=1)] | None = Field(
+        None,
+        description="Bits of the number that are parts, or the same in each frame. Those that no "
+        "name has are 0.",
     )
     id: OnlyTrue | None = Field(None, description="The part tells which message this is.")
     virtual: OnlyTrue | None = Field(

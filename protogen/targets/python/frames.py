@@ -5,6 +5,7 @@ from __future__ import annotations
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
     Base16,
+    BitsPart,
     ChecksumPart,
     ChoicePart,
     Cobs,
@@ -38,6 +39,10 @@ def part(item: Part) -> str:
     match item:
         case LiteralPart():
             return call("_rt.LiteralPart", name, octets(item.bytes))
+        case BitsPart():
+            members = f"members={tuple_of(map(part, item.members))}"
+            bits = {"mask": f"0x{item.mask:02X}", "fixed": f"0x{item.fixed:02X}"}
+            return call("_rt.BitsPart", name, number(item), members, **bits)
         case IdentityPart():
             return call("_rt.IdentityPart", name, number(item))
         case LengthPart():
@@ -95,6 +100,9 @@ def number(item: TypedPart) -> str:
         return numeral(type_)
     order = text(type_.byte_order) if type_.size > 1 else None
     seven = "True" if type_.byte_bits == 7 else None
+    if type_.within is not None:
+        place = (str(type_.bits), str(type_.within.low), str(type_.within.size))
+        return call("_rt.BitsNumber", *place, order=order, seven_bit=seven)
     return call("_rt.Number", str(type_.bits), order=order, seven_bit=seven)
 
 

@@ -190,7 +190,7 @@ def _role(part: IdentityPart | CounterPart | ValuePart) -> str:
 
 
 def _counters(sender: Sender) -> list[CounterPart]:
-    return [part for part in sender.frame.parts if isinstance(part, CounterPart)]
+    return [part for part in sender.frame.caller_parts if isinstance(part, CounterPart)]
 
 
 def _arguments(protocol: Protocol) -> dict[str, str]:

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import msgspec
 
-from protogen.model.frame import NumberPart
+from protogen.model.frame import BitsPart, NumberPart
 from protogen.model.frame_plan import FramePlan, PlacedPart, StartRule, Store
 from protogen.targets.c.decoders.groups import (
     Alternatives,
@@ -20,7 +20,7 @@ from protogen.targets.c.decoders.groups import (
     key_type,
 )
 from protogen.targets.c.frame.checksums import ChecksumView, checksums_of
-from protogen.targets.c.frame.expressions import among, byte
+from protogen.targets.c.frame.expressions import among, bits_of, byte
 from protogen.targets.c.frame.numbers import (
     LengthView,
     LiteralView,
@@ -310,6 +310,15 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         return self.told(key_from(self.plan, members))
 
     @property
+    def start_key(self) -> str:
+        """The identity, where a start of one byte is all of it: made of `byte`."""
+        first = self.plan.head[0].part
+        if not isinstance(first, BitsPart):
+            return self.told("byte")
+        names = {part.name: bits_of(part.type, "byte", 8) for part in self.plan.identity}
+        return self.told(key_from(self.plan, names))
+
+    @property
     def early_key(self) -> str:
         """The identity, made of bytes of the content, in front of the payload."""
         return self.told(self.key_in_content(""))
@@ -374,12 +383,19 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     def identity_is_start(self) -> bool:
         """True if a start of one byte is the whole identity, and tells the payload's size."""
         first = self.plan.head[0].part if self.plan.head else None
-        is_raw = isinstance(first, NumberPart) and first.type.text is None
+        is_raw = isinstance(first, NumberPart | BitsPart) and first.type.text is None
         is_told = any(n.identifies and n.last == 0 for n in self.head_numbers)
         return self.plan.start is StartRule.SET and is_told and is_raw
+
+    @property
+    def identity_is_bits(self) -> bool:
+        """True if bytes that are no start may have the bits of an identity."""
+        return isinstance(self.plan.head[0].part, BitsPart) if self.plan.head else False
 
     @property
     def gives_up_high_bytes(self) -> bool:
         """True if a high byte is either the identity of a frame, or ends what goes before it."""
         all_end = self.identity_is_start and self.plan.seven_bit and not self.plan.end_bytes
+        if self.identity_is_bits:
+            all_end = all_end and len(self.plan.start_set) == 128
         return all_end and self.plan.start_set[0] == 128

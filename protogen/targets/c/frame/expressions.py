@@ -7,12 +7,13 @@ writes a fragment gives its C.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
 
+from protogen.model.frame import BitsPart
 from protogen.model.frame_plan import Place, Side
-from protogen.model.types import NumberType
+from protogen.model.types import Integer, NumberType
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
@@ -120,6 +121,27 @@ def _byte_of(value: str, shift: int, mask: str) -> str:
     if not shift:
         shifted = value
     return f"(uint8_t)({shifted}{mask})" if shift or mask else f"(uint8_t){value}"
+
+
+def bits_of(type_: Integer, number: str, carrier_bits: int) -> str:
+    """The bits that an integer has in another one, as a number in the type that holds them."""
+    low = 0 if type_.within is None else type_.within.low
+    moved = f"({number} >> {low})" if low else number
+    is_top = low + type_.bits == carrier_bits
+    masked = moved if is_top else f"({moved} & {hexadecimal(type_.greatest)})"
+    return f"({unsigned_type(type_.bits)}){masked}"
+
+
+def joined_bits(part: BitsPart, names: Mapping[str, str]) -> str:
+    """The number whose bits are parts, each with the C of its value."""
+    target = unsigned_type(part.type.byte_bits * part.type.size)
+    cast = f"({target})" if part.type.size > 1 else ""
+    terms = [hexadecimal(part.fixed)] if part.fixed else []
+    for item in part.members:
+        low = 0 if item.type.within is None else item.type.within.low
+        wide = f"{cast}{names[item.name]}"
+        terms.append(f"({target})({wide} << {low})" if low else wide)
+    return f"{cast}({' | '.join(terms)})" if len(terms) > 1 else terms[0]
 
 
 def number_of(type_: NumberType, at: str, offset: int, less: str = "") -> str:

@@ -6,9 +6,16 @@ from collections.abc import Iterable
 
 import msgspec
 
-from protogen.model.frame import ChoicePart, IdentityPart, LengthPart, LiteralPart, NumberPart
-from protogen.model.frame_plan import FramePlan, PlacedPart
-from protogen.targets.c.frame.expressions import byte, less_absent
+from protogen.model.frame import (
+    BitsPart,
+    ChoicePart,
+    IdentityPart,
+    LengthPart,
+    LiteralPart,
+    NumberPart,
+)
+from protogen.model.frame_plan import FramePlan, PlacedPart, StartRule
+from protogen.targets.c.frame.expressions import byte, less_absent, number_of
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
@@ -87,8 +94,39 @@ def numbers_of(
     plan: FramePlan, items: Iterable[PlacedPart], numbers: PartNumbers
 ) -> tuple[NumberView, ...]:
     """Those of the parts that are numbers of which something is checked or known early."""
-    views = (_number(plan, item, numbers) for item in items if isinstance(item.part, NumberPart))
+    views = (
+        _bits(plan, item, numbers)
+        if isinstance(item.part, BitsPart)
+        else _number(plan, item, numbers)
+        for item in items
+        if isinstance(item.part, NumberPart | BitsPart)
+    )
     return tuple(view for view in views if view.is_of_use)
+
+
+def _bits(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberView:
+    """A number whose bits are parts: what is checked of each, and of those that are of none."""
+    part = item.part
+    assert isinstance(part, BitsPart)
+    members = [_number(plan, member, numbers) for member in plan.written_apart([item])]
+    less = less_absent(item.place, "decoder->payload")
+    value = number_of(part.type, "content", item.offset, less)
+    bounds = [view.bounds for view in members if view.bounds]
+    mask = part.mask
+    if mask:
+        bounds.insert(0, f"({value} & {hexadecimal(mask)}) != {hexadecimal(part.fixed)}")
+    # Of one byte, all was seen when it was seen to be a start.
+    is_start = plan.start is StartRule.SET and item.in_head and item.end <= plan.start_size
+    return NumberView(
+        last=item.end - 1,
+        value=value,
+        seven_bit=tuple(range(item.offset, item.end)) if part.type.byte_bits == 7 else (),
+        fault="",
+        bounds="" if is_start else " || ".join(bounds),
+        is_length=False,
+        identifies=any(view.identifies for view in members),
+        tells_sizes=any(view.tells_sizes for view in members),
+    )
 
 
 def _number(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberView:

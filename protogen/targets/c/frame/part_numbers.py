@@ -27,11 +27,16 @@ class PartNumbers:
         """
         if isinstance(type_.text, Numeral):
             return Digits.of(type_).value(self._helpers, _address(at, offset, less))
+        if type_.within is not None:
+            number = expressions.number_of(type_.whole, at, offset, less)
+            return expressions.bits_of(type_, number, storage_bits(type_.whole.bits))
         return expressions.number_of(type_, at, offset, less)
 
     def shown(self, type_: Integer, at: str, offset: int, less: str) -> str:
         """The same value, in the type of a member that holds it."""
         value = self.value(type_, at, offset, less)
+        if type_.within is not None:
+            return value
         is_wider = type_.text is None and storage_bits(type_.byte_bits * type_.size) > type_.width
         return f"({unsigned_type(type_.bits)})({value})" if is_wider else value
 
@@ -40,7 +45,7 @@ class PartNumbers:
         if isinstance(type_.text, Numeral):
             address = _address(at, offset, less)
             return " || ".join(Digits.of(type_).faults(self._helpers, address))
-        if type_.byte_bits * type_.size == type_.bits:
+        if type_.within is not None or type_.byte_bits * type_.size == type_.bits:
             return ""
         return f"({expressions.number_of(type_, at, offset, less)} >> {type_.bits}) != 0U"
 

@@ -62,14 +62,14 @@ def message_table(frame: Frame, message: Message, anchors: Anchors, names: Emitt
         if isinstance(slot.part, PayloadPart):
             rows += _PayloadRows(slot, anchors, names).of_record(message.plan.steps, Place(), ROOT)
         else:
-            rows.append(_part_row(slot, frame, message))
+            rows += _part_rows(slot, frame, message)
     return table(_HEADER, rows)
 
 
-def _part_row(slot: Slot, frame: Frame, message: Message) -> Row:
-    part = slot.part
-    value = value_in(frame, part, message)
-    return (slot.place, "", slot.size, part_type(part), part_title(part), "", value, role(part))
+def _part_rows(slot: Slot, frame: Frame, message: Message) -> Iterator[Row]:
+    for place, size, part in slot.rows:
+        value = value_in(frame, part, message)
+        yield (place, "", size, part_type(part), part_title(part), "", value, role(part))
 
 
 class _PayloadRows:

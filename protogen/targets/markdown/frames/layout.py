@@ -7,6 +7,7 @@ insert bytes, positions are those of the unstuffed frame.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 from itertools import accumulate
 
@@ -22,6 +23,7 @@ from protogen.model.frame import (
     Part,
     PayloadPart,
     VirtualPart,
+    members_of,
 )
 from protogen.model.sizes import SizeSet
 from protogen.targets.markdown.text.words import code, size_text, span
@@ -105,6 +107,13 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
     def size(self) -> str:
         """Number of these bytes, as tables show it."""
         return "" if isinstance(self.part, VirtualPart) else size_text(self.sizes)
+
+    @property
+    def rows(self) -> Iterator[tuple[str, str, Part]]:
+        """Place, size and part, then those of the parts that are bits of it."""
+        yield self.place, self.size, self.part
+        for part in members_of(self.part):
+            yield ", ".join(filter(None, (self.place, part.type.label))), "", part
 
     @property
     def place(self) -> str:

@@ -9,6 +9,7 @@ from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
     FULL_GROUP,
     Base16,
+    BitsPart,
     ChecksumPart,
     ChoicePart,
     Cobs,
@@ -53,13 +54,14 @@ _HEADER = ("Frame byte", "Size", "Type", "Part", "Value", "Meaning")
 
 def frame_table(frame: Frame, payload: SizeSet, names: EmittedNames) -> Table:
     """Return the table of a frame's parts."""
-    return table(_HEADER, (_frame_row(slot, names) for slot in slots(frame, payload)))
+    found = slots(frame, payload)
+    return table(_HEADER, (row for slot in found for row in _frame_rows(slot, names)))
 
 
-def _frame_row(slot: Slot, names: EmittedNames) -> tuple[str, ...]:
-    part = slot.part
-    name = part_title(part)
-    return (slot.place, slot.size, part_type(part), name, part_value(part), meaning(part, names))
+def _frame_rows(slot: Slot, names: EmittedNames) -> Iterator[tuple[str, ...]]:
+    for place, size, part in slot.rows:
+        cells = (place, size, part_type(part), part_title(part), part_value(part))
+        yield (*cells, meaning(part, names))
 
 
 @lru_cache(maxsize=256)
@@ -153,6 +155,7 @@ _ROLE_WORDS: tuple[tuple[type[Part], str], ...] = (
     (ValuePart, "Given by the sender."),
     (ChecksumPart, "Checksum."),
     (PayloadPart, "Payload."),
+    (BitsPart, "Its bits are parts."),
     (VirtualPart, "Not sent, but summed."),
     (CodePart, "How far on the next zero is, or the end."),
 )
@@ -168,12 +171,23 @@ def _roles(part: Part) -> tuple[str, ...]:
             return _number_roles(part)
         case ChecksumPart():
             return _checksum_roles(part)
+        case BitsPart():
+            return (role(part), _fixed_bits(part))
         case CodePart():
             return (role(part),)
         case VirtualPart():
             return _virtual_roles(part)
         case _:
             return tuple(_payload_roles(part))
+
+
+def _fixed_bits(part: BitsPart) -> str:
+    """Say what the bits of no part are."""
+    if not part.mask:
+        return ""
+    bits = part.type.byte_bits * part.type.size
+    mask, fixed = (code(hex_number(number, bits)) for number in (part.mask, part.fixed))
+    return f"Under the mask {mask} it is always {fixed}."
 
 
 def _payload_roles(part: Part) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import ChoicePart, LiteralPart, NumberPart
+from protogen.model.frame import BitsPart, ChoicePart, LiteralPart, NumberPart
 from protogen.model.frame_plan import EndRule, LengthPlan, StartRule
 from protogen.model.framing import are_run
 from protogen.runtime.bulk_cut import MIN_DATA
@@ -411,6 +411,10 @@ class _Cutter(ChecksumFunction):
                 if first < 0:
                     first, source = first + self.frame.skipped, "raw"
                 self.stop_if(f"not {source}.startswith({literal(part.bytes)}, {first})")
+            elif isinstance(part, BitsPart) and part.mask:
+                place = Place("", self.frame.offset(part))
+                number = self.number_at(self.content, part, place)
+                self.stop_if(f"{number} & 0x{part.mask:02X} != 0x{part.fixed:02X}")
 
         for item in self.plan.bounded:
             part = item.part

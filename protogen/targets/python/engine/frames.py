@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import cached_property
 
 from protogen.model.frame import (
+    BitsPart,
     ChecksumPart,
     LiteralPart,
     NumberPart,
@@ -99,7 +100,8 @@ class EngineFrame:
         None where a stream repeats these bytes too seldom for remembering what they mean.
         """
         others = [part for part in self.shown if part not in self.plan.identity]
-        if not self.shown or sum(part.size for part in others) > 1:
+        places = {self.offset(part): part.size for part in others}  # Bits of one share theirs.
+        if not self.shown or sum(places.values()) > 1:
             return None
         first = min(map(self.offset, self.shown))
         last = max(self.offset(part) + part.size for part in self.shown)
@@ -137,6 +139,7 @@ class EngineFrame:
             and len(self.checksums) == 1
             and self.tail == self.checksums
             and self.plan.greatest < MIN_DATA
+            and not any(isinstance(part, BitsPart) for part in self.head)
         )
 
     @property
@@ -193,9 +196,8 @@ class EngineFrame:
 
     def offset(self, part: Part) -> int:
         """Place of a part of the head in the content; of one of the tail, from its end."""
-        if part in self.head:
-            return self.plan.part(part.name).offset - self.skipped
-        return self.plan.part(part.name).offset - self.plan.tail_size
+        placed = self.plan.part(part.name)
+        return placed.offset - (self.skipped if placed.in_head else self.plan.tail_size)
 
     def slice_of(self, content: str, first: int, last: int) -> str:
         """Bytes of the content; a `last` of 0 is its end, negative numbers count from there."""

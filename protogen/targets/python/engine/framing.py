@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from protogen.model.frame import (
+    BitsPart,
     ChecksumPart,
     ChoicePart,
     CounterPart,
@@ -235,7 +236,7 @@ class _Framer(FrameFunction):
     def _packed(self, part: Part, bare: bool) -> Packed:
         if isinstance(part, LiteralPart):
             return Packed("", "B", f"0x{part.bytes[0]:02X}")
-        assert isinstance(part, NumberPart)
+        assert isinstance(part, NumberPart | BitsPart)
         return Packed(byte_order(part.type), UNSIGNED[part.type.size], self._value(part, bare))
 
     @property
@@ -323,11 +324,13 @@ class _Framer(FrameFunction):
                 return literal(part.bytes)
             case PayloadPart():
                 return "payload"
-            case NumberPart():
+            case NumberPart() | BitsPart():
                 return f"{self.lines.constants.number(part.type)}.encode({self._value(part, bare)})"
         raise TypeError(f"{type(part).__name__} is no part that has bytes here")
 
-    def _value(self, part: NumberPart, bare: bool) -> str:
+    def _value(self, part: NumberPart | BitsPart, bare: bool) -> str:
+        if isinstance(part, BitsPart):
+            return self._joined_bits(part)
         length = self.plan.length
         if length is not None and part is length.part:
             counted = length.base + (0 if bare else length.optional)
@@ -338,6 +341,15 @@ class _Framer(FrameFunction):
             return self._identity[self.plan.identity.index(part)]
         assert isinstance(part, CounterPart | ValuePart)
         return _variable(part)
+
+    def _joined_bits(self, part: BitsPart) -> str:
+        """The number whose bits are parts."""
+        terms = [f"0x{part.fixed:02X}"] if part.fixed else []
+        for item in part.members:
+            low = 0 if item.type.within is None else item.type.within.low
+            value = self._value(item, bare=False)
+            terms.append(f"{value} << {low}" if low else value)
+        return " | ".join(terms)
 
     def _insert(self, part: ChecksumPart) -> None:
         """Put a checksum behind all that the content has; only the last parts are checksums."""
@@ -431,8 +443,9 @@ def _is_packed(part: Part) -> bool:
     """True if `struct` writes the part together with its neighbours."""
     if isinstance(part, LiteralPart):
         return len(part.bytes) == 1
-    return isinstance(part, NumberPart) and _is_plain(part.type)
+    return isinstance(part, NumberPart | BitsPart) and _is_plain(part.type)
 
 
 def _is_plain(type_: Integer) -> bool:
-    return type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64) and type_.text is None
+    is_whole = type_.text is None and type_.within is None
+    return type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64) and is_whole

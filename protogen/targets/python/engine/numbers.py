@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import ChecksumPart, NumberPart
+from protogen.model.frame import BitsPart, NumberPart, TypedPart
 from protogen.model.framing import are_run
 from protogen.model.types import Integer
 from protogen.targets.python import frames as tables
@@ -50,8 +50,17 @@ class FrameFunction:
         skipped = 0 if base is None else self.frame.skipped
         return self.number_at(source, part, Place(base or "", self.frame.offset(part) + skipped))
 
-    def number_at(self, source: str, part: NumberPart | ChecksumPart, first: Place) -> str:
+    def number_at(self, source: str, part: TypedPart, first: Place) -> str:
         """The value of a part whose bytes begin at that place."""
+        within = part.type.within
+        if within is not None:
+            holder = self.plan.frame.holder(part.name)
+            assert isinstance(holder, BitsPart)
+            every = 8 * within.size if holder.type.byte_bits == 8 else holder.type.bits
+            moved = f" >> {within.low}" if within.low else ""
+            is_top = within.low + part.type.bits == every
+            mask = "" if is_top else f" & 0x{part.type.greatest:02X}"
+            return f"{self.number_at(source, holder, first)}{moved}{mask}"
         if part.type.size == 1 and not self.has_padding(part.type):
             return f"{source}[{first.text}]"
         code = UNSIGNED.get(part.type.size)

@@ -1,0 +1,171 @@
+"""Parts that are bits of another one, and bits that are the same in each frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from protogen.copying import field_names, replace
+from protogen.model.frame import (
+    BitsPart,
+    CounterPart,
+    IdentityPart,
+    NumberPart,
+    ValuePart,
+    place_mask,
+)
+from protogen.model.numbers import BitPlace
+from protogen.model.origin import About
+from protogen.model.types import Integer
+from protogen.passes.context import Context, Loc, about
+from protogen.passes.framing.part_values import number_of
+from protogen.schema.syntax.parts import Part, PartBits
+
+_NO_CONST = ("id", "counter", "range", "default")
+
+
+def bits_part(
+    context: Context, loc: Loc, item: Part, type_: Integer, text: About
+) -> BitsPart | None:
+    """The part whose bits these are; None where something about them is wrong."""
+    before = context.tally.errors
+    loc = (*loc, "bits")
+    if type_.is_text:
+        hint = "give the part a type such as `uint8`"
+        context.error_at_key("PG256", loc, "the bits of a text are those of its characters", hint)
+        return None
+    reader = _Reader(context, loc, type_)
+    for name, bits in (item.bits or {}).items():
+        reader.read(name, bits)
+    if not reader.members and context.tally.errors == before:
+        hint = "leave out `bits` and `type`, and write the bytes as a `literal`"
+        context.error_at_key("PG260", loc, "no bit of the part varies", hint)
+    if context.tally.errors > before:
+        return None
+    return BitsPart(
+        name=str(loc[-2]),
+        about=text,
+        unprotected=item.unprotected,
+        type=type_,
+        members=tuple(reader.members),
+        fixed=reader.fixed,
+    )
+
+
+class _Reader:
+    """The named bits of one part, read one after another."""
+
+    def __init__(self, context: Context, loc: Loc, type_: Integer) -> None:
+        self._context = context
+        self._loc = loc
+        self._type = type_
+        self._taken: dict[str, int] = {}
+        self.members: list[IdentityPart | CounterPart | ValuePart] = []
+        self.fixed = 0
+
+    def read(self, name: str, item: PartBits) -> None:
+        """Take some bits."""
+        loc, (low, high) = (*self._loc, name), item.bits
+        if high >= self._type.bits:
+            text = f"`{name}` has bit {high}, and {self._type.name} ends with {self._type.bits - 1}"
+            self._context.error_at_key("PG256", loc, text)
+            return
+        place = BitPlace(low=low, size=self._type.size)
+        type_ = replace(self._type, bits=high - low + 1, role="number", within=place)
+        mask = place_mask(type_)
+        for other, taken in self._taken.items():
+            if taken & mask:
+                text = f"the bits of `{name}` overlap those of `{other}`"
+                self._context.error_at_key("PG257", loc, text)
+                return
+        self._taken[name] = mask
+        if item.const is not None:
+            self._constant(loc, item, type_)
+        else:
+            self._member(loc, item, type_)
+
+    def _constant(self, loc: Loc, item: PartBits, type_: Integer) -> None:
+        """Bits that are the same in each frame."""
+        const = item.const or 0
+        for key in _NO_CONST:
+            if getattr(item, key) is not None:
+                text = f"`{key}` does not go together with `const`"
+                self._context.error("PG260", (*loc, key), text, f"remove `{key}`")
+        if const > type_.greatest:
+            text = f"{const} does not fit {type_.label}"
+            self._context.error("PG114", (*loc, "const"), text)
+            return
+        assert type_.within is not None
+        self.fixed |= const << type_.within.low
+
+    def _member(self, loc: Loc, item: PartBits, type_: Integer) -> None:
+        """Bits that are a part of their own."""
+        if item.id is not None and (item.counter is not None or item.default is not None):
+            key = "default" if item.counter is None else "counter"
+            self._context.error("PG131", (*loc, key), f"`{key}` does not go together with `id`")
+            return
+        least, greatest = item.range or (type_.least, type_.greatest)
+        if least > greatest:
+            text = f"the range is empty: {least} is greater than {greatest}"
+            self._context.error("PG115", (*loc, "range"), text)
+        elif not (type_.holds(least) and type_.holds(greatest)):
+            text = f"{least} to {greatest} does not fit {type_.label}"
+            self._context.error("PG114", (*loc, "range"), text)
+        part = NumberPart(
+            name=str(loc[-1]),
+            type=type_,
+            least=least,
+            greatest=greatest,
+            about=about(item.doc, item.source, self._context.find_key(loc)),
+        )
+        given = {name: getattr(part, name) for name in field_names(type(part))}
+        if item.id is not None:
+            self.members.append(IdentityPart(**given))
+            return
+        kind = ValuePart if item.counter is None else CounterPart
+        self.members.append(kind(**given, default=self._default(loc, item, part)))
+
+    def _default(self, loc: Loc, item: PartBits, part: NumberPart) -> int | None:
+        if item.default is None:
+            return None
+        place = (*loc, "default")
+        default = number_of(self._context, place, part, item.default)
+        if default is not None and not part.holds(default):
+            self._context.error("PG114", place, f"{default} is out of {part.allowed}")
+        return default
+
+
+def check_names(context: Context, loc: Loc, parts: Mapping[str, Part]) -> None:
+    """Report bits that are called as another part of the frame is, or as other bits."""
+    seen = dict.fromkeys(parts, "another part of the frame")
+    for holder, item in parts.items():
+        for name in item.bits or {}:
+            if name in seen:
+                text = f"`{name}` is {seen[name]}, and these bits are called so, too"
+                place = (*loc, holder, "bits", name)
+                context.error_at_key("PG258", place, text, "give one of them another name")
+            seen[name] = f"some bits of `{holder}`" if name not in parts else seen[name]
+
+
+def holders_of(parts: Mapping[str, Part]) -> dict[str, str]:
+    """The parts that have bits with names, by these."""
+    return {
+        name: holder
+        for holder, item in parts.items()
+        for name in item.bits or {}
+        if name not in parts
+    }
+
+
+def are_whole(
+    context: Context, holders: Mapping[str, str], written: Sequence[str], loc: Loc
+) -> bool:
+    """True if a run of parts names no bits, whose holders these are; else that is reported."""
+    found = [name for name in dict.fromkeys(_names(written)) if name in holders]
+    for name in found:
+        text = f"`{name}` is some bits of `{holders[name]}`, and whole bytes are meant here"
+        context.error("PG259", loc, text, f"name `{holders[name]}`")
+    return not found
+
+
+def _names(written: Iterable[str]) -> list[str]:
+    return [name for item in written for name in item.split("..")]

@@ -1,0 +1,96 @@
+"""Numbers of a frame whose bits are parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from hypothesis import strategies as st
+
+from schema_fuzzing import forms
+
+Data = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Bits of a part, and what they can be together."""
+
+    low: int
+    bits: int
+    least: int
+    greatest: int
+    is_constant: bool = False
+
+    @property
+    def written(self) -> str | int:
+        """As a schema has it."""
+        return self.low if self.bits == 1 else f"{self.low}..{self.low + self.bits - 1}"
+
+    def within(self, low: int, bits: int) -> frozenset[int]:
+        """What they can be in a byte that has these bits of the number."""
+        every = (1 << bits) - 1
+        if self.is_constant:
+            return frozenset({self.least << self.low >> low & every})
+        if low <= self.low and self.low + self.bits <= low + bits:
+            values = range(self.least, self.greatest + 1)
+            return frozenset(value << self.low - low for value in values)
+        mask = ((1 << self.bits) - 1) << self.low >> low & every
+        return frozenset(value & mask for value in range(every + 1))
+
+
+def bytes_of(runs: Sequence[Run], size: int, byte_bits: int) -> list[frozenset[int]]:
+    """What each byte of a number can be, the one of the lowest bits first."""
+    found = []
+    for place in range(size):
+        values = frozenset({0})
+        for run in runs:
+            own = run.within(byte_bits * place, byte_bits)
+            values = frozenset(one | other for one in values for other in own)
+        found.append(values)
+    return found
+
+
+def fill(
+    draw: st.DrawFn, bits: int, new_name: Callable[[], str], given: tuple[str, Data, Run] | None
+) -> tuple[Data, list[Run]]:
+    """The named bits of a number of so many, those that are `given` among them."""
+    written: Data = {}
+    runs: list[Run] = []
+    low = 0
+    while low < bits:
+        if given is not None and low == given[2].low:
+            name, keys, run = given
+        else:
+            end = given[2].low if given is not None and low < given[2].low else bits
+            size = draw(st.integers(1, end - low))
+            is_needed = given is None and not runs
+            if not is_needed and draw(forms.one_in(4)):
+                low += size  # These are 0 in each frame.
+                continue
+            kinds = ["value"] if is_needed else ["value", "const", "counter"]
+            keys, run = _member(draw, low, size, draw(st.sampled_from(kinds)))
+            name = new_name()
+        is_short = not keys and draw(st.booleans())
+        written[name] = run.written if is_short else {"bits": run.written, **keys}
+        runs.append(run)
+        low += run.bits
+    return {name: written[name] for name in draw(st.permutations(list(written)))}, runs
+
+
+def _member(draw: st.DrawFn, low: int, bits: int, kind: str) -> tuple[Data, Run]:
+    least, greatest = 0, (1 << bits) - 1
+    keys: Data = {}
+    if kind == "const":
+        keys["const"] = draw(st.integers(0, greatest))
+        return keys, Run(low, bits, keys["const"], keys["const"], is_constant=True)
+    if kind == "counter":
+        keys["counter"] = True
+    if draw(forms.one_in(3)):
+        least = draw(st.integers(0, greatest))
+        greatest = draw(st.integers(least, greatest))
+        keys["range"] = [least, greatest]
+    if draw(st.booleans()):
+        keys["default"] = draw(st.integers(least, greatest))
+    return {**keys, **draw(forms.about())}, Run(low, bits, least, greatest)

@@ -1,0 +1,128 @@
+"""Parts whose bits are parts: what people are shown, what changes, and what encoders refuse."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from cli_support import run
+from compiled import module_at
+
+from protogen.compiler import compile_file
+from protogen.evolution.findings import findings
+from protogen.model.protocol import Protocol
+from protogen.runtime.errors import EncodeError
+
+SCHEMAS = Path(__file__).with_name("c_schemas")
+SCHEMA = """\
+protocol: bits
+endpoints: {robot: Robot}
+byte_order: little
+frame:
+  begin: {literal: 0xC0}
+  head:
+    type: uint8
+    bits: {port: {bits: 4..6, default: 1}, kind: {bits: 0..3, id: true}, mark: {bits: 7, const: 1}}
+  payload: {}
+  crc: {type: uint8, algorithm: CRC-8/SMBUS, covers: head..payload}
+  end: {literal: 0xC0}
+transparency: slip
+messages:
+  beat: {id: 2, from: robot, fields: {value: uint8}}
+  stop: {id: {kind: 3}, from: robot}
+"""
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    found = tmp_path / "bits.yaml"
+    found.write_text(SCHEMA, encoding="utf-8")
+    return found
+
+
+def written(path: Path, text: str) -> Protocol:
+    path.write_text(text, encoding="utf-8")
+    found = compile_file(path)
+    assert found.protocol is not None, [item.message for item in found.problems]
+    return found.protocol
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "rule", "category"),
+    [
+        ("port: {bits: 4..6", "port: {bits: 4..5", "frame-part-type", "WIRE"),
+        ("port: {bits: 4..6", "gate: {bits: 4..6", "frame-part-renamed", "SOURCE"),
+        ("port: {bits: 4..6, default: 1}, ", "", "frame-part-deleted", "WIRE"),
+        ("mark: {bits: 7, const: 1}", "mark: {bits: 7, const: 0}", "frame-literal", "WIRE"),
+        (", mark: {bits: 7, const: 1}", ", mark: 7", "frame-part-added", "WIRE"),
+        ("default: 1", "default: 2", "frame-part-default", "SOURCE"),
+        ("4..6, default: 1", "4..6, counter: true, default: 1", "frame-part-role", "SOURCE"),
+    ],
+)
+def test_changes_of_bits(tmp_path: Path, old: str, new: str, rule: str, category: str) -> None:
+    assert SCHEMA.count(old) == 1
+    before = written(tmp_path / "old.yaml", SCHEMA)
+    after = written(tmp_path / "new.yaml", SCHEMA.replace(old, new))
+    _, found = findings(before, after)
+    assert (rule, category) in [(item.rule.name, item.category) for item in found]
+    assert findings(before, before)[1] == []
+
+
+def test_bits_that_change_places_are_told_by_a_frame(tmp_path: Path) -> None:
+    moved = SCHEMA.replace("4..6", "0..2").replace("bits: 0..3", "bits: 3..6")
+    protocols = written(tmp_path / "old.yaml", SCHEMA), written(tmp_path / "new.yaml", moved)
+    found = [item for item in findings(*protocols)[1] if item.category == "WIRE"]
+    assert {item.change.part for item in found} >= {"port", "kind"}
+    assert any(item.witnesses for item in found)
+
+
+def test_a_dialect_renames_bits_and_what_refers_to_them(path: Path) -> None:
+    dialect = path.with_name("dialect.yaml")
+    renames = "frame: {head: {bits: {rename: {kind: command}}}}"
+    found = written(dialect, f"protocol: dialect\nextends: bits.yaml\n{renames}\n")
+    assert [part.name for part in found.sender("robot").frame.identity] == ["command"]
+
+
+def test_each_part_is_explained_with_its_bits(path: Path) -> None:
+    result = run("explain", str(path), "--hex", "C0 92 07 A0 C0")
+    rows = [line.split() for line in result.stdout.splitlines()]
+    assert ["1", "92", "92", "head", "uint8", "146", "bits", "that", "are", "parts"] in rows
+    assert ["1", "001", "port", "uint3", "1"] in rows
+    assert ["1", "0010", "kind", "uint4", "2", "beat"] in rows
+
+
+def test_bits_of_no_part_that_are_others_are_told(path: Path) -> None:
+    result = run("explain", str(path), "--hex", "C0 12 07 A0 C0")
+    assert "bits 80 must be 80" in result.stdout
+
+
+def test_a_capture_is_decoded_and_encoded_again(path: Path) -> None:
+    made = run("encode", str(path), "beat", "value=7", "@port=6")
+    assert made.stdout.startswith("C0 E2 07 ")  # 80 | 6 << 4 | 2
+    lines = run("decode", str(path), "--hex", made.stdout, "--format", "jsonl")
+    assert '"parts": {"port": 6, "kind": 2}' in lines.stdout
+    assert run("encode", str(path), input=lines.stdout).stdout == made.stdout
+
+
+@pytest.mark.parametrize("strict", [True, False])
+def test_values_that_the_bits_can_not_hold_are_refused(path: Path, strict: bool) -> None:
+    module = module_at(path)
+    with pytest.raises(EncodeError, match="port"):
+        module.encode(module.Stop(), strict=strict, port=8)
+    with pytest.raises(EncodeError, match="port"):
+        module.encode(module.Stop(), port=-1)
+
+
+def test_values_out_of_their_range_fit_the_wire(path: Path) -> None:
+    path.write_text(SCHEMA.replace("4..6, default: 1", "4..6, range: [1, 5]"), encoding="utf-8")
+    module = module_at(path)
+    with pytest.raises(EncodeError, match="port"):
+        module.encode(module.Stop(), port=6)
+    assert module.encode(module.Stop(), strict=False, port=6)[1] == 0xE3
+
+
+def test_bits_count_frames() -> None:
+    module = module_at(SCHEMAS / "part_bits.yaml")
+    encoder = module.Encoder(sender="wide")
+    frames = [encoder.encode(module.Ping()) for _ in range(17)]
+    assert [frame[4] for frame in frames] == [*range(16), 0]
