@@ -10,15 +10,8 @@ import pytest
 
 from protogen.api import load
 from protogen.model.frame import Base16, Escape, LiteralPart, PayloadPart, Substitution
-from protogen.model.frame_plan import (
-    EndRule,
-    FramePlan,
-    Place,
-    Run,
-    Side,
-    StartRule,
-    Store,
-)
+from protogen.model.frame_places import Place, Run, Side
+from protogen.model.frame_plan import EndRule, FramePlan, StartRule, Store
 
 ROOT = Path(__file__).parent.parent
 

@@ -28,8 +28,8 @@ from protogen.model.payload_plan import (
     RecordStep,
     RepeatStep,
     RestStep,
-    without_constant,
 )
+from protogen.model.payload_walks import without_constant
 from protogen.model.types import Text
 
 HELD = {

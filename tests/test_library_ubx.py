@@ -36,8 +36,8 @@ from protogen.model.payload_plan import (
     RecordStep,
     RepeatStep,
     RestStep,
-    without_constant,
 )
+from protogen.model.payload_walks import without_constant
 from protogen.model.types import Text
 
 GET, SET, POLL = 0, 1, 2

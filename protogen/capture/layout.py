@@ -33,8 +33,8 @@ from protogen.model.payload_plan import (
     RecordStep,
     RepeatStep,
     RestStep,
-    held_step,
 )
+from protogen.model.payload_walks import held_step
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import NumberType, counting_bits
 from protogen.model.types import Text as TextType

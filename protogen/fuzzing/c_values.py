@@ -30,8 +30,8 @@ from protogen.model.payload_plan import (
     RegionStep,
     RepeatStep,
     RestStep,
-    said,
 )
+from protogen.model.payload_walks import said
 from protogen.model.types import Fixed, Text, counting_bits
 
 

@@ -8,14 +8,8 @@ from typing import Any
 import msgspec
 
 from protogen.model.expressions import Operand
-from protogen.model.payload_plan import (
-    AnyStep,
-    Count,
-    IntegerStep,
-    RecordStep,
-    held_step,
-    without_constant,
-)
+from protogen.model.payload_plan import AnyStep, Count, IntegerStep, RecordStep
+from protogen.model.payload_walks import held_step, without_constant
 
 
 class Mark(msgspec.Struct, frozen=True):

@@ -43,9 +43,8 @@ from protogen.model.payload_plan import (
     RegionStep,
     RepeatStep,
     RestStep,
-    said,
-    without_constant,
 )
+from protogen.model.payload_walks import said, without_constant
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Text, codec
 from protogen.passes.framing.capacity import payload_range

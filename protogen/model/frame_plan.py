@@ -14,25 +14,25 @@ import msgspec
 
 from protogen.model.frame import (
     FULL_GROUP,
-    Base16,
-    ChecksumPart,
     ChoicePart,
     Cobs,
     CounterPart,
-    Encoding,
-    Escape,
     Frame,
     IdentityPart,
-    Insertion,
-    LengthPart,
     Part,
     ValuePart,
-    VirtualPart,
     members_of,
     written_apart,
 )
-from protogen.model.identities import Identities
+from protogen.model.frame_places import PlacedPart
 from protogen.model.messages import Message
+from protogen.model.part_plans import (
+    ChecksumPlan,
+    IdentityGroup,
+    LengthPlan,
+    StuffedRegion,
+    VirtualPlan,
+)
 from protogen.model.sizes import SizeSet
 
 _FEW = 256
@@ -74,227 +74,6 @@ class Store(Enum):
     WIRE = auto()
     """Bytes as they came. Nothing is stuffed, so they are the content, too."""
     BOTH = auto()
-
-
-class Side(Enum):
-    """Side of the payload that a place is counted on."""
-
-    HEAD = auto()
-    TAIL = auto()
-
-
-class Place(msgspec.Struct, frozen=True):
-    """A place in the content."""
-
-    side: Side
-    offset: int
-    """Bytes from the first byte of the content, or from the first one behind the payload."""
-    absent: int = 0
-    """Number of these bytes that are absent where the payload is empty."""
-
-    def at(self, head_size: int, payload: int) -> int:
-        """Index in the content of a frame with such a payload."""
-        if self.side is Side.HEAD:
-            return self.offset
-        return head_size + payload + self.offset - (0 if payload else self.absent)
-
-
-class PlacedPart(msgspec.Struct, frozen=True):
-    """A part of a fixed size, and where it lies in the content."""
-
-    part: Part
-    place: Place
-    is_stuffed: bool
-
-    @property
-    def name(self) -> str:
-        """Name of the part."""
-        return self.part.name
-
-    @property
-    def size(self) -> int:
-        """Bytes of content."""
-        return self.part.size
-
-    @property
-    def offset(self) -> int:
-        """Bytes from the head's or the tail's first byte."""
-        return self.place.offset
-
-    @property
-    def end(self) -> int:
-        """Offset of the first byte behind the part."""
-        return self.place.offset + self.size
-
-    @property
-    def end_place(self) -> Place:
-        """Place of the first byte behind the part."""
-        absent = self.place.absent + (self.size if self.is_optional else 0)
-        return Place(self.place.side, self.end, absent)
-
-    @property
-    def in_head(self) -> bool:
-        """True if the part stands in front of the payload."""
-        return self.place.side is Side.HEAD
-
-    @property
-    def is_optional(self) -> bool:
-        """True if the part is absent where the payload is empty."""
-        return self.part.is_optional
-
-
-class Run(msgspec.Struct, frozen=True):
-    """A run of content, from `first` to in front of `end`."""
-
-    first: Place
-    end: Place
-    over_stuffing: bool = False
-    """True if it is stuffed on the wire, and summed as it is there."""
-
-
-class ChecksumPlan(msgspec.Struct, frozen=True, kw_only=True):
-    """A checksum part, where it lies, and what it runs over."""
-
-    part: ChecksumPart
-    placed: PlacedPart
-    covers: tuple[Run | bytes | VirtualPart, ...]
-    """Runs of content in order, neighbours joined; bytes stand for a literal of the end."""
-    is_behind: bool
-    """True if the checksum stands behind all that it runs over."""
-
-    @property
-    def virtual(self) -> tuple[VirtualPart, ...]:
-        """The parts that it runs over and that are not sent.
-
-        Each has a value that follows from the identity. Where an identity gives one of them none,
-        no frame of it can be verified: it is refused as one with a wrong checksum is.
-        """
-        return tuple(item for item in self.covers if isinstance(item, VirtualPart))
-
-    @property
-    def over_stuffing(self) -> bool:
-        """True if some of what it runs over is summed as it is stuffed."""
-        return any(isinstance(run, Run) and run.over_stuffing for run in self.covers)
-
-
-class VirtualPlan(msgspec.Struct, frozen=True, kw_only=True):
-    """A part that is not sent, and its value for each identity."""
-
-    part: VirtualPart
-    values: tuple[tuple[Identities, int], ...]
-    """Values by the identities of messages, also of those that a small receiver does not know."""
-
-    @property
-    def count(self) -> int:
-        """Number of identities."""
-        return sum(identities.count for identities, _ in self.values)
-
-
-class LengthPlan(msgspec.Struct, frozen=True, kw_only=True):
-    """The length part: its value for a payload, and the payload's size for a value."""
-
-    part: LengthPart
-    base: int
-    """Value for an empty payload."""
-    optional: int
-    """Bytes that it counts besides, where the payload is not empty."""
-    region_end: int | None = None
-    """Where it counts bytes on the wire: how many there are up to the end of what is stuffed, in a
-    frame of the value `base`."""
-    most: int | None = None
-    """Where it counts bytes on the wire: the greatest value that a frame has."""
-
-    @property
-    def greatest(self) -> int:
-        """The greatest value that a receiver takes."""
-        return self.part.greatest if self.most is None else self.most
-
-    @property
-    def over_wire(self) -> bool:
-        """True if it counts stuffed bytes, so that only their end tells the payload's size."""
-        return self.region_end is not None
-
-    def counted(self, payload: int) -> int:
-        """Value for a payload of that size."""
-        return self.base + (payload + self.optional if payload else 0)
-
-    def payload(self, value: int) -> int | None:
-        """Size of the payload for a value; None if there is none."""
-        if value == self.base:
-            return 0
-        size = value - self.base - self.optional
-        return size if size > 0 else None
-
-
-class StuffedRegion(msgspec.Struct, frozen=True, kw_only=True):
-    """The part of the content that is stuffed on the wire."""
-
-    encoding: Encoding
-    lenient: bool
-    parts: tuple[str, ...]
-    """Names of its parts in wire order."""
-    first: Place
-    end: Place
-    before: int
-    """Bytes of content in front of it, where the payload is not empty and behind it."""
-    behind: int
-    """Bytes of content behind it, where the payload is not empty and in front of them."""
-    literals_in_front: bool
-    """True if nothing but literals stands in front of it."""
-    covers_payload: bool
-    can_be_empty: bool
-    """True if it holds nothing but the payload and parts that can be absent with it."""
-    reaches_end: bool
-    """True if it begins in front of the tail, is never empty, and only the end follows."""
-    codes: tuple[tuple[int, bytes], ...]
-    """Bytes, in order, and the sequences that stand for them; empty for Base16 and COBS."""
-
-    @property
-    def longest(self) -> int:
-        """Wire bytes that one byte of content takes at most; 1 where several bytes tell."""
-        if isinstance(self.encoding, Base16):
-            return 2
-        return max((len(sequence) for _, sequence in self.codes), default=1)
-
-    @property
-    def insertion(self) -> Insertion | None:
-        """What puts in a byte behind others, if that is the encoding."""
-        return self.encoding if isinstance(self.encoding, Insertion) else None
-
-    @property
-    def escape(self) -> Escape | None:
-        """The escape, if that is the encoding."""
-        return self.encoding if isinstance(self.encoding, Escape) else None
-
-
-class IdentityGroup(msgspec.Struct, frozen=True, kw_only=True):
-    """Messages that a receiver may find behind one identity: one, or more told apart by size."""
-
-    identity: tuple[int, ...]
-    """The identity, or that of several which stands for all."""
-    key: int
-    """Values of the identity parts as one number, the first part in its highest bits."""
-    messages: tuple[Message, ...]
-    sizes: tuple[SizeSet, ...]
-    """Payload sizes of each of these messages, as frames carry them."""
-    identities: Identities | None = None
-    """Where there are several."""
-
-    @property
-    def told_by(self) -> Identities:
-        """All identities that stand for these messages."""
-        return self.identities or Identities.only(self.identity)
-
-    @property
-    def fixed(self) -> int | None:
-        """Size of the payload, where no message has another one."""
-        sizes = {item.fixed for item in self.sizes}
-        return sizes.pop() if len(sizes) == 1 else None
-
-    @property
-    def greatest(self) -> int:
-        """Greatest payload of these messages in bytes."""
-        return max(item.greatest for item in self.sizes)
 
 
 class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):

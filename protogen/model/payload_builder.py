@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from protogen.copying import replace
+from protogen.model.constants import allowed
 from protogen.model.expressions import Expression, Number, Operand, folded, names_in
 from protogen.model.payload_plan import (
     AnyStep,
@@ -26,7 +27,6 @@ from protogen.model.payload_plan import (
     RepeatStep,
     RestStep,
     Step,
-    allowed,
     packing_checks,
 )
 from protogen.model.sizes import SizeSet

@@ -11,33 +11,27 @@ Nobody compares steps, and every command makes their classes, so these have no c
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import Enum, auto
 from functools import cached_property
-from math import ceil, floor
-from typing import Any, cast
+from typing import cast
 
 import msgspec
 
+from protogen.model.constants import allowed, constant_bytes
 from protogen.model.expression_bounds import Interval, bounds_of, hull_of
-from protogen.model.expressions import Expression, Operand, reached, value_of
+from protogen.model.expressions import Expression, Operand, value_of
 from protogen.model.packing import Packing
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
-    Array,
-    Constant,
     Field,
-    Fixed,
     Float,
     Integer,
-    NumberType,
     Octets,
     Struct,
     Text,
     Type,
-    codec,
 )
-from protogen.runtime.payload.bits import BitWriter
 
 
 class Check(Enum):
@@ -414,25 +408,6 @@ class PayloadPlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return any(step.holds_values or step.fills for step in self.steps)
 
 
-def said(number: int | Formula, records: Sequence[Mapping[str, Any]]) -> int:
-    """A number that counts or selects, where the values of the records around it are known."""
-    if isinstance(number, int):
-        return number
-    return number.value(lambda reference: reached(records[reference.level], reference.name))
-
-
-def held_step(step: AnyStep) -> AnyStep:
-    """The step of the value itself, whether that is always there or not, in a region or not."""
-    while isinstance(step, OptionalStep | RegionStep):
-        step = step.step
-    return step
-
-
-def without_constant(step: AnyStep) -> AnyStep:
-    """The step that reads or writes the same bytes as a value."""
-    return step.value if isinstance(step, ConstantStep) else step
-
-
 def every_step(steps: Iterable[AnyStep]) -> Iterator[AnyStep]:
     """All steps and those inside of them, in wire order."""
     for step in steps:
@@ -448,72 +423,3 @@ def every_step(steps: Iterable[AnyStep]) -> Iterator[AnyStep]:
                 yield from every_step(case.step for case in step.cases)
             case OptionalStep() | RegionStep():
                 yield from every_step((step.step,))
-
-
-class PackedNumber(msgspec.Struct, frozen=True):
-    """A number of a run of bits."""
-
-    step: IntegerStep
-    name: str
-    """The field; empty in an array that is packed itself."""
-    index: int | None
-    """Place among the elements of an array."""
-    first: int
-    """Place of its first bit in the run."""
-    constant: int | None
-
-
-def packed_numbers(steps: Iterable[AnyStep]) -> Iterator[PackedNumber]:
-    """Yield the numbers of packed steps, in wire order."""
-    first = 0
-    for step in steps:
-        value = without_constant(step)
-        elements = [value] if isinstance(value, IntegerStep) else _packed_elements(value)
-        const = step.field.const
-        for index, element in enumerate(elements):
-            constant = const[index] if isinstance(const, tuple) else const
-            assert constant is None or isinstance(constant, int)
-            place = None if element is value else index
-            yield PackedNumber(element, step.name, place, first, constant)
-            first += element.type.bits
-
-
-def _packed_elements(step: AnyStep) -> list[IntegerStep]:
-    assert isinstance(step, RepeatStep)
-    assert isinstance(step.element, IntegerStep)
-    return [step.element] * (step.count.known or 0)
-
-
-def constant_bytes(field: Field) -> bytes:
-    """The wire bytes of a constant field that is not in a run of bits itself."""
-    assert field.const is not None
-    if isinstance(field.type, Array) and field.type.packed is not None:
-        assert isinstance(field.const, tuple)
-        assert isinstance(field.type.element, Integer)
-        run = BitWriter(field.type.packed)
-        for item in field.const:
-            run.put(field.type.element.bits, item)
-        return run.finish()
-    if isinstance(field.const, tuple):
-        return b"".join(_wire_bytes(field.element, item) for item in field.const)
-    return _wire_bytes(field.type, field.const)
-
-
-def _wire_bytes(type_: Type, value: Constant) -> bytes:
-    if isinstance(value, bytes):
-        return value
-    if isinstance(value, str):
-        is_padded = isinstance(type_, Text) and isinstance(type_.extent, Fixed)
-        return value.encode("latin-1").ljust(type_.sizes.least if is_padded else 0, b"\0")
-    assert isinstance(type_, NumberType)
-    assert isinstance(value, int | float)
-    return codec(type_).encode(type_.raw(value))
-
-
-def allowed(field: Field, type_: Integer) -> tuple[int, int]:
-    """The least and the greatest integer that an encoder allows, special values aside."""
-    if not field.ranged:
-        return type_.least, type_.greatest
-    least = type_.least if field.least is None else ceil(field.least)
-    greatest = type_.greatest if field.greatest is None else floor(field.greatest)
-    return max(least, type_.least), min(greatest, type_.greatest)

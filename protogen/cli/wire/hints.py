@@ -16,9 +16,8 @@ from protogen.model.payload_plan import (
     RecordStep,
     RepeatStep,
     RestStep,
-    held_step,
-    without_constant,
 )
+from protogen.model.payload_walks import held_step, without_constant
 
 Scope = ChainMap[str, Any]
 """The values that were given, which choose the cases of switches."""

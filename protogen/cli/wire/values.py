@@ -30,9 +30,8 @@ from protogen.model.payload_plan import (
     OptionalStep,
     RecordStep,
     RepeatStep,
-    held_step,
-    without_constant,
 )
+from protogen.model.payload_walks import held_step, without_constant
 from protogen.model.types import Field, Text
 from protogen.problems import hint_for
 

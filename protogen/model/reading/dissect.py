@@ -25,14 +25,13 @@ from protogen.model.payload_plan import (
     Formula,
     IntegerStep,
     OptionalStep,
-    PackedNumber,
     PayloadPlan,
     RecordStep,
     RegionStep,
     RepeatStep,
     RestStep,
-    packed_numbers,
 )
+from protogen.model.payload_walks import PackedNumber, packed_numbers
 from protogen.model.reading.readings import integer_reading, physical, quoted, value_name
 from protogen.model.reading.wire import Unit
 from protogen.model.types import Field, Fixed, Float, Integer, NumberType, Scalar, Text, codec

@@ -21,8 +21,8 @@ from protogen.model.payload_plan import (
     RecordStep,
     RegionStep,
     RepeatStep,
-    said,
 )
+from protogen.model.payload_walks import said
 from protogen.model.types import Field, NumberType, Text
 
 _MOST_ELEMENTS = 16

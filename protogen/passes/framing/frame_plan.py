@@ -23,23 +23,18 @@ from protogen.model.frame import (
     VirtualPart,
     written_apart,
 )
-from protogen.model.frame_plan import (
-    ChecksumPlan,
-    EndRule,
-    FramePlan,
-    IdentityGroup,
-    LengthPlan,
-    Place,
-    PlacedPart,
-    Run,
-    Side,
-    StartRule,
-    StuffedRegion,
-    VirtualPlan,
-)
+from protogen.model.frame_places import Place, PlacedPart, Run, Side
+from protogen.model.frame_plan import EndRule, FramePlan, StartRule
 from protogen.model.framing import AfterEnd, Anywhere, Framing, StartLiteral, StartSet
 from protogen.model.identities import Identities
 from protogen.model.messages import Message, Overload
+from protogen.model.part_plans import (
+    ChecksumPlan,
+    IdentityGroup,
+    LengthPlan,
+    StuffedRegion,
+    VirtualPlan,
+)
 from protogen.passes.framing.capacity import counted_size, tail_literals
 from protogen.passes.framing.transparencies import beginning_in
 

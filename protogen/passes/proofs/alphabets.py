@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from protogen.model.constants import constant_bytes
 from protogen.model.messages import Message
 from protogen.model.nesting import holds_whole_bytes, inner_types
-from protogen.model.payload_plan import constant_bytes
 from protogen.model.types import Field, Integer, Octets, Struct, Switch, Text, Type, is_text
 from protogen.passes.proofs.wire_code import EVERY_BYTE, SEVEN_BITS, ByteSet
 

@@ -8,6 +8,7 @@ from itertools import groupby
 import msgspec
 
 from protogen.model.checksums import checksum_of
+from protogen.model.constants import constant_bytes
 from protogen.model.frame import (
     BitsPart,
     ChecksumPart,
@@ -18,7 +19,6 @@ from protogen.model.frame import (
     Part,
     PayloadPart,
 )
-from protogen.model.payload_plan import constant_bytes
 from protogen.model.types import Field
 from protogen.passes.framing.capacity import counted_size
 from protogen.passes.proofs.wire_code import ByteSet, bits_bytes, code_of, part_bytes

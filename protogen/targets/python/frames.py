@@ -25,9 +25,9 @@ from protogen.model.frame import (
     TypedPart,
     ValuePart,
 )
-from protogen.model.frame_plan import VirtualPlan
 from protogen.model.framing import AfterEnd, Anywhere, End, Start, StartLiteral, StartSet
 from protogen.model.identities import Identities
+from protogen.model.part_plans import VirtualPlan
 from protogen.model.protocol import Sender
 from protogen.targets.python.formats import numeral
 from protogen.targets.python.literals import call, mapping, octets, text, tuple_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 
-from protogen.model.frame_plan import Run
+from protogen.model.frame_places import Run
 from protogen.targets.c.decoders.groups import GroupView
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.expressions import byte

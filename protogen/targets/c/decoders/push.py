@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 
-from protogen.model.frame_plan import Side, StartRule
+from protogen.model.frame_places import Side
+from protogen.model.frame_plan import StartRule
 from protogen.targets.c.decoders.groups import GroupView, ReceivedMessage
 from protogen.targets.c.decoders.states import PushStates
 from protogen.targets.c.frame.expressions import Index, byte, equals

@@ -11,7 +11,8 @@ from functools import cached_property
 import msgspec
 
 from protogen.model.frame import BitsPart, NumberPart
-from protogen.model.frame_plan import FramePlan, PlacedPart, StartRule, Store
+from protogen.model.frame_places import PlacedPart
+from protogen.model.frame_plan import FramePlan, StartRule, Store
 from protogen.targets.c.decoders.groups import (
     Alternatives,
     GroupView,

@@ -6,7 +6,9 @@ import msgspec
 
 from protogen.model.checksums import ChecksumSpec, find_algorithm
 from protogen.model.frame import VirtualPart
-from protogen.model.frame_plan import ChecksumPlan, FramePlan, Run, Side
+from protogen.model.frame_places import Run, Side
+from protogen.model.frame_plan import FramePlan
+from protogen.model.part_plans import ChecksumPlan
 from protogen.model.types import Integer
 from protogen.targets.c.frame.algorithms import Algorithm, algorithm_of
 from protogen.targets.c.frame.expressions import Index, differs

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import msgspec
 
 from protogen.model.frame import BitsPart
-from protogen.model.frame_plan import Place, Side
+from protogen.model.frame_places import Place, Side
 from protogen.model.types import Integer, NumberType
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
 

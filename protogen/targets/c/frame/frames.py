@@ -25,7 +25,8 @@ from protogen.model.frame import (
     ValuePart,
     VirtualPart,
 )
-from protogen.model.frame_plan import FramePlan, PlacedPart, Side
+from protogen.model.frame_places import PlacedPart, Side
+from protogen.model.frame_plan import FramePlan
 from protogen.model.identities import Runs
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.groups import in_run

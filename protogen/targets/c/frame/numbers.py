@@ -14,7 +14,8 @@ from protogen.model.frame import (
     LiteralPart,
     NumberPart,
 )
-from protogen.model.frame_plan import FramePlan, PlacedPart, StartRule
+from protogen.model.frame_places import PlacedPart
+from protogen.model.frame_plan import FramePlan, StartRule
 from protogen.targets.c.frame.expressions import byte, less_absent, number_of
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of

@@ -12,7 +12,8 @@ from math import gcd
 import msgspec
 
 from protogen.model.packing import BytePart, Packing
-from protogen.model.payload_plan import AnyStep, Check, PackedNumber, RepeatStep, packed_numbers
+from protogen.model.payload_plan import AnyStep, Check, RepeatStep
+from protogen.model.payload_walks import PackedNumber, packed_numbers
 from protogen.model.types import Integer
 from protogen.targets.c.payload.helpers import Helpers, is_whole
 from protogen.targets.c.spelling import constant, hexadecimal, integer_type, unsigned_type

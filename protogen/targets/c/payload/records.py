@@ -18,8 +18,8 @@ from protogen.model.payload_plan import (
     RecordStep,
     RegionStep,
     RepeatStep,
-    held_step,
 )
+from protogen.model.payload_walks import held_step
 from protogen.model.types import Field, Struct, Text
 from protogen.targets.c import comments
 from protogen.targets.c.lines import INDENT, Lines

@@ -17,7 +17,6 @@ from protogen.model.payload_plan import (
     Formula,
     NumberStep,
     OptionalStep,
-    PackedNumber,
     PayloadPlan,
     RecordStep,
     Reference,
@@ -25,6 +24,7 @@ from protogen.model.payload_plan import (
     RepeatStep,
     RestStep,
 )
+from protogen.model.payload_walks import PackedNumber
 from protogen.model.types import Integer
 from protogen.targets.c.formulas import FormulaPrinter, type_for
 from protogen.targets.c.lines import Lines

@@ -17,9 +17,8 @@ from protogen.model.payload_plan import (
     RecordStep,
     RegionStep,
     RepeatStep,
-    packed_numbers,
-    without_constant,
 )
+from protogen.model.payload_walks import packed_numbers, without_constant
 from protogen.model.sizes import SizeSet
 from protogen.targets.emitted import EmittedNames
 from protogen.targets.markdown.fields.paths import ROOT, Path

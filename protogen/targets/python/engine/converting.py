@@ -9,8 +9,8 @@ from protogen.model.payload_plan import (
     IntegerStep,
     RecordStep,
     RepeatStep,
-    without_constant,
 )
+from protogen.model.payload_walks import without_constant
 from protogen.model.types import Float, Octets
 from protogen.targets.python.engine.layout import code_of, is_native, is_pair
 from protogen.targets.python.engine.lines import Lines

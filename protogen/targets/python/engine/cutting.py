@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from protogen.model.frame import BitsPart, ChoicePart, LiteralPart, NumberPart
-from protogen.model.frame_plan import EndRule, LengthPlan, StartRule
+from protogen.model.frame_plan import EndRule, StartRule
 from protogen.model.framing import are_run
+from protogen.model.part_plans import LengthPlan
 from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine import identities

@@ -13,7 +13,8 @@ from protogen.model.frame import (
     Part,
     VirtualPart,
 )
-from protogen.model.frame_plan import EndRule, Place, Run, Side
+from protogen.model.frame_places import Place, Run, Side
+from protogen.model.frame_plan import EndRule
 from protogen.model.protocol import Sender
 from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.runtime.transparency import replacing_order

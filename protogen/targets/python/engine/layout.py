@@ -16,8 +16,8 @@ from protogen.model.payload_plan import (
     NumberStep,
     RecordStep,
     RepeatStep,
-    without_constant,
 )
+from protogen.model.payload_walks import without_constant
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Float, NumberType, Struct, is_text
 

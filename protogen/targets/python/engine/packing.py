@@ -9,14 +9,8 @@ import msgspec
 
 from protogen.model.packing import Packing
 from protogen.model.payload_builder import plan_of_struct
-from protogen.model.payload_plan import (
-    AnyStep,
-    IntegerStep,
-    PackedNumber,
-    RecordStep,
-    RepeatStep,
-    packed_numbers,
-)
+from protogen.model.payload_plan import AnyStep, IntegerStep, RecordStep, RepeatStep
+from protogen.model.payload_walks import PackedNumber, packed_numbers
 from protogen.model.types import Struct
 from protogen.runtime.attributes import attribute
 from protogen.targets.python.engine.lines import Lines

@@ -24,8 +24,8 @@ from protogen.model.payload_plan import (
     RegionStep,
     RepeatStep,
     RestStep,
-    without_constant,
 )
+from protogen.model.payload_walks import without_constant
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Octets, Struct
 from protogen.runtime.attributes import attribute

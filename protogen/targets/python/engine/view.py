@@ -7,8 +7,9 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
-from protogen.model.frame_plan import EndRule, IdentityGroup
+from protogen.model.frame_plan import EndRule
 from protogen.model.messages import Message
+from protogen.model.part_plans import IdentityGroup
 from protogen.model.protocol import Protocol
 from protogen.targets.python.engine import cutting, framing, identities
 from protogen.targets.python.engine.frames import EngineFrame

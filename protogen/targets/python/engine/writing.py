@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-import msgspec
-
 from protogen.model.expressions import plain_name
 from protogen.model.messages import Message
 from protogen.model.payload_builder import plan_of
@@ -24,8 +22,8 @@ from protogen.model.payload_plan import (
     RegionStep,
     RepeatStep,
     RestStep,
-    without_constant,
 )
+from protogen.model.payload_walks import without_constant
 from protogen.model.types import Field, Struct, Text, is_text
 from protogen.runtime.attributes import attribute
 from protogen.targets.python.engine.layout import (
@@ -45,6 +43,7 @@ from protogen.targets.python.engine.layout import (
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.packing import Record, packed, packed_record
 from protogen.targets.python.engine.raw import Raw, member_of
+from protogen.targets.python.engine.struct_calls import Packed, Packer
 from protogen.targets.python.formats import constant
 from protogen.targets.python.formulas import in_python
 from protogen.targets.python.literals import number, octets_in_class, tuple_of
@@ -79,15 +78,8 @@ def content_writer(
     return writer.record("item", message.plan.steps)
 
 
+_SEVEN = 7
 _CODES = "BYTE_CODES"
-
-
-class Packed(msgspec.Struct, frozen=True):
-    """A value for `struct`: the order of its bytes, its code, and an expression."""
-
-    order: str
-    code: str
-    value: str
 
 
 def struct_writer(struct: Struct, constants: Constants) -> tuple[str, ...]:
@@ -131,58 +123,6 @@ def _is_looked_up(step: IntegerStep) -> bool:
 def _is_bounded(item: Field) -> bool:
     """True if being in the declared range is being in the type's."""
     return item.ranged and None not in (item.least, item.greatest) and not item.special
-
-
-_SEVEN = 7
-_TYPES_IN_LINE = 6
-
-
-def batched(names: list[str]) -> list[list[str]]:
-    """As many names as a line has room for."""
-    return [names[i : i + _TYPES_IN_LINE] for i in range(0, len(names), _TYPES_IN_LINE)]
-
-
-class Packer(msgspec.Struct):
-    """Bytes that are being put together: what stands, and values that one `struct` is to write."""
-
-    lines: Lines
-    order: str = ""
-    codes: str = ""
-    values: list[str] = msgspec.field(default_factory=list)
-    integers: list[str] = msgspec.field(default_factory=list)
-    """Variables that have to be integers, and that `struct` does not get to see."""
-    _pieces: list[str] = msgspec.field(default_factory=list)
-
-    def pack(self, item: Packed) -> None:
-        """Let `struct` write a value together with its neighbours."""
-        if item.order and self.order and item.order != self.order:
-            self.flush()
-        self.order = self.order or item.order
-        self.codes += item.code
-        self.values.append(item.value)
-
-    def piece(self, expression: str) -> None:
-        """Put the bytes of an expression behind all others."""
-        self.flush()
-        self._pieces.append(expression)
-
-    def flush(self) -> None:
-        """Write the values that are due."""
-        for some in batched(self.integers):
-            types = " is ".join(f"type({name})" for name in some)
-            several = len(some) > 1
-            self.lines.refuse_if(f"not ({types} is int)" if several else f"{types} is not int")
-        if self.codes:
-            layout = f'"{self.order or "<"}{self.codes}"'
-            pack = self.lines.constants.named("PACK", f"_struct.Struct({layout}).pack")
-            self._pieces.append(f"{pack}({', '.join(self.values)})")
-        self.order = self.codes = ""
-        self.values, self.integers = [], []
-
-    def all_pieces(self) -> list[str]:
-        """Expressions of all bytes, in order."""
-        self.flush()
-        return self._pieces
 
 
 class _Writer(Raw):

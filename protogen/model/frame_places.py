@@ -1,0 +1,87 @@
+"""Places of parts in a frame."""
+
+from __future__ import annotations
+
+from enum import Enum, auto
+
+import msgspec
+
+from protogen.model.frame import (
+    Part,
+)
+
+
+class Side(Enum):
+    """Side of the payload that a place is counted on."""
+
+    HEAD = auto()
+    TAIL = auto()
+
+
+class Place(msgspec.Struct, frozen=True):
+    """A place in the content."""
+
+    side: Side
+    offset: int
+    """Bytes from the first byte of the content, or from the first one behind the payload."""
+    absent: int = 0
+    """Number of these bytes that are absent where the payload is empty."""
+
+    def at(self, head_size: int, payload: int) -> int:
+        """Index in the content of a frame with such a payload."""
+        if self.side is Side.HEAD:
+            return self.offset
+        return head_size + payload + self.offset - (0 if payload else self.absent)
+
+
+class PlacedPart(msgspec.Struct, frozen=True):
+    """A part of a fixed size, and where it lies in the content."""
+
+    part: Part
+    place: Place
+    is_stuffed: bool
+
+    @property
+    def name(self) -> str:
+        """Name of the part."""
+        return self.part.name
+
+    @property
+    def size(self) -> int:
+        """Bytes of content."""
+        return self.part.size
+
+    @property
+    def offset(self) -> int:
+        """Bytes from the head's or the tail's first byte."""
+        return self.place.offset
+
+    @property
+    def end(self) -> int:
+        """Offset of the first byte behind the part."""
+        return self.place.offset + self.size
+
+    @property
+    def end_place(self) -> Place:
+        """Place of the first byte behind the part."""
+        absent = self.place.absent + (self.size if self.is_optional else 0)
+        return Place(self.place.side, self.end, absent)
+
+    @property
+    def in_head(self) -> bool:
+        """True if the part stands in front of the payload."""
+        return self.place.side is Side.HEAD
+
+    @property
+    def is_optional(self) -> bool:
+        """True if the part is absent where the payload is empty."""
+        return self.part.is_optional
+
+
+class Run(msgspec.Struct, frozen=True):
+    """A run of content, from `first` to in front of `end`."""
+
+    first: Place
+    end: Place
+    over_stuffing: bool = False
+    """True if it is stuffed on the wire, and summed as it is there."""
