@@ -210,6 +210,7 @@ class _Sampler:
             values[step.name] = self._value(step, chooser, needs.get((level, step.name)))
             if mark is not None and step.name == mark.operand.path[0]:
                 mark.set_in(values, steps)
+                self._said_of.add((id(values), ".".join(mark.operand.path)))
         self._records.pop()
         return values
 
