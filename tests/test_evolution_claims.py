@@ -356,7 +356,11 @@ class TestCases:
         ("before", "after", "text"),
         [
             ("{1: uint16}", "{1: uint16, else: uint32}", "values without a case have `else`"),
-            ("{1: uint16, else: uint32}", "{1: uint16}", "values without a case are taken"),
+            (
+                "{1: uint16, else: uint32}",
+                "{1: uint16}",
+                "no case `else` any more: values without a case are taken",
+            ),
         ],
     )
     def test_others_that_have_a_case_now_are_read_otherwise(

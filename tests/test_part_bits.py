@@ -126,3 +126,25 @@ def test_bits_count_frames() -> None:
     encoder = module.Encoder(sender="wide")
     frames = [encoder.encode(module.Ping()) for _ in range(17)]
     assert [frame[4] for frame in frames] == [*range(16), 0]
+
+
+def test_bits_may_be_called_as_c_calls_something(path: Path, tmp_path: Path) -> None:
+    text = SCHEMA.replace("port:", "register:").replace("kind: {bits", "class: {bits")
+    path.write_text(text.replace("{kind: 3}", "{class: 3}"), encoding="utf-8")
+    assert (
+        run("generate", str(path), "--quiet", "--target", "c", "-o", str(tmp_path)).exit_code == 0
+    )
+    header = (tmp_path / "c" / "bits.h").read_text(encoding="utf-8")
+    assert "uint8_t register_" in header
+    assert "register;" not in header
+    result = run("fuzz", str(path))
+    assert "c: 200 samples, all came back" in result.stdout
+
+
+def test_bits_that_are_always_the_same_are_in_the_reference(path: Path, tmp_path: Path) -> None:
+    path.write_text(SCHEMA.replace("const: 1}", "const: 1, doc: Top bit}"), encoding="utf-8")
+    run("generate", str(path), "--quiet", "--target", "markdown", "-o", str(tmp_path))
+    page = (tmp_path / "markdown" / "bits.md").read_text(encoding="utf-8")
+    (row,) = (line for line in page.splitlines() if line.startswith("|") and "`mark`" in line)
+    assert "Its bits are parts. `mark`, bit 7: always `0x1`. Top bit." in row
+    assert "other bits" not in row

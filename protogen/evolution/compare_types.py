@@ -167,7 +167,8 @@ class TypeComparison:
         if old.otherwise is not None and new.otherwise is not None:
             yield from self.compare(old.otherwise.type, new.otherwise.type, path)
         elif _of_others(old) != _of_others(new):
-            words = f"values without a case {_of_others(new)}"
+            gone = "no case `else` any more: " if old.otherwise is not None else ""
+            words = f"{gone}values without a case {_of_others(new)}"
             yield self._report("field-cases", path, words)
 
     def now(self, expression: Expression) -> Expression:

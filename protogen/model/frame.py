@@ -151,6 +151,15 @@ class ChoicePart(ValuePart, frozen=True, kw_only=True):
         return True
 
 
+class FixedBits(msgspec.Struct, frozen=True, kw_only=True):
+    """Bits of a part that have a name and are the same in each frame."""
+
+    name: str
+    about: About
+    type: Integer
+    value: int
+
+
 class BitsPart(TypedPart, frozen=True, kw_only=True):
     """A number whose bits are parts; those of none are the same in each frame."""
 
@@ -158,6 +167,8 @@ class BitsPart(TypedPart, frozen=True, kw_only=True):
     """These parts, in the order of the schema."""
     fixed: int
     """The bits that are the same, as a number whose other bits are 0."""
+    constants: tuple[FixedBits, ...] = ()
+    """Those of them that have names, for readers."""
 
     @property
     def mask(self) -> int:

@@ -8,6 +8,7 @@ from protogen.copying import field_names, replace
 from protogen.model.frame import (
     BitsPart,
     CounterPart,
+    FixedBits,
     IdentityPart,
     NumberPart,
     ValuePart,
@@ -48,6 +49,7 @@ def bits_part(
         type=type_,
         members=tuple(reader.members),
         fixed=reader.fixed,
+        constants=tuple(reader.constants),
     )
 
 
@@ -61,10 +63,16 @@ class _Reader:
         self._taken: dict[str, int] = {}
         self.members: list[IdentityPart | CounterPart | ValuePart] = []
         self.fixed = 0
+        self.constants: list[FixedBits] = []
 
     def read(self, name: str, item: PartBits) -> None:
         """Take some bits."""
         loc, (low, high) = (*self._loc, name), item.bits
+        if low > high:
+            text = f"{low}..{high} is no run of bits"
+            hint = f"write `{high}..{low}`: the lower bit stands first"
+            self._context.error_at_key("PG256", loc, text, hint)
+            return
         if high >= self._type.bits:
             text = f"`{name}` has bit {high}, and {self._type.name} ends with {self._type.bits - 1}"
             self._context.error_at_key("PG256", loc, text)
@@ -96,6 +104,8 @@ class _Reader:
             return
         assert type_.within is not None
         self.fixed |= const << type_.within.low
+        given = about(item.doc, item.source, self._context.find_key(loc))
+        self.constants.append(FixedBits(name=str(loc[-1]), about=given, type=type_, value=const))
 
     def _member(self, loc: Loc, item: PartBits, type_: Integer) -> None:
         """Bits that are a part of their own."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from protogen.model.frame import members_of
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import Struct, Switch
@@ -89,6 +90,8 @@ def _members(protocol: Protocol) -> Iterator[tuple[str, Thing]]:
     for sender in protocol.senders:
         for item in sender.frame.declared:
             yield item.name, part(sender.name, item.name)
+            for own in members_of(item):
+                yield own.name, part(sender.name, item.name)
 
 
 def _claim_own(names: Names) -> None:

@@ -16,6 +16,7 @@ from protogen.model.frame import (
     CounterPart,
     Encoding,
     Escape,
+    FixedBits,
     Frame,
     IdentityPart,
     Insertion,
@@ -29,6 +30,7 @@ from protogen.model.frame import (
     TypedPart,
     ValuePart,
     VirtualPart,
+    place_mask,
 )
 from protogen.model.identities import Runs
 from protogen.model.messages import Message
@@ -172,7 +174,7 @@ def _roles(part: Part) -> tuple[str, ...]:
         case ChecksumPart():
             return _checksum_roles(part)
         case BitsPart():
-            return (role(part), _fixed_bits(part))
+            return (role(part), *map(_fixed_bits, part.constants), _other_bits(part))
         case CodePart():
             return (role(part),)
         case VirtualPart():
@@ -181,13 +183,17 @@ def _roles(part: Part) -> tuple[str, ...]:
             return tuple(_payload_roles(part))
 
 
-def _fixed_bits(part: BitsPart) -> str:
-    """Say what the bits of no part are."""
-    if not part.mask:
-        return ""
-    bits = part.type.byte_bits * part.type.size
-    mask, fixed = (code(hex_number(number, bits)) for number in (part.mask, part.fixed))
-    return f"Under the mask {mask} it is always {fixed}."
+def _fixed_bits(item: FixedBits) -> str:
+    """Say what bits are that have a name and are always the same."""
+    value = code(hex_number(item.value, item.type.bits))
+    return about_line(item.about, f"{code(item.name)}, {item.type.label}: always {value}.")
+
+
+def _other_bits(part: BitsPart) -> str:
+    """Say that the bits of no name are 0, if there are some."""
+    named = sum(map(place_mask, (item.type for item in (*part.members, *part.constants))))
+    every = (1 << part.type.byte_bits * part.type.size) - 1
+    return "Its other bits are 0." if named != every else ""
 
 
 def _payload_roles(part: Part) -> Iterator[str]:
