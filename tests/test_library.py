@@ -106,6 +106,6 @@ def test_what_is_not_said_makes_a_schema_one_that_is_said_in_part(
     monkeypatch.setattr(page, "proof_of", lambda _: Proof("peer 1", "All.", ["Running status."]))
     readme = page.with_table("<!-- library -->\n<!-- end of library -->")
     assert f"0 of {len(library_names())} are said completely." in readme
-    assert "| in part | `crsf`, " in readme
+    assert "| in part | `ax25`, `crsf`, " in readme
     assert "| peer 1 | in part |" in page.render_page()
     assert "Not said:\n\n* Running status." in page.render_page()

@@ -53,6 +53,7 @@ messages:
       more: {type: uint8, when: "pair.mask.low == one or state in [busy] and size > pair.n"}
       bytes: {type: bytes, size: (pair.n + size) * 2}
       chosen: {switch: pair.mask.low, cases: {one: kind}}
+      marked: {fields: {is_last: bool}, until: {element: is_last, max: 3}}
     examples:
       first:
         content: {hex: 00}
