@@ -42,7 +42,7 @@ EDITED = 50
 """Schemas that are spoilt, each of them several times."""
 STYLED = 25
 EDITS_OF_EACH = 3
-FIXED_SEEDS = 100 if THOROUGH else 12
+FIXED_SEEDS = 100 if THOROUGH else 24
 DRAWS_OF_A_SEED = 30
 """Few, because what is drawn from one seed grows alike."""
 

@@ -77,14 +77,14 @@ class NumberChecker(CheckedWalk):
             self._bounded(count, count.by.plain)
         elif count.known is not None and is_unfit("", count, count.by):
             self._flush()
-            self._refuse(is_unfit(self.declared(count.by), count, count.by), "SIZE")
+            self._refuse_unfit(self.declared(count.by), count, count.by)
         return super().count(count)
 
     def worked_out(self, count: Count, by: Formula) -> str:
         """A variable with a number that a struct has room for."""
         self._flush()
         name = self.declared(by)
-        self._refuse(is_unfit(name, count, by), "SIZE")
+        self._refuse_unfit(name, count, by)
         if not type_of(by).signed:
             return f"(size_t){name}" if type_of(by).bits > 16 else name
         return self.amount_of(by, name)
@@ -92,6 +92,13 @@ class NumberChecker(CheckedWalk):
     def filled(self, count: Count) -> str:
         """Nothing that was read says how much there is of what fills."""
         return ""
+
+    def _refuse_unfit(self, name: str, count: Count, by: Formula) -> None:
+        """Refuse a number that a struct has no room for, once all in front of it is there."""
+        test = is_unfit(name, count, by)
+        if test:
+            self._require(0)
+        self._refuse(test, "SIZE")
 
     def _bounded(self, count: Count, by: Reference) -> None:
         """Refuse numbers of elements that a struct has no room for."""
