@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from hypothesis import strategies as st
 
-from schema_fuzzing.setting import ELSE, Selector, Setting, Size
+from schema_fuzzing.setting import Selector, Setting, Size
 
 _WIDEST = 1 << 40
 """Greater numbers are left alone: what is worked out of them could have more than 62 bits."""
@@ -108,15 +107,8 @@ def selectors(draw: st.DrawFn, setting: Setting) -> Selector | None:
     name = draw(st.sampled_from(sorted(numbers)))
     size = numbers[name]
     if size.greatest - size.least < _FEW and draw(st.booleans()):
-        return Selector(f"{name} + 0", draw(_some(size.least, size.greatest)))
+        return Selector(f"{name} + 0", tuple(range(size.least, size.greatest + 1)))
     many = draw(st.integers(2, 3))
     if size.greatest - size.least < many:
         return None
-    return Selector(f"{name} % {many}", draw(_some(0, many - 1)))
-
-
-def _some(least: int, greatest: int) -> st.SearchStrategy[tuple[Any, ...]]:
-    """All these values, or all but the last one and a case for the others."""
-    every = tuple(range(least, greatest + 1))
-    but_one = (*every[:-1], ELSE)
-    return st.sampled_from([every, but_one] if len(every) > 1 else [every])
+    return Selector(f"{name} % {many}", tuple(range(many)))
