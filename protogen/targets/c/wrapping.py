@@ -29,6 +29,10 @@ class _Break(msgspec.Struct, frozen=True):
     """Columns behind the brackets that are open there."""
     column: int
     """Column at which the rest is aligned."""
+    asked: dict[int, int]
+    """Columns of the question marks whose answers go on, by how many brackets are open."""
+    joins: bool = True
+    """True behind an operator, or in front of what a condition else comes to."""
 
 
 def wrapped(text: str) -> str:
@@ -40,14 +44,18 @@ def wrapped(text: str) -> str:
 def _broken(line: str) -> str:
     head = _HEAD.match(line)
     if head is None:
-        return "\n".join(_parts(line, ()))
+        return "\n".join(_parts(line, (), {}))
     return prototype(head["function"], tuple(head["arguments"].split(", ")), head["end"])
 
 
-def _parts(line: str, margins: tuple[int, ...]) -> Iterator[str]:
-    found = None
-    if len(line) > WIDTH and not line.lstrip().startswith(("*", "/*", "#")):
-        breaks = _breaks(line, margins)
+def _parts(line: str, margins: tuple[int, ...], asked: dict[int, int]) -> Iterator[str]:
+    is_code = not line.lstrip().startswith(("*", "/*", "#"))
+    breaks = _breaks(line, margins, asked) if is_code and (margins or len(line) > WIDTH) else []
+    # What stands on several lines is alone in front of an operator.
+    found = next(
+        (b for b in breaks if b.joins and len(b.margins) < len(margins) and b.end <= WIDTH), None
+    )
+    if found is None and len(line) > WIDTH:
         found = min(
             (item for item in breaks if item.end <= WIDTH),
             key=lambda item: (len(item.margins), -item.end),
@@ -57,17 +65,17 @@ def _parts(line: str, margins: tuple[int, ...]) -> Iterator[str]:
         yield line
         return
     yield line[: found.end]
-    yield from _parts(" " * found.column + line[found.end :].lstrip(), found.margins)
+    rest = " " * found.column + line[found.end :].lstrip()
+    yield from _parts(rest, found.margins, found.asked)
 
 
-def _breaks(line: str, margins: tuple[int, ...]) -> list[_Break]:
+def _breaks(line: str, margins: tuple[int, ...], before: dict[int, int]) -> list[_Break]:
     """The places behind commas and operators, and in front of what a condition else comes to."""
     indent = len(line) - len(line.lstrip())
     value = None if margins else _VALUE.match(line)
     outside = value.end() if value and value.end() > indent else indent + (0 if margins else 4)
     opened = list(margins)
-    asked: dict[int, int] = {}
-    """Columns of the question marks of conditions, by how many brackets are open."""
+    asked = dict(before)
     found: list[_Break] = []
     for column, sign in enumerate(line):
         if sign in _OPENING:
@@ -80,10 +88,12 @@ def _breaks(line: str, margins: tuple[int, ...]) -> list[_Break]:
             # A condition on several lines would want its question on one of its own.
             found = [item for item in found if len(item.margins) < len(opened)]
         elif sign == ":" and len(opened) in asked:
-            found.append(_Break(column - 1, tuple(opened), asked[len(opened)]))
+            found.append(_Break(column - 1, tuple(opened), asked[len(opened)], {}))
         elif column > indent and line[column + 1 : column + 2] == " ":
             is_operator = _OPERATOR.search(line, max(column - 2, 0), column + 1) is not None
             if (sign in ",;" and opened) or (is_operator and len(opened) not in asked):
                 margin = opened[-1] if opened else outside
-                found.append(_Break(column + 1, tuple(opened), margin))
+                found.append(
+                    _Break(column + 1, tuple(opened), margin, dict(asked), joins=is_operator)
+                )
     return found

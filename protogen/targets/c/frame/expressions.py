@@ -123,25 +123,42 @@ def _byte_of(value: str, shift: int, mask: str) -> str:
     return f"(uint8_t)({shifted}{mask})" if shift or mask else f"(uint8_t){value}"
 
 
+def place_of(type_: Integer) -> int:
+    """The lowest bit that an integer has in another one."""
+    return 0 if type_.within is None else type_.within.low
+
+
 def bits_of(type_: Integer, number: str, carrier_bits: int) -> str:
     """The bits that an integer has in another one, as a number in the type that holds them."""
-    low = 0 if type_.within is None else type_.within.low
+    low = place_of(type_)
     moved = f"({number} >> {low})" if low else number
     is_top = low + type_.bits == carrier_bits
     masked = moved if is_top else f"({moved} & {hexadecimal(type_.greatest)})"
     return f"({unsigned_type(type_.bits)}){masked}"
 
 
-def joined_bits(part: BitsPart, names: Mapping[str, str]) -> str:
-    """The number whose bits are parts, each with the C of its value."""
-    target = unsigned_type(part.type.byte_bits * part.type.size)
-    cast = f"({target})" if part.type.size > 1 else ""
-    terms = [hexadecimal(part.fixed)] if part.fixed else []
+def bytes_of_bits(part: BitsPart, names: Mapping[str, str]) -> tuple[str, ...]:
+    """The bytes of a number whose bits are parts, in wire order; each of these has its C."""
+    width = part.type.byte_bits
+    items = [_byte_of_bits(part, names, low) for low in range(0, width * part.type.size, width)]
+    return tuple(items if part.type.byte_order == "little" else reversed(items))
+
+
+def _byte_of_bits(part: BitsPart, names: Mapping[str, str], low: int) -> str:
+    """The byte of the bits from `low` on."""
+    width = part.type.byte_bits
+    own = (1 << width) - 1
+    fixed, terms = part.fixed >> low & own, []
+    if fixed:
+        terms.append(byte(fixed))
     for item in part.members:
-        low = 0 if item.type.within is None else item.type.within.low
-        wide = f"{cast}{names[item.name]}"
-        terms.append(f"({target})({wide} << {low})" if low else wide)
-    return f"{cast}({' | '.join(terms)})" if len(terms) > 1 else terms[0]
+        name, shift = names[item.name], place_of(item.type) - low
+        if -item.type.bits < shift < width:
+            operator = "<<" if shift > 0 else ">>"
+            terms.append(f"({name} {operator} {abs(shift)})" if shift else name)
+    mask = f" & {byte(own)}" if width == 7 else ""
+    joined = " | ".join(terms) or "0U"
+    return f"(uint8_t)(({joined}){mask})" if mask else f"(uint8_t)({joined})"
 
 
 def number_of(type_: NumberType, at: str, offset: int, less: str = "") -> str:

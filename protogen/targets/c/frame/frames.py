@@ -31,7 +31,7 @@ from protogen.model.identities import Runs
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.groups import in_run
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
-from protogen.targets.c.frame.expressions import Index, byte, joined_bits, less_absent, wire_bytes
+from protogen.targets.c.frame.expressions import Index, byte, bytes_of_bits, less_absent, wire_bytes
 from protogen.targets.c.frame.numbers import has_others, none_of
 from protogen.targets.c.frame.stuffing import Stuffing
 from protogen.targets.c.frame.virtual import VirtualView
@@ -286,7 +286,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
                 values = self.decoder.numbers.bytes_of(part.type, "length")
             case BitsPart():
                 names = {it.name: argument_name(it.name, self._names) for it in part.members}
-                values = wire_bytes(part.type, joined_bits(part, names))
+                values = bytes_of_bits(part, names)
             case NumberPart():
                 values = self.decoder.numbers.bytes_of(
                     part.type, argument_name(part.name, self._names)

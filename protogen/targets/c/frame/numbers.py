@@ -16,7 +16,7 @@ from protogen.model.frame import (
 )
 from protogen.model.frame_places import PlacedPart
 from protogen.model.frame_plan import FramePlan, StartRule
-from protogen.targets.c.frame.expressions import byte, less_absent, number_of
+from protogen.targets.c.frame.expressions import byte, less_absent
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
@@ -111,7 +111,7 @@ def _bits(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberView
     assert isinstance(part, BitsPart)
     members = [_number(plan, member, numbers) for member in plan.written_apart([item])]
     less = less_absent(item.place, "decoder->payload")
-    value = number_of(part.type, "content", item.offset, less)
+    value = numbers.whole(part.type.whole, "content", item.offset, less)
     bounds = [view.bounds for view in members if view.bounds]
     mask = part.mask
     if mask:

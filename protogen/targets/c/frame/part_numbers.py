@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from protogen.model.frame import NumberPart, TypedPart
+from protogen.model.frame import BitsPart, NumberPart, TypedPart
 from protogen.model.frame_plan import FramePlan
 from protogen.model.numbers import Numeral
 from protogen.model.types import Integer, storage_bits
@@ -28,9 +28,15 @@ class PartNumbers:
         if isinstance(type_.text, Numeral):
             return Digits.of(type_).value(self._helpers, _address(at, offset, less))
         if type_.within is not None:
-            number = expressions.number_of(type_.whole, at, offset, less)
+            number = self.whole(type_.whole, at, offset, less)
             return expressions.bits_of(type_, number, storage_bits(type_.whole.bits))
         return expressions.number_of(type_, at, offset, less)
+
+    def whole(self, type_: Integer, at: str, offset: int, less: str = "") -> str:
+        """The number of all bits of some bytes, whose bits are parts."""
+        if type_.size == 1:
+            return expressions.number_of(type_, at, offset, less)
+        return f"{self._helpers.load(type_)}({_address(at, offset, less)})"
 
     def shown(self, type_: Integer, at: str, offset: int, less: str) -> str:
         """The same value, in the type of a member that holds it."""
@@ -67,6 +73,8 @@ def claim_functions(plans: Iterable[FramePlan], numbers: PartNumbers) -> None:
             if isinstance(item.part, NumberPart):
                 numbers.value(item.part.type, "content", 0)
                 numbers.fault(item.part.type, "content", 0, "")
+            if isinstance(item.part, BitsPart):
+                numbers.whole(item.part.type.whole, "content", 0)
 
 
 def _address(at: str, offset: int, less: str) -> str:
