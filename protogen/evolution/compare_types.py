@@ -15,6 +15,7 @@ from protogen.model.types import (
     Array,
     BitOrder,
     Counted,
+    Delimited,
     Extent,
     Fill,
     Fixed,
@@ -370,7 +371,7 @@ def _amount(extent: Extent) -> str:
             return f"{_bounds(extent)}, to the first whose {extent.mark.label} is not 0"
 
 
-def _bounds(extent: Fill | Until | Marked) -> str:
+def _bounds(extent: Delimited) -> str:
     return f"{extent.least} to {extent.greatest}" if extent.least else f"up to {extent.greatest}"
 
 

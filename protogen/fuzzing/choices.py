@@ -200,13 +200,13 @@ def _needs_of_count(count: Count) -> Iterator[tuple[Reference, Need]]:
 def _needs_of_choice(step: ChooseStep) -> Iterator[tuple[Reference, Need]]:
     if isinstance(step.selector, int):
         return
-    values = step.values
+    values = step.type.values
     if step.selector.plain is not None:
-        yield step.selector.plain, Need(cases=values, others=step.takes_all)
+        yield step.selector.plain, Need(cases=values, others=step.type.takes_all)
         return
     yield from _needs_of_formula(step.selector, values)
     selector = step.selector.expression
-    if isinstance(selector, Operand) and selector.run is not None and not step.takes_all:
+    if isinstance(selector, Operand) and selector.run is not None and not step.type.takes_all:
         number = step.selector.references[selector.name]
         yield number, Need(runs=(Run(*selector.run, values),))
 

@@ -60,8 +60,8 @@ class Counted:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Fill:
-    """As many as the payload has left, `least` to `greatest`."""
+class Delimited:
+    """As many as there are, `least` to `greatest`; no number says how many."""
 
     least: int = 0
     greatest: int
@@ -69,64 +69,48 @@ class Fill:
     """True if the schema bounds the number; else `greatest` is what the frame can take, in a
     declared type wherever it has the most room."""
     needs: ClassVar[frozenset[str]] = _NO_NAMES
+
+    @property
+    def counts(self) -> SizeSet:
+        """Possible numbers of elements, or of bytes without what ends them."""
+        return SizeSet.between(self.least, self.greatest)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fill(Delimited):
+    """As many as the payload has left."""
 
     @property
     def label(self) -> str:
         """The number in the words of the schema language."""
         return "fill"
 
-    @property
-    def counts(self) -> SizeSet:
-        """Possible numbers of elements."""
-        return SizeSet.between(self.least, self.greatest)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Until:
-    """As many as stand in front of a terminator, `least` to `greatest`."""
+class Until(Delimited):
+    """As many as stand in front of a terminator."""
 
     byte: int
     """The terminator, which is no part of the value."""
-    least: int = 0
-    greatest: int
-    stated: bool = dataclass_field(default=False, compare=False)
-    """True if the schema bounds the number; else `greatest` is what the frame can take, in a
-    declared type wherever it has the most room."""
-    needs: ClassVar[frozenset[str]] = _NO_NAMES
 
     @property
     def label(self) -> str:
         """The number in the words of the schema language."""
         return f"until 0x{self.byte:02X}"
 
-    @property
-    def counts(self) -> SizeSet:
-        """Possible numbers of bytes, without the terminator."""
-        return SizeSet.between(self.least, self.greatest)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Marked:
-    """As many elements as there are up to the first whose mark is not 0, `least` to `greatest`."""
+class Marked(Delimited):
+    """As many elements as there are up to the first whose mark is not 0."""
 
     mark: Operand
     """The field of the element, or the bits of one, that says that it is the last."""
     least: int = 1
-    greatest: int
-    stated: bool = dataclass_field(default=False, compare=False)
-    """True if the schema bounds the number; else `greatest` is what the frame can take, in a
-    declared type wherever it has the most room."""
-    needs: ClassVar[frozenset[str]] = _NO_NAMES
 
     @property
     def label(self) -> str:
         """The number in the words of the schema language."""
         return f"until {self.mark.label}"
-
-    @property
-    def counts(self) -> SizeSet:
-        """Possible numbers of elements."""
-        return SizeSet.between(self.least, self.greatest)
 
 
 Extent = Fixed | Counted | Fill | Until | Marked

@@ -34,6 +34,7 @@ from protogen.model.types import (
     Array,
     Case,
     Counted,
+    Delimited,
     Extent,
     Field,
     Fill,
@@ -293,7 +294,7 @@ class _Builder:
         counts, number = extent.counts, None
         if isinstance(extent, Counted):
             number = self._formula(extent.by)
-        known = None if isinstance(extent, Fill | Until | Marked) else counts.fixed
+        known = None if isinstance(extent, Delimited) else counts.fixed
         if known is None and isinstance(number, int):
             known = number
         return Count(

@@ -29,6 +29,7 @@ from protogen.model.types import (
     Integer,
     Octets,
     Struct,
+    Switch,
     Text,
     Type,
 )
@@ -290,6 +291,7 @@ class CaseStep(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
 class ChooseStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """One of several steps, chosen by an earlier number."""
 
+    type: Switch
     expression: Expression
     """What chooses, as the schema has it."""
     selector: int | Formula
@@ -303,16 +305,6 @@ class ChooseStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     def otherwise(self) -> CaseStep | None:
         """The case of all values that no other one has, if there is one."""
         return self.cases[-1] if self.cases and self.cases[-1].value is None else None
-
-    @property
-    def values(self) -> tuple[int, ...]:
-        """The values that have a case of their own."""
-        return tuple(case.value for case in self.cases if case.value is not None)
-
-    @property
-    def takes_all(self) -> bool:
-        """True if no value of the selector is invalid."""
-        return self.rest is not None or self.otherwise is not None
 
     def case(self, value: int) -> AnyStep | RestStep | None:
         """The step for a value of the selector; None where it is invalid."""

@@ -14,7 +14,7 @@ from typing import ClassVar, Literal, TypeGuard
 import msgspec
 
 from protogen.model.expressions import Expression, names_in
-from protogen.model.extents import Counted, Extent, Fill, Fixed, Marked, Until
+from protogen.model.extents import Counted, Delimited, Extent, Fill, Fixed, Marked, Until
 from protogen.model.meanings import NamedValue
 from protogen.model.names import free_name
 from protogen.model.numbers import (
@@ -41,6 +41,7 @@ __all__ = [
     "Case",
     "Constant",
     "Counted",
+    "Delimited",
     "Extent",
     "Field",
     "Fill",
@@ -372,7 +373,7 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def has_count(self) -> bool:
         """True if a record keeps the number of elements or bytes, which no earlier field says."""
-        return self.const is None and isinstance(self.type.extent, Fill | Until | Marked)
+        return self.const is None and isinstance(self.type.extent, Delimited)
 
     @property
     def constant_number(self) -> int | None:

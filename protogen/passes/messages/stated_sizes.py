@@ -11,16 +11,14 @@ from collections.abc import Callable, Iterable
 from protogen.model.nesting import inner_types
 from protogen.model.types import (
     Array,
+    Delimited,
     Extent,
     Field,
-    Fill,
     Integer,
-    Marked,
     Octets,
     Struct,
     Text,
     Type,
-    Until,
 )
 
 _Count = Callable[[Extent], int]
@@ -45,7 +43,7 @@ def _most(extent: Extent) -> int:
 
 
 def _fewest(extent: Extent) -> int:
-    stated = extent.stated and not isinstance(extent, Fill | Until | Marked)
+    stated = extent.stated and not isinstance(extent, Delimited)
     return extent.counts.least if stated else extent.counts.greatest
 
 

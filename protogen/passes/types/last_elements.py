@@ -8,6 +8,7 @@ from protogen.model.expressions import Operand
 from protogen.model.types import Field, Marked, Struct, Type, is_integer
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.declared import Effective
+from protogen.passes.types.delimited import Ending, bounds_within
 from protogen.passes.types.expressions import inside_of
 from protogen.passes.types.setting import Setting
 from protogen.schema.syntax.fields import FieldSyntax, UntilElement
@@ -47,28 +48,18 @@ def marked_extent(
     What the schema does not bound is bounded by the frame.
     """
     mark = _mark(context, written.element, (*loc, "element"), element)
-    if written.max is None and setting.room is None:
-        text = "nothing bounds this: the frame has no length part"
-        hint = f"give it a bound: `{{element: {written.element}, max: 8}}`"
-        everywhere = ", or all frames: `max_frame: 256`" if setting.delimited else ""
-        context.error("PG268", loc, text, hint + everywhere)
-    least, greatest = written.min, written.max
+    greatest = written.max
     if greatest is None:
         greatest = (setting.room or 0) // max(1, element.sizes.least)
-    if least >= greatest and (written.max is not None or setting.room is not None):
-        _no_choice(context, written, loc, greatest)
-        least, greatest = 1, max(2, greatest)
+    ending = Ending(
+        code="PG268",
+        name="the last element",
+        example=f"{{element: {written.element}, max: 8}}",
+        instead=f"`count: {greatest}` in place of `until`",
+        least=1,
+    )
+    least, greatest = bounds_within(context, written, loc, setting, greatest, ending)
     return Marked(mark=mark, least=least, greatest=greatest, stated=written.max is not None)
-
-
-def _no_choice(context: Context, written: UntilElement, loc: Loc, greatest: int) -> None:
-    """Report bounds that leave nothing to the last element."""
-    what = "`max` allows" if written.max is not None else "the frame has room for"
-    if written.min > greatest:
-        context.error("PG268", loc, f"{written.min} are more than the {greatest} that {what}")
-    else:
-        text = f"there are always {greatest}, so nothing depends on the last element"
-        context.error("PG268", loc, text, f"write `count: {greatest}` in place of `until`")
 
 
 def _mark(context: Context, written: str, loc: Loc, element: Type) -> Operand:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from protogen.model.types import Until
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.declared import Effective
+from protogen.passes.types.delimited import Ending, bounds_within
 from protogen.passes.types.last_elements import check_last_element
 from protogen.passes.types.setting import Setting
 from protogen.schema.syntax.fields import Until as UntilSyntax
@@ -42,29 +43,18 @@ def until_of(context: Context, written: UntilSyntax, loc: Loc, setting: Setting)
     if setting.layout.byte_bits == 7 and written.byte > 0x7F:
         text = f"no byte of this payload is {written.byte:02X}: each carries 7 bits"
         context.error("PG230", loc, text, "take a terminator up to 0x7F")
-    if written.max is None and setting.room is None:
-        text = "nothing bounds this: the frame has no length part"
-        hint = f"give it a bound: `{{byte: {written.byte}, max: 64}}`"
-        # Where fields tell the payload's size, they do it by what they say, not by the room.
-        everywhere = ", or all frames: `max_frame: 256`" if setting.delimited else ""
-        context.error("PG230", loc, text, hint + everywhere)
-    least, greatest = written.min, _greatest(written, setting)
-    if least >= greatest and (written.max is not None or setting.room is not None):
-        _no_choice(context, written, loc, greatest)
-        least, greatest = 0, max(1, greatest)
+    ending = Ending(
+        code="PG230",
+        name="the terminator",
+        example=f"{{byte: {written.byte}, max: 64}}",
+        instead="a `size`, and a constant byte behind it",
+        least=0,
+    )
+    greatest = _greatest(written, setting)
+    least, greatest = bounds_within(context, written, loc, setting, greatest, ending)
     return Until(byte=written.byte, least=least, greatest=greatest, stated=written.max is not None)
 
 
 def _greatest(written: UntilSyntax, setting: Setting) -> int:
     """The greatest number of bytes in front of the terminator."""
     return max(0, (setting.room or 0) - 1) if written.max is None else written.max
-
-
-def _no_choice(context: Context, written: UntilSyntax, loc: Loc, greatest: int) -> None:
-    """Report bounds that leave nothing to the terminator."""
-    what = "`max` allows" if written.max is not None else "the frame has room for"
-    if written.min > greatest:
-        context.error("PG230", loc, f"{written.min} are more than the {greatest} that {what}")
-    else:
-        text = f"there are always {greatest}, so nothing depends on the terminator"
-        context.error("PG230", loc, text, "write a `size`, and a constant byte behind it")

@@ -12,6 +12,7 @@ from protogen.model.types import (
     Array,
     Case,
     Counted,
+    Delimited,
     Extent,
     Field,
     Fill,
@@ -172,11 +173,11 @@ def extent(of: Extent) -> str:
             return call("_c.Count", formula(of.by), str(of.least), str(of.greatest))
         case Counted():
             return formula(of.by)
-        case Fill() | Until() | Marked():
+        case Delimited():
             return str(of.greatest)
 
 
-def least(of: Fill | Until | Marked) -> str | None:
+def least(of: Delimited) -> str | None:
     """The least number, where it is not the least that there can be."""
     usual = 1 if isinstance(of, Marked) else 0
     return str(of.least) if of.least > usual else None

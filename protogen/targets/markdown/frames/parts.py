@@ -191,9 +191,8 @@ def _fixed_bits(item: FixedBits) -> str:
 
 def _other_bits(part: BitsPart) -> str:
     """Say that the bits of no name are 0, if there are some."""
-    named = sum(map(place_mask, (item.type for item in (*part.members, *part.constants))))
-    every = (1 << part.type.byte_bits * part.type.size) - 1
-    return "Its other bits are 0." if named != every else ""
+    named = sum(place_mask(item.type) for item in part.constants)
+    return "Its other bits are 0." if named != part.mask else ""
 
 
 def _payload_roles(part: Part) -> Iterator[str]:
