@@ -155,10 +155,9 @@ def _byte_of_bits(part: BitsPart, names: Mapping[str, str], low: int) -> str:
         name, shift = names[item.name], place_of(item.type) - low
         if -item.type.bits < shift < width:
             operator = "<<" if shift > 0 else ">>"
-            terms.append(f"({name} {operator} {abs(shift)})" if shift else name)
-    mask = f" & {byte(own)}" if width == 7 else ""
-    joined = " | ".join(terms) or "0U"
-    return f"(uint8_t)(({joined}){mask})" if mask else f"(uint8_t)({joined})"
+            terms.append(f"(uint8_t)({name} {operator} {abs(shift)})" if shift else name)
+    joined = f"(uint8_t)({' | '.join(terms) or '0U'})"
+    return f"(uint8_t)({joined} & {byte(own)})" if width == 7 else joined
 
 
 def number_of(type_: NumberType, at: str, offset: int, less: str = "") -> str:
