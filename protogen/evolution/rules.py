@@ -86,6 +86,12 @@ RULES: tuple[Rule, ...] = (
         "zeros at the end of payloads are left out, or no more",
         "rebuild the receivers first",
     ),
+    Rule(
+        "frame-longer-payloads",
+        _S,
+        "receivers take payloads longer than their message, or no more",
+        "rebuild the receivers before senders have more fields",
+    ),
     Rule("frame-leniency", _S, "receivers take other sloppy encodings", "check the receivers"),
     Rule("frame-size-limit", _S, "the greatest frame has another size", "rebuild the receivers"),
     Rule("form-added", _W, "an endpoint sends frames of a new form", "rebuild the receivers first"),

@@ -15,6 +15,7 @@ from protogen.passes.framing.forms import check_forms
 from protogen.passes.framing.frame_plan import plan_frame
 from protogen.passes.framing.frames import resolve_frames
 from protogen.passes.framing.transparencies import check_codes
+from protogen.passes.framing.cutting import check_cut
 from protogen.passes.framing.trimming import check_trimmed
 from protogen.passes.messages.building import resolve_messages
 from protogen.passes.messages.examples import attach_examples, resolve_exchanges
@@ -43,6 +44,7 @@ PASSES: tuple[Pass, ...] = (
     check_identities,
     check_shared_values,
     check_trimmed,
+    check_cut,
     resolve_reserved,
     attach_examples,
     resolve_exchanges,

@@ -20,6 +20,7 @@ from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
 from protogen.problems.catalogue.switch_cases import SWITCH_CASE_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
+from protogen.problems.catalogue.cutting import CUTTING_CODES
 from protogen.problems.catalogue.trimming import TRIMMING_CODES
 from protogen.problems.catalogue.virtual_parts import VIRTUAL_PART_CODES
 from protogen.problems.catalogue.wire_counts import WIRE_COUNT_CODES
@@ -41,6 +42,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *FORM_CODES,
     *FRAME_SIZE_CODES,
     *TRIMMING_CODES,
+    *CUTTING_CODES,
     *MESSAGE_CODES,
     *PART_CODES,
     *PART_BITS_CODES,
