@@ -125,6 +125,12 @@ RULES: tuple[Rule, ...] = (
     Rule("message-size", _W, "payloads of other sizes are allowed", _BOTH),
     # fields
     Rule("field-added", _W, "a message has one field more", _BOTH),
+    Rule(
+        "field-appended",
+        _N,
+        "a message has one field more, which old receivers leave and new ones may take for zeros",
+        "nothing",
+    ),
     Rule("field-deleted", _W, "a message has one field less", _BOTH),
     Rule("field-moved", _W, "a field stands elsewhere", _BOTH),
     Rule("field-renamed", _S, "a field has another name", _RENAME),

@@ -11,11 +11,11 @@ from protogen.model.protocol import Endpoint, Link, Protocol, Sender
 from protogen.passes.context import Context, about, source_of
 from protogen.passes.draft import Draft
 from protogen.passes.framing.analysis import analyse_framing
+from protogen.passes.framing.cutting import check_cut
 from protogen.passes.framing.forms import check_forms
 from protogen.passes.framing.frame_plan import plan_frame
 from protogen.passes.framing.frames import resolve_frames
 from protogen.passes.framing.transparencies import check_codes
-from protogen.passes.framing.cutting import check_cut
 from protogen.passes.framing.trimming import check_trimmed
 from protogen.passes.messages.building import resolve_messages
 from protogen.passes.messages.examples import attach_examples, resolve_exchanges

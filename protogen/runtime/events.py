@@ -71,9 +71,7 @@ class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
 
     @property
     def payload(self) -> bytes:
-        """The message's bytes: with zeros at their end that the frame leaves out, and without what
-        a newer sender has behind them.
-        """
+        """The message's bytes: with zeros that a frame leaves out, without what is not known."""
         payload = payload_of(self.codec, self.raw)
         return self.codec.layout.payload.fitted(payload, self.message.SIZES.fixed)
 

@@ -38,6 +38,7 @@ from protogen.passes.framing.capacity import (
     payload_range,
     stated_range,
 )
+from protogen.passes.framing.cutting import cut
 from protogen.passes.framing.literals import literal_of
 from protogen.passes.framing.part_bits import are_whole, bits_part, check_names, holders_of
 from protogen.passes.framing.part_digits import (
@@ -51,7 +52,6 @@ from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.part_values import number_of, text_bounds, text_type
 from protogen.passes.framing.silences import check_silence, silence_of
 from protogen.passes.framing.transparencies import transparency_of
-from protogen.passes.framing.cutting import cut
 from protogen.passes.framing.trimming import trimmed
 from protogen.passes.framing.virtual_parts import check_virtual_parts, sent_run
 from protogen.passes.framing.wire_counts import check_wire_length, check_wire_sum

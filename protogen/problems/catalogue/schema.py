@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
+from protogen.problems.catalogue.cutting import CUTTING_CODES
 from protogen.problems.catalogue.expressions import EXPRESSION_CODES
 from protogen.problems.catalogue.fields import FIELD_CODES
 from protogen.problems.catalogue.forms import FORM_CODES
@@ -20,7 +21,6 @@ from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
 from protogen.problems.catalogue.switch_cases import SWITCH_CASE_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
-from protogen.problems.catalogue.cutting import CUTTING_CODES
 from protogen.problems.catalogue.trimming import TRIMMING_CODES
 from protogen.problems.catalogue.virtual_parts import VIRTUAL_PART_CODES
 from protogen.problems.catalogue.wire_counts import WIRE_COUNT_CODES
