@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 import msgspec
 
 from protogen.copying import replace
+from protogen.evolution.appended import with_appended
 from protogen.evolution.change import Change, named
 from protogen.evolution.compare_fields import FieldComparison
 from protogen.evolution.compare_frames import compare_frames, renamed_parts
@@ -83,7 +84,8 @@ def _messages(
             yield _change("message-renamed", message, named(message.name, name))
         yield from _senders(message, other, old, new, endpoints)
         found = list(FieldComparison(message.name).compare(message.fields, other.fields))
-        yield from found
+        plans = _plans(message, other, old, new, endpoints)
+        yield from with_appended(found, message, other, plans)
         if message.sizes != other.sizes and not any(_is_wire(item) for item in found):
             yield _change("message-size", message, named(str(message.sizes), str(other.sizes)))
     known = set(messages.values())
@@ -92,6 +94,18 @@ def _messages(
             text = f"{', '.join(message.senders)} sends it, {_identity(message, new)}"
             yield _change("message-added", message, text)
             yield from _unskippable(message, old, new, endpoints)
+
+
+def _plans(
+    message: Message, other: Message, old: Protocol, new: Protocol, endpoints: dict[str, str]
+) -> list[tuple[FramePlan, FramePlan]]:
+    """The frames that carry a message in OLD and in NEW, where both versions have them."""
+    pairs = ((item, _counterpart(item, new, endpoints)) for item in old.senders)
+    return [
+        (sender.plan, their.plan)
+        for sender, their in pairs
+        if their is not None and sender.sends(message) and their.sends(other)
+    ]
 
 
 def _unskippable(

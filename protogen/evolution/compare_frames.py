@@ -102,6 +102,9 @@ class _Frames:
             if old.is_trimmed != new.is_trimmed:
                 words = "zeros at the end are " + ("left out" if new.is_trimmed else "sent")
                 yield self._change("frame-trailing-zeros", old.name, words)
+            if old.is_cut != new.is_cut:
+                words = "longer payloads are " + ("cut" if new.is_cut else "refused")
+                yield self._change("frame-longer-payloads", old.name, words)
         else:
             yield from self._typed(old, new, renamed)
 

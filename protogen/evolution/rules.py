@@ -86,6 +86,12 @@ RULES: tuple[Rule, ...] = (
         "zeros at the end of payloads are left out, or no more",
         "rebuild the receivers first",
     ),
+    Rule(
+        "frame-longer-payloads",
+        _S,
+        "receivers take payloads longer than their message, or no more",
+        "rebuild the receivers before senders have more fields",
+    ),
     Rule("frame-leniency", _S, "receivers take other sloppy encodings", "check the receivers"),
     Rule("frame-size-limit", _S, "the greatest frame has another size", "rebuild the receivers"),
     Rule("form-added", _W, "an endpoint sends frames of a new form", "rebuild the receivers first"),
@@ -119,6 +125,12 @@ RULES: tuple[Rule, ...] = (
     Rule("message-size", _W, "payloads of other sizes are allowed", _BOTH),
     # fields
     Rule("field-added", _W, "a message has one field more", _BOTH),
+    Rule(
+        "field-appended",
+        _N,
+        "a message has one field more, which old receivers leave and new ones may take for zeros",
+        "nothing",
+    ),
     Rule("field-deleted", _W, "a message has one field less", _BOTH),
     Rule("field-moved", _W, "a field stands elsewhere", _BOTH),
     Rule("field-renamed", _S, "a field has another name", _RENAME),

@@ -328,6 +328,8 @@ def _fitted(witness: Witness, change: Change) -> Witness | None:
     if not inside:
         return None
     is_misread = any(item.received is not None for item in inside) and not change.is_lost
+    if change.rule == "field-added" and not is_misread:
+        return None  # A receiver that leaves what it never knew loses nothing.
     return replace(witness, differences=inside, harm=Harm.MISREAD if is_misread else Harm.LOST)
 
 

@@ -193,14 +193,29 @@ class PayloadPart(Part, frozen=True, kw_only=True):
 
     kept: int | None = None
     """Bytes that stay, at least, where zeros at its end are left out; None where none are."""
+    longest: int | None = None
+    """Bytes of the longest one that a receiver cuts to those that it knows; None: it cuts none."""
 
     @property
     def is_trimmed(self) -> bool:
         """True if senders leave out zeros at its end, which receivers put there again."""
         return self.kept is not None
 
+    @property
+    def is_cut(self) -> bool:
+        """True if receivers leave what is behind the bytes that they know."""
+        return self.longest is not None
+
+    @property
+    def is_fitted(self) -> bool:
+        """True if receivers fill payloads up, or cut them, to the size that the message has."""
+        return self.is_trimmed or self.is_cut
+
     def carried(self, sizes: SizeSet) -> SizeSet:
         """The sizes in which a receiver takes the payloads of a message that has these itself."""
+        least = 0 if self.is_trimmed else sizes.least
+        if self.longest is not None and sizes.fixed is not None:
+            return SizeSet.between(least, max(self.longest, sizes.greatest))
         return SizeSet.between(0, sizes.greatest) if self.is_trimmed else sizes
 
     def sent(self, sizes: SizeSet) -> SizeSet:

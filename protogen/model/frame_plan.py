@@ -161,6 +161,21 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return self.frame.payload.is_trimmed
 
     @property
+    def is_cut(self) -> bool:
+        """True if receivers leave what is behind the bytes of a payload that they know."""
+        return self.frame.payload.is_cut
+
+    @property
+    def is_fitted(self) -> bool:
+        """True if receivers fill payloads up, or cut them, to the size that the message has."""
+        return self.frame.payload.is_fitted
+
+    def takes_any_size(self, group: IdentityGroup) -> bool:
+        """True if no payload is too short or too long for the messages of an identity."""
+        is_cut = self.is_cut and group.own is not None
+        return is_cut and all(sizes.least == 0 for sizes in group.sizes)
+
+    @property
     def bounds_payload(self) -> bool:
         """True if no frame carries a payload greater than the plan's, whatever its message is."""
         return self.length is not None or self.frame.limit is not None
@@ -254,6 +269,8 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         if self.length is None or self.length.over_wire or not self.rescans or not self.groups:
             return None
         if self.identity and not self.identity_is_early:
+            return None
+        if all(map(self.takes_any_size, self.groups)):
             return None
         told = [self.length.part, *self.identity[-1:]]
         return max(self.part(part.name).end for part in told)
@@ -362,7 +379,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     def has_one_spelling(self) -> bool:
         """True if a frame can only have the bytes that an encoder makes of what is in it."""
         lenient = self.region is not None and self.region.lenient
-        if lenient or self.cut_ambiguous or self.shares_delimiter or self.is_trimmed:
+        if lenient or self.cut_ambiguous or self.shares_delimiter or self.is_fitted:
             return False
         messages = (message for group in self.groups for message in group.messages)
         return all(message.plan.has_one_spelling for message in messages)

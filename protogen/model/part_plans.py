@@ -159,6 +159,12 @@ class IdentityGroup(msgspec.Struct, frozen=True, kw_only=True):
         return sizes.pop() if len(sizes) == 1 else None
 
     @property
+    def own(self) -> int | None:
+        """Size that each of these messages has, whatever frames carry of it; None: it varies."""
+        sizes = {message.sizes.fixed for message in self.messages}
+        return sizes.pop() if len(sizes) == 1 else None
+
+    @property
     def greatest(self) -> int:
         """Greatest payload of these messages in bytes."""
         return max(item.greatest for item in self.sizes)

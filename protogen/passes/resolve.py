@@ -11,6 +11,7 @@ from protogen.model.protocol import Endpoint, Link, Protocol, Sender
 from protogen.passes.context import Context, about, source_of
 from protogen.passes.draft import Draft
 from protogen.passes.framing.analysis import analyse_framing
+from protogen.passes.framing.cutting import check_cut
 from protogen.passes.framing.forms import check_forms
 from protogen.passes.framing.frame_plan import plan_frame
 from protogen.passes.framing.frames import resolve_frames
@@ -43,6 +44,7 @@ PASSES: tuple[Pass, ...] = (
     check_identities,
     check_shared_values,
     check_trimmed,
+    check_cut,
     resolve_reserved,
     attach_examples,
     resolve_exchanges,

@@ -71,9 +71,9 @@ class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
 
     @property
     def payload(self) -> bytes:
-        """The message's bytes, with zeros at their end that the frame leaves out."""
+        """The message's bytes: with zeros that a frame leaves out, without what is not known."""
         payload = payload_of(self.codec, self.raw)
-        return self.codec.layout.payload.filled(payload, self.message.SIZES.greatest)
+        return self.codec.layout.payload.fitted(payload, self.message.SIZES.fixed)
 
     def __repr__(self) -> str:
         shown = ("offset", "raw", "sender", "parts", "message")

@@ -184,9 +184,9 @@ _PART_RULES = (
         {"propertyNames": {"enum": ["literal", "unprotected", "type", "doc", "source"]}},
     ),
     _where(
-        _with("trailing_zeros"),
-        "Only the payload is trimmed.",
-        {"propertyNames": {"enum": ["trailing_zeros", "unprotected", "doc", "source"]}},
+        _any_of(("trailing_zeros", "longer")),
+        "Only the payload is trimmed, or cut.",
+        {"propertyNames": {"enum": ["trailing_zeros", "longer", "unprotected", "doc", "source"]}},
     ),
     _where(
         _with("literal", "type"),

@@ -179,7 +179,7 @@ def _may_differ(sender: Sender, line: dict[str, Any]) -> bool:
         return True
     if not all(message.plan.has_one_spelling for message in sender.messages):
         return True
-    if sender.plan.is_trimmed:
+    if sender.plan.is_fitted:
         return True
     start, end, transparency = sender.framing.start, sender.framing.end, sender.frame.transparency
     is_shared = isinstance(start, StartLiteral) and end is not None and start.bytes == end.bytes

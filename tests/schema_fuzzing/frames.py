@@ -88,10 +88,14 @@ class FramePlan:
 
     def trimmed(self) -> FramePlan:
         """The same frame, with a payload whose zeros at the end are left out."""
-        parts = (
-            part.adding(trailing_zeros="trimmed") if part.role == "payload" else part
-            for part in self.parts
-        )
+        return self._with_payload(trailing_zeros="trimmed")
+
+    def cut(self) -> FramePlan:
+        """The same frame, with a payload that may be longer than its message."""
+        return self._with_payload(longer="cut")
+
+    def _with_payload(self, **keys: str) -> FramePlan:
+        parts = (part.adding(**keys) if part.role == "payload" else part for part in self.parts)
         return replace(self, parts=tuple(parts))
 
     @property

@@ -147,6 +147,10 @@ class _Drawing:
             are_fixed = all(message.size.least == message.size.greatest for message in sent)
             if may_trim and are_fixed and bounded.has_length and self._draw(st.booleans()):
                 bounded = bounded.trimmed()
+            fixed = [item.size.least for item in sent if item.size.least == item.size.greatest]
+            has_room = frame.room is not None and min(fixed, default=frame.room) < frame.room
+            if may_trim and has_room and bounded.has_length and self._draw(st.booleans()):
+                bounded = bounded.cut()
             payload = self._payload
             if self._byte_bits == 8:
                 senders = self._senders if key == _SHARED else [key]

@@ -108,6 +108,8 @@ def _frame(frame: FramePlan) -> Iterator[str]:
         yield "greatest frame"
     if any("trailing_zeros" in part.data for part in frame.parts):
         yield "trailing zeros left out"
+    if any("longer" in part.data for part in frame.parts):
+        yield "longer payloads cut"
     for part in frame.parts:
         yield from _part(part.data)
 

@@ -49,7 +49,7 @@ def protocol_data(wire: Wire) -> dict[str, Any]:
     data: dict[str, Any] = {"endpoints": {ENDPOINT: endpoint}, "byte_order": "little"}
     if wire is Wire.V1:
         return data | {"frame": _head_1() | _tail({})}
-    payload = {"trailing_zeros": "trimmed"}
+    payload = {"trailing_zeros": "trimmed", "longer": "cut"}
     unsigned = _head_2("0x00", "Nothing that a receiver has to understand") | _tail(payload)
     signed = _head_2("0x01", "The frame is signed") | _tail(payload) | _signature()
     forms = {

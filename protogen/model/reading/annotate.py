@@ -38,6 +38,7 @@ from protogen.runtime.errors import ByteError
 __all__ = ["Row", "annotate"]
 
 _SURPLUS = "nothing is due here"
+_NOT_KNOWN = "left, as what is behind the known fields is"
 _LEFT_OUT = "left out, as zeros at the end are"
 
 
@@ -251,18 +252,27 @@ class _Frame:
         else:
             rows = self._dissected(message, inside)
         if inside.left:
-            left = inside.left
-            rows.append(inside.take(left, part.name, "bytes", fault=_SURPLUS, subject=part))
+            left, fault = inside.left, "" if self._is_cut(message) else _SURPLUS
+            rest = inside.take(left, part.name, "bytes", fault=fault, subject=part)
+            rows.append(rest if fault else replace(rest, meaning=_NOT_KNOWN))
         return rows or [replace(inside.take(0, part.name, "", subject=part), meaning="empty")]
 
     def _dissected(self, message: Message, inside: Cursor) -> list[Row]:
         """The rows of a payload; zeros that the frame leaves out have values and no bytes."""
         offset, size = inside.offset, inside.left
+        own = message.sizes.greatest
+        if self._is_cut(message) and size > own:
+            return dissect(message.plan, inside.part(own))
         missing = message.sizes.greatest - size
         if missing <= 0 or not self._sender.plan.is_trimmed:
             return dissect(message.plan, inside)
         zeros = Cursor([*inside.rest(), *[Unit(0, b"")] * missing], offset)
         return list(_as_sent(dissect(message.plan, zeros), size))
+
+    def _is_cut(self, message: Message | None) -> bool:
+        """True if receivers leave what is behind the fields of a message."""
+        is_fixed = message is not None and message.sizes.fixed is not None
+        return is_fixed and self._sender.plan.is_cut
 
     def _payload_size(self, part: PayloadPart) -> int:
         """As the length part says, else what the parts behind it leave."""

@@ -69,10 +69,12 @@ class _Analysis:
         self._context = context
         self._written = context.frames[sender]
         self._loc = self._written.loc
+        sent, uncut = list(draft.sent_by(sender)), replace(frame.payload, longest=None)
         self._messages = [
-            replace(message, sizes=frame.payload.carried(message.sizes))
-            for message in draft.sent_by(sender)
+            replace(message, sizes=frame.payload.carried(message.sizes)) for message in sent
         ]
+        self._own = [replace(message, sizes=uncut.carried(message.sizes)) for message in sent]
+        """The messages without the bytes that newer senders may have behind them."""
         self._too_large = any(message.name in draft.too_large for message in self._messages)
         self._overloads = draft.overloads[sender]
         self._payload = payload_alphabet(context.syntax.byte_bits, self._messages)
@@ -268,7 +270,7 @@ class _Analysis:
             text = f"{text}at most 1 MiB is allowed"
             self._context.error_at_key("PG122", self._loc, text)
             return None
-        per_message = tuple(self._message(wire, message) for message in self._messages)
+        per_message = tuple(self._message(wire, message) for message in self._own)
         synchronising, why = framing_words.synchronisation(frame, start, end)
         holder = next((item for item in self.others if item.can_hold(start)), None)
         if synchronising and holder is not None:

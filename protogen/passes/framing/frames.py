@@ -38,6 +38,7 @@ from protogen.passes.framing.capacity import (
     payload_range,
     stated_range,
 )
+from protogen.passes.framing.cutting import cut
 from protogen.passes.framing.literals import literal_of
 from protogen.passes.framing.part_bits import are_whole, bits_part, check_names, holders_of
 from protogen.passes.framing.part_digits import (
@@ -73,7 +74,7 @@ _ROLES: dict[str, frozenset[str]] = {
     "counter": _NUMBER | {"counter", "default"},
     "algorithm": _TYPE | {"algorithm", "covers", "over", "when"},
     "type": _NUMBER | {"size", "default"},
-    PAYLOAD: frozenset({"unprotected", "trailing_zeros"}),
+    PAYLOAD: frozenset({"unprotected", "trailing_zeros", "longer"}),
 }
 _ORDER_HINT = "set `byte_order: little` or `big` on the part or the protocol"
 _IDENTITY_BITS = 64
@@ -144,6 +145,8 @@ class FrameBuilder:
         )
         if self._syntax[PAYLOAD].trailing_zeros is not None:
             frame = trimmed(self._context, self._loc, frame)
+        if self._syntax[PAYLOAD].longer is not None:
+            frame = cut(self._context, self._loc, frame)
         self._check(frame)
         return frame if self._context.tally.errors == before else None
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
+from protogen.problems.catalogue.cutting import CUTTING_CODES
 from protogen.problems.catalogue.expressions import EXPRESSION_CODES
 from protogen.problems.catalogue.fields import FIELD_CODES
 from protogen.problems.catalogue.forms import FORM_CODES
@@ -41,6 +42,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *FORM_CODES,
     *FRAME_SIZE_CODES,
     *TRIMMING_CODES,
+    *CUTTING_CODES,
     *MESSAGE_CODES,
     *PART_CODES,
     *PART_BITS_CODES,

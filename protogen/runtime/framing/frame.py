@@ -144,13 +144,20 @@ class BitsPart(NamedTuple):
 class PayloadPart(NamedTuple):
     """The message's fields.
 
-    Zeros at its end are left out on the wire where `kept` tells how many bytes stay at least.
+    Zeros at its end are left out on the wire where `kept` tells how many bytes stay at least. Where
+    `longest` tells how many it can have, there may be more than those of its message.
     """
 
     name: str = "payload"
     size: int = 0
     """The payload's bytes are not counted among those of the parts."""
     kept: int | None = None
+    longest: int | None = None
+
+    @property
+    def is_fitted(self) -> bool:
+        """True if it may have another size than its message has."""
+        return self.kept is not None or self.longest is not None
 
     def trimmed(self, payload: bytes) -> bytes:
         """The bytes of a message's payload that an encoder puts into a frame."""
@@ -158,8 +165,12 @@ class PayloadPart(NamedTuple):
             return payload
         return payload[: max(len(payload.rstrip(b"\0")), self.kept)]
 
-    def filled(self, payload: bytes, size: int) -> bytes:
-        """The payload of so many bytes of which a frame has these."""
+    def fitted(self, payload: bytes, size: int | None) -> bytes:
+        """What a frame has of a payload, cut or filled up to its size; None: that varies."""
+        if size is None:
+            return payload
+        if self.longest is not None:
+            payload = payload[:size]
         return payload if self.kept is None else payload.ljust(size, b"\0")
 
 

@@ -38,20 +38,19 @@ class IdentityGroup(Generic[MessageT_co]):
         self.messages = messages
         self._part = part
         sizes = {message.SIZES.fixed for message in messages}
-        self.fixed = sizes.pop() if len(sizes) == 1 and part.kept is None else None
-        """The payload's size, where no message has another one."""
+        self._own = sizes.pop() if len(sizes) == 1 else None
+        self.fixed = None if part.is_fitted else self._own
+        """The payload's size, where no message has another one, and no frame."""
         self.greatest = max(message.SIZES.greatest for message in messages)
         """The greatest payload of these messages."""
 
     def holds(self, size: int) -> bool:
         """True if frames can carry a payload of one of these messages in that size."""
-        if self._part.kept is not None:
-            return size <= self.greatest
-        return any(size in message.SIZES for message in self.messages)
-
-    def filled(self, payload: bytes) -> bytes:
-        """The payload with the zeros at its end that the frame does not have."""
-        return self._part.filled(payload, self.greatest)
+        own = self._own
+        if own is None or not self._part.is_fitted:
+            return any(size in message.SIZES for message in self.messages)
+        is_filled, is_cut = self._part.kept is not None, self._part.longest is not None
+        return size == own or (is_filled if size < own else is_cut)
 
     def measure(self, start: bytes) -> int:
         """The size of the payload that starts so; PayloadError with `missing` if it is longer."""
@@ -61,7 +60,7 @@ class IdentityGroup(Generic[MessageT_co]):
 
     def read(self, payload: bytes) -> MessageT_co:
         """The message of a frame's payload. Raises PayloadError: size, value or encoding."""
-        payload = self.filled(payload)
+        payload = self._part.fitted(payload, self._own)
         fitting = (message for message in self.messages if len(payload) in message.SIZES)
         return next(fitting, self.messages[0]).parse_payload(payload)
 

@@ -155,16 +155,22 @@ Literals = Annotated[
 """Fixed bytes, or several literals of which a frame has one."""
 
 
-def _trimming(value: Any) -> Any:
+def _stated(value: Any) -> Any:
     """What was written; a key without a value says as little as another word."""
     return "" if value is None else value
 
 
 _Trimming = Annotated[
     Literal["trimmed"] | None,
-    BeforeValidator(_trimming, json_schema_input_type=Literal["trimmed"]),
+    BeforeValidator(_stated, json_schema_input_type=Literal["trimmed"]),
 ]
 """How zeros at the end of a payload are left out."""
+
+_Cutting = Annotated[
+    Literal["cut"] | None,
+    BeforeValidator(_stated, json_schema_input_type=Literal["cut"]),
+]
+"""What becomes of a payload that is longer than its message."""
 
 
 class PartBits(Syntax):
@@ -261,6 +267,11 @@ class Part(Syntax):
         None,
         description="Zero bytes at the end of the payload are left out; receivers fill it up "
         "with them: trimmed.",
+    )
+    longer: _Cutting = Field(
+        None,
+        description="A payload longer than its message, as newer senders may have it: receivers "
+        "take the bytes that they know and leave the rest: cut.",
     )
     range: RawRange | None = Field(
         None,

@@ -59,8 +59,8 @@ def part(item: Part) -> str:
         case ChecksumPart():
             return _checksum_part(item)
         case PayloadPart():
-            kept = None if item.kept is None else str(item.kept)
-            return call("_rt.PayloadPart", name, kept=kept)
+            kept, longest = (None if it is None else str(it) for it in (item.kept, item.longest))
+            return call("_rt.PayloadPart", name, kept=kept, longest=longest)
     raise TypeError(f"{type(item).__name__} is no part that a frame has")
 
 

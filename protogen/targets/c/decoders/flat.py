@@ -136,9 +136,9 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
             return True
         if self.known_by_identity and group.fixed is not None:
             return True
-        if self.filled_size:
-            return False
         message = group.messages[0]
+        if self.fits_payloads and message.fixed:
+            return message.takes_any_size
         return len(group.messages) == 1 and bool(message.checks) and not message.fixed
 
     # --- stuffing ---------------------------------------------------------------------------------

@@ -25,14 +25,33 @@ class ReceivedMessage(msgspec.Struct, frozen=True):
     step: int
     checks: str
     """The function that checks a payload; empty where its size says all."""
+    fills: int = 0
+    """Bytes that payloads are filled up to, where frames leave out zeros at their end; else 0."""
+    cuts: int | None = None
+    """Bytes that longer payloads are cut to; None where they are refused."""
 
     @property
     def fixed(self) -> bool:
         """True if the payload has always the same size."""
         return self.least == self.greatest
 
+    @property
+    def takes_any_size(self) -> bool:
+        """True if no payload is too short or too long."""
+        return self.cuts is not None and self.least == 0
+
+    @property
+    def is_fitted(self) -> bool:
+        """True if payloads are filled up, or cut."""
+        return bool(self.fills) or self.cuts is not None
+
+    @property
+    def own(self) -> int:
+        """Size that payloads have when they are filled up or cut."""
+        return self.fills if self.cuts is None else self.cuts
+
     def fits(self, size: str) -> str:
-        """The condition that a payload of that size can be its."""
+        """The condition that a payload of that size can be its, where not any size can."""
         return self._compared(size, "==", ">=", "<=", " && ")
 
     def misfits(self, size: str) -> str:
@@ -43,6 +62,8 @@ class ReceivedMessage(msgspec.Struct, frozen=True):
         if self.fixed:
             return f"{size} {equal} {self.least}U"
         found = [f"{size} {least} {self.least}U"] if self.least else []
+        if self.cuts is not None:
+            return word.join(found)
         found.append(f"{size} {greatest} {self.greatest}U")
         if self.step > 1:
             above = f"({size} - {self.least}U)" if self.least else size
@@ -146,8 +167,16 @@ def _message(
     plan: FramePlan, message: Message, sizes: SizeSet, view: MessageView
 ) -> ReceivedMessage:
     checks = view.check if _needs_check(plan, view) else ""
+    own = message.sizes.fixed
     return ReceivedMessage(
-        message.name, view.constant, sizes.least, sizes.greatest, sizes.step, checks
+        message.name,
+        view.constant,
+        sizes.least,
+        sizes.greatest,
+        sizes.step,
+        checks,
+        fills=own or 0 if plan.is_trimmed else 0,
+        cuts=own if plan.is_cut else None,
     )
 
 

@@ -101,6 +101,8 @@ class PushDecoder(PushStates, frozen=True, dict=True):
 
     def fits(self, item: ReceivedMessage) -> str:
         """The condition that the size is the message's."""
+        if item.takes_any_size:
+            return "true"
         condition = item.fits("size")
         return condition if item.fixed else f"({condition})"
 

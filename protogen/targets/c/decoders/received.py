@@ -135,9 +135,17 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def filled_size(self) -> int:
         """Bytes of the greatest payload that is filled up with zeros; 0 where none is."""
-        if not self.plan.is_trimmed:
-            return 0
-        return max((group.greatest for group in self.groups), default=0)
+        return max((item.fills for group in self.groups for item in group.messages), default=0)
+
+    @property
+    def fits_payloads(self) -> bool:
+        """True if some payloads are filled up, or cut, to the size that their message has."""
+        return any(item.is_fitted for group in self.groups for item in group.messages)
+
+    @property
+    def cuts_payloads(self) -> bool:
+        """True if some payloads are cut to the size that their message has."""
+        return any(item.cuts is not None for group in self.groups for item in group.messages)
 
     @property
     def unlimited(self) -> str:

@@ -200,6 +200,8 @@ def _payload_roles(part: Part) -> Iterator[str]:
     if isinstance(part, PayloadPart) and part.kept is not None:
         kept = "the first one" if part.kept == 1 else f"the first {part.kept}"
         yield f"Zero bytes at its end are left out, but for {kept}; a receiver puts them there."
+    if isinstance(part, PayloadPart) and part.longest is not None:
+        yield "It may be longer than a message of a fixed size, whose receiver leaves the rest."
     if part.unprotected is not None:
         yield _unmarked(part.unprotected)
 

@@ -446,8 +446,9 @@ class _Cutter(ChecksumFunction):
     @property
     def _read_from(self) -> str:
         """Argument of readers."""
-        if self.plan.is_trimmed:
-            return 'payload.ljust(full, b"\\0")'
+        if self.plan.is_fitted:
+            known = "payload[:full]" if self.plan.is_cut else "payload"
+            return f'{known}.ljust(full, b"\\0")' if self.plan.is_trimmed else known
         return self.content if self.frame.gives_content else "payload"
 
     def _numbers(self) -> None:
@@ -475,7 +476,7 @@ class _Cutter(ChecksumFunction):
             self.lines.add(f"{numbers}payload_size, read = {entry}")
             self.stop_if("0 <= payload_size != len(payload)")
             return
-        full = "full, " if self.plan.is_trimmed else ""
+        full = "full, " if self.plan.is_fitted else ""
         self.lines.add(f"{numbers}{full}read = {entry}")
         with self.lines.block("if read is None:"):
             self._unknown()

@@ -149,7 +149,7 @@ class EngineFrame:
 
         None where that varies, and where the payload is wanted by itself.
         """
-        if self.plan.optional_size or self.plan.seven_bit or self.plan.is_trimmed:
+        if self.plan.optional_size or self.plan.seven_bit or self.plan.is_fitted:
             return None
         if self.plan.length is None and self.plan.end_rule is not EndRule.IDENTITY:
             return None

@@ -74,8 +74,8 @@ def _values(runs: Runs) -> str:
 
 def _kind(frame: EngineFrame, group: IdentityGroup, identity: tuple[str, ...]) -> str:
     reader = reader_of(frame, group)
-    if frame.plan.is_trimmed:
-        return f"({group.greatest}, {reader})"
+    if frame.plan.is_fitted:
+        return f"({group.own}, {reader})"
     if frame.plan.length is not None:
         return reader
     size = ~group.greatest if group.fixed is None else group.fixed
@@ -89,11 +89,11 @@ def _kind(frame: EngineFrame, group: IdentityGroup, identity: tuple[str, ...]) -
 def entry(frame: EngineFrame, identity: list[str]) -> str:
     """The table's entry for these numbers: with a length, None for an identity that has none.
 
-    With a payload that is trimmed it is the size to fill it up to, and what reads it then.
+    With a payload that is filled up or cut it is the size that it gets, and what reads it then.
     """
     key = identity[0] if len(identity) == 1 else tuple_of(identity)
     kinds = f"_{frame.sender.name.upper()}_KINDS"
-    if frame.plan.is_trimmed:
+    if frame.plan.is_fitted:
         return f"{kinds}.get({key}, (0, None))"
     return f"{kinds}[{key}]" if frame.plan.length is None else f"{kinds}.get({key})"
 
@@ -125,6 +125,6 @@ class _Header(FrameFunction):
             for part in frame.shown
         }
         identity = [found[part] for part in self.plan.identity]
-        spread = "*" if self.plan.length is None or self.plan.is_trimmed else ""
+        spread = "*" if self.plan.length is None or self.plan.is_fitted else ""
         self.lines.add(f"return {tuple_of(found.values())}, {spread}{entry(frame, identity)}")
         return self.lines.text

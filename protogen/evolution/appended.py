@@ -1,0 +1,62 @@
+"""Fields behind all that an old version knows: where they hurt nobody."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+
+from protogen.copying import replace
+from protogen.evolution.change import Change
+from protogen.model.extents import Fixed
+from protogen.model.frame_plan import FramePlan
+from protogen.model.messages import Message
+from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Text, Type
+
+
+def with_appended(
+    changes: Iterable[Change],
+    message: Message,
+    other: Message,
+    plans: Collection[tuple[FramePlan, FramePlan]],
+) -> Iterator[Change]:
+    """The changes of a message; fields that were appended have a rule of their own.
+
+    `plans` are the frames of OLD and NEW that carry it. Old receivers leave what is behind the
+    fields that they know, and new ones take it for zeros that were left out.
+    """
+    is_safe = bool(plans) and all(_passes(*pair, message, other) for pair in plans)
+    behind = other.fields[len(message.fields) :] if is_safe else ()
+    names = {field.name for field in behind if _may_be_zeros(field)}
+    for change in changes:
+        is_appended = change.rule == "field-added" and change.path in names
+        yield replace(change, rule="field-appended") if is_appended else change
+
+
+def _passes(old: FramePlan, new: FramePlan, message: Message, other: Message) -> bool:
+    """True if receivers take the other side's payloads, however much longer or shorter."""
+    before, after, longest = message.sizes.fixed, other.sizes.fixed, old.frame.payload.longest
+    if before is None or after is None or longest is None:
+        return False
+    return before <= after <= longest and new.is_trimmed
+
+
+def _may_be_zeros(field: Field) -> bool:
+    """True if a receiver takes zeros for the field."""
+    is_plain = field.const is None and field.when is None and field.region is None
+    return is_plain and _takes_zeros(field.type)
+
+
+def _takes_zeros(type_: Type) -> bool:
+    match type_:
+        case Integer():
+            named = () if type_.enum is None else [item.value for item in type_.enum.values]
+            return type_.text is None and (not type_.is_closed or 0 in named)
+        case Float():
+            return True
+        case Text() | Octets():
+            return isinstance(type_.extent, Fixed)
+        case Array():
+            return isinstance(type_.extent, Fixed) and _takes_zeros(type_.element)
+        case Struct():
+            return all(map(_may_be_zeros, type_.fields))
+        case _:
+            return False

@@ -1,0 +1,146 @@
+"""Payloads longer than their message: what receivers leave, and what changes of them do."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from compiled import ROOT, module_at
+from passes_support import compile_text
+
+from protogen.evolution.findings import findings
+from protogen.model.protocol import Protocol
+from protogen.model.reading.annotate import annotate
+from protogen.runtime.errors import DecodeError
+
+STATION = ROOT / "tests" / "framings" / "longer.yaml"
+ENGINES = ["fast", "construct"]
+LONGER = bytes.fromhex("D5 06 01 07 C0 00 DB FE 01 D5 69 97")
+"""Wind with two bytes behind it."""
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_event_has_the_whole_frame_and_the_known_fields(engine: str) -> None:
+    module: Any = module_at(STATION)
+    (event,) = module.Decoder("station", engine).feed(LONGER)
+    assert event.raw == LONGER
+    assert event.payload == bytes.fromhex("C0 00 DB FE")
+    assert event.message == module.Wind(direction=192, speed=-293)
+    line = event.as_json()
+    assert line["raw"] == LONGER.hex()
+    assert module.PROTOCOL.encode_line(line) == LONGER
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_encoder_writes_what_it_knows(engine: str) -> None:
+    module: Any = module_at(STATION)
+    message = module.decode(LONGER, engine=engine)
+    frame = module.encode(message, engine=engine, number=1)
+    assert frame == bytes.fromhex("D5 04 01 07 C0 00 DB FE B5 B6")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_size_that_varies_is_as_it_says(engine: str) -> None:
+    module: Any = module_at(STATION)
+    with pytest.raises(DecodeError) as caught:
+        module.decode(bytes.fromhex("D5 04 05 09 02 61 62 63 85 38"), engine=engine)
+    assert caught.value.reason == "size"
+
+
+def test_what_is_left_is_no_fault() -> None:
+    rows = annotate(_protocol(STATION.read_text("utf-8")), "station", LONGER)
+    assert not any(row.fault for row in rows)
+    assert [row.meaning for row in rows if row.bytes == b"\1\xd5"] == [
+        "left, as what is behind the known fields is"
+    ]
+
+
+# --- changes ------------------------------------------------------------------------------------
+
+LINK = """\
+protocol: demo
+endpoints: {board: Sensor board}
+byte_order: little
+frame:
+  start:   {literal: 0xAA}
+  length:  {type: uint8, counts: payload, range: [0, 12]}
+  kind:    {type: uint8, id: true}
+  payload: PAYLOAD
+  crc:     {type: uint16, algorithm: CRC-16/KERMIT, covers: [kind, payload]}
+transparency:
+  covers: length..crc
+  escape: {byte: 0xAB, of: [0xA5, 0xAA, 0xAB], transform: {xor: 0x20}}
+messages:
+  reading: {id: 1, from: board, fields: FIELDS}
+"""
+CUT = "{longer: cut}"
+BOTH = "{trailing_zeros: trimmed, longer: cut}"
+
+
+def _protocol(text: str) -> Protocol:
+    compilation = compile_text(text)
+    assert compilation.protocol is not None, compilation.problems
+    return compilation.protocol
+
+
+def _changes(payload: str, before: str, after: str) -> set[tuple[str, str, str, str]]:
+    text = LINK.replace("PAYLOAD", payload)
+    old, new = (_protocol(text.replace("FIELDS", fields)) for fields in (before, after))
+    return {
+        (finding.change.rule, finding.change.place, finding.affected, str(finding.harm))
+        for finding in findings(old, new)[1]
+    }
+
+
+@pytest.mark.parametrize(
+    "extra",
+    [
+        "float32",
+        "{type: ascii, size: 3}",
+        "{type: uint16, count: 2}",
+        "{type: uint8, values: {off: 0, on: 1}, closed: true}",
+        "{fields: {a: uint8, b: sint16}}",
+    ],
+)
+def test_a_field_at_the_end_that_may_be_zero_breaks_nobody(extra: str) -> None:
+    found = _changes(BOTH, "{value: uint16}", f"{{value: uint16, extra: {extra}}}")
+    assert found == {("field-appended", "reading.extra", "nobody", "nothing")}
+
+
+@pytest.mark.parametrize(
+    "extra",
+    [
+        "{type: uint8, const: 7}",
+        "{type: uint8, values: {on: 1}, closed: true}",
+        "{type: uint8, digits: base10}",
+    ],
+)
+def test_a_field_that_can_not_be_zero_is_refused_in_old_frames(extra: str) -> None:
+    found = _changes(BOTH, "{value: uint16}", f"{{value: uint16, extra: {extra}}}")
+    assert found == {("field-added", "reading.extra", "new receiver of old frames", "rejected")}
+
+
+def test_without_zeros_that_are_left_out_old_frames_lack_the_field() -> None:
+    found = _changes(CUT, "{value: uint16}", "{value: uint16, extra: uint8}")
+    assert found == {("field-added", "reading.extra", "new receiver of old frames", "rejected")}
+
+
+def test_a_field_in_front_is_misread() -> None:
+    found = _changes(BOTH, "{value: uint16}", "{extra: uint8, value: uint16}")
+    assert ("field-moved", "reading.value", "both", "misread") in found
+    assert not any(rule == "field-appended" for rule, *_ in found)
+
+
+def test_more_than_old_receivers_have_room_for_is_rejected() -> None:
+    """Their length says 12 at most."""
+    old = LINK.replace("PAYLOAD", BOTH).replace("FIELDS", "{value: uint16}")
+    fields = "{value: uint16, extra: {type: bytes, size: 11}}"
+    new = old.replace("{value: uint16}", fields).replace("[0, 12]", "[0, 20]")
+    found = findings(_protocol(old), _protocol(new))[1]
+    harm = {(item.change.rule, item.affected, str(item.harm)) for item in found}
+    assert ("field-added", "old receiver of new frames", "rejected") in harm
+
+
+def test_a_field_that_is_gone_is_lost() -> None:
+    found = _changes(BOTH, "{value: uint16, extra: uint8}", "{value: uint16}")
+    assert found == {("field-deleted", "reading.extra", "new receiver of old frames", "lost")}
