@@ -173,6 +173,11 @@ class MirrorBits(TypedPart, frozen=True, kw_only=True):
         """What the number is XORed with."""
         return self.type.greatest if self.inverted else 0
 
+    @property
+    def meaning(self) -> str:
+        """What the bits are, in words."""
+        return f"{self.of.name} {'with all bits inverted' if self.inverted else 'again'}"
+
     def follows(self, number: int) -> int:
         """The bits that follow from a number."""
         return number ^ self.flips
@@ -199,6 +204,11 @@ class BitsPart(TypedPart, frozen=True, kw_only=True):
         every = (1 << self.type.byte_bits * self.type.size) - 1
         varying = (*self.members, *self.mirrors)
         return every & ~sum(place_mask(part.type) for part in varying)
+
+    @property
+    def whole(self) -> MirrorBits | None:
+        """What follows from a number, where the part as a whole does."""
+        return next((item for item in self.mirrors if item.name == self.name), None)
 
     @property
     def has_identity(self) -> bool:

@@ -217,6 +217,10 @@ class FrameBuilder:
 
     def _mirror(self, name: str, item: PartSyntax, type_: PartType, text: About) -> Part | None:
         """A part all of whose bits follow from a number in front."""
+        if type_.is_text:
+            words = f"`{name}` is a text, and what follows from a number is one"
+            self._context.error("PG273", (*self._loc, name, "type"), words)
+            return None
         found = self._mirrors.read((*self._loc, name), item, whole_type(type_), text)
         if found is None:
             return None

@@ -116,13 +116,14 @@ class Mirrors:
 
 def _no_number(name: str, item: PartSyntax | PartBits) -> tuple[str, str | None]:
     """Why something of a frame is no number that others can follow from; and what to do."""
+    if isinstance(item, PartBits) and item.const is not None:
+        return "is the same in each frame", "write these bits with `const`, too"
     key = mirror_key(item)
     if key is not None:
-        return "itself follows from another number", f"name `{getattr(item, key)}`"
+        of = getattr(item, key)
+        return "itself follows from another number", f"name `{of}`" if of != name else None
     if isinstance(item, PartBits):
-        return (
-            ("is the same in each frame", "use `const`") if item.const is not None else ("", None)
-        )
+        return "", None
     if name == _PAYLOAD:
         return "is no number", None
     if item.bits is not None:

@@ -83,7 +83,7 @@ def _is_seen(frame: Frame, part: Part) -> bool:
     if not isinstance(part, NumberPart):
         return False
     own = _bytes_of_bits(frame, part)
-    mirrors = [mirror for mirror in frame.mirrors if mirror.of == part]
+    mirrors = [mirror for mirror in frame.mirrors if mirror.of.name == part.name]
     copies = (_bytes_of_bits(frame, mirror) for mirror in mirrors)
     return any(not any(map(tuple.__eq__, own, copy)) for copy in copies)
 

@@ -117,8 +117,8 @@ def _bits_in(part: BitsPart, item: NumberPart, value: int | None, low: int) -> B
     """
     width = part.type.byte_bits
     every = (1 << width) - 1
-    mirrors = [mirror for mirror in part.mirrors if mirror.of == item]
-    own_type = [item.type for member in part.members if member == item]
+    mirrors = [mirror for mirror in part.mirrors if mirror.of.name == item.name]
+    own_type = [item.type for member in part.members if member.name == item.name]
 
     def in_byte(number: int) -> int:
         placed = [(type_, number) for type_ in own_type]

@@ -12,6 +12,7 @@ from protogen.targets.python.engine import identities
 from protogen.targets.python.engine.checksums import ChecksumFunction
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Constants, Lines
+from protogen.targets.python.engine.numbers import bracketed
 from protogen.targets.python.engine.place import Place
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.literals import tuple_of
@@ -434,7 +435,8 @@ class _Cutter(ChecksumFunction):
         for mirror in self.plan.frame.mirrors:
             bits = self.number(self.content, mirror)
             of = self.number(self.content, mirror.of)
-            self.stop_if(f"({bits}) ^ ({of}) != 0x{mirror.flips:02X}")
+            differs = f"{bracketed(bits)} ^ {bracketed(of)} != 0x{mirror.flips:02X}"
+            self.stop_if(differs if mirror.inverted else f"{bits} != {of}")
 
     # --- the event --------------------------------------------------------------------------------
 

@@ -32,7 +32,7 @@ from protogen.targets.python.engine.checksums import (
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.layout import UNSIGNED, byte_order
 from protogen.targets.python.engine.lines import Constants, Lines
-from protogen.targets.python.engine.numbers import FrameFunction
+from protogen.targets.python.engine.numbers import FrameFunction, bracketed
 from protogen.targets.python.engine.struct_calls import Packed, Packer
 from protogen.targets.python.engine.writing import content_writer, is_of_one_size, payload_writer
 from protogen.targets.python.literals import octets_in_class as literal
@@ -352,10 +352,11 @@ class _Framer(FrameFunction):
     def _mirror(self, item: MirrorBits, bare: bool) -> str:
         """The bits that follow from another number, where they stand."""
         value, low = self._value(item.of, bare), place_of(item.type)
-        value = f"({value})" if " " in value and (low or item.inverted) else value
+        if value.isdigit():
+            return str(item.follows(int(value)) << low)
         if item.inverted:
-            value = f"({value} ^ 0x{item.flips:02X})"
-        return f"{value} << {low}" if low else value
+            value = f"{bracketed(value)} ^ 0x{item.flips:02X}"
+        return f"{bracketed(value)} << {low}" if low else value
 
     def _insert(self, part: ChecksumPart) -> None:
         """Put a checksum behind all that the content has; only the last parts are checksums."""
