@@ -146,7 +146,8 @@ def meaning(part: Part, names: EmittedNames) -> str:
 @lru_cache(maxsize=256)
 def role(part: Part) -> str:
     """Say in a word what a part is."""
-    return next(word for kind, word in _ROLE_WORDS if isinstance(part, kind))
+    whole = part.whole if isinstance(part, BitsPart) else None
+    return next(word for kind, word in _ROLE_WORDS if isinstance(whole or part, kind))
 
 
 _ROLE_WORDS: tuple[tuple[type[Part], str], ...] = (
