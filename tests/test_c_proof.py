@@ -35,6 +35,8 @@ IDLE = ROOT / "tests" / "framings" / "idle_end.yaml"
 """Frames that only a silence ends, so that a decoder holds one byte more than they have."""
 BITS = ROOT / "tests" / "c_schemas" / "part_bits.yaml"
 """Parts of frames whose bits are parts, which a decoder reads and compares."""
+MIRRORS = ROOT / "tests" / "c_schemas" / "mirrors.yaml"
+"""Parts of frames that follow from others, with which a decoder compares them."""
 DECODES = [
     (path, machine)
     for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS)
@@ -49,6 +51,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
         *((path, events, NARROW) for path in DOCUMENTS for events in EVENTS),
         (TRIMMED, "messages", WIDE),
         (BITS, "all", WIDE),
+        (MIRRORS, "all", WIDE),
         (BITS, "messages", NARROW),
     ]
 )

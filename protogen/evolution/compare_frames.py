@@ -20,6 +20,7 @@ from protogen.model.frame import (
     Insertion,
     LengthPart,
     LiteralPart,
+    MirrorBits,
     NumberPart,
     Part,
     PartType,
@@ -125,6 +126,12 @@ class _Frames:
         if (old.mask, old.fixed) != (new.mask, new.fixed):
             words = named(*(f"{it.fixed:X} of the bits {it.mask:X}" for it in (old, new)))
             yield self._change("frame-literal", old.name, words)
+        after = {_layout(mirror.type): mirror for mirror in new.mirrors}
+        for mirror in old.mirrors:
+            other = after.get(_layout(mirror.type))
+            if other is not None and _origin(mirror, renamed) != _origin(other, {}):
+                words = named(mirror.meaning, other.meaning)
+                yield self._change("frame-mirror", mirror.name, words)
         yield from self._members(old.members, new.members, renamed)
 
     def _members(
@@ -215,6 +222,11 @@ class _Frames:
         elif old is not None and new is not None and old.lenient != new.lenient:
             words = "sloppy encodings are " + ("taken" if new.lenient else "refused")
             yield self._change("frame-leniency", "transparency", words)
+
+
+def _origin(mirror: MirrorBits, renamed: dict[str, str]) -> tuple[str, bool]:
+    """What bits follow from, by its name in the new version, and how."""
+    return renamed.get(mirror.of.name, mirror.of.name), mirror.inverted
 
 
 def renamed_parts(old: Frame, new: Frame) -> dict[str, str]:

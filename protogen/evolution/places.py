@@ -77,7 +77,8 @@ def _part(protocol: Protocol, change: Change) -> Span | None:
     sender = next((item for item in protocol.senders if item.name == change.sender), None)
     if sender is None:
         return None
-    every = (*sender.frame.parts, *sender.frame.numbers)
+    frame = sender.frame
+    every = (*frame.parts, *frame.numbers, *frame.mirrors)
     parts = [item.about for item in every if item.name == change.part]
     if change.part == "transparency" and sender.frame.transparency is not None:
         parts.append(sender.frame.transparency.about)

@@ -43,6 +43,7 @@ _RENAME = "keep the name, or change the code on both ends"
 RULES: tuple[Rule, ...] = (
     # frames
     Rule("frame-literal", _W, "bytes or bits that each frame has are others", _TOGETHER),
+    Rule("frame-mirror", _W, "bits of the frame follow from another number", _TOGETHER),
     Rule("frame-part-added", _W, "the frame has one part more", _TOGETHER),
     Rule("frame-part-deleted", _W, "the frame has one part less", _TOGETHER),
     Rule("frame-part-moved", _W, "a part of the frame stands elsewhere", _TOGETHER),

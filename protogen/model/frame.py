@@ -160,8 +160,34 @@ class FixedBits(msgspec.Struct, frozen=True, kw_only=True):
     value: int
 
 
+class MirrorBits(TypedPart, frozen=True, kw_only=True):
+    """Bits of a part that follow from a number in front of them, or in the same part."""
+
+    of: NumberPart
+    """That number, which has as many bits."""
+    inverted: bool
+    """True if each of them is the other one."""
+
+    @property
+    def flips(self) -> int:
+        """What the number is XORed with."""
+        return self.type.greatest if self.inverted else 0
+
+    @property
+    def meaning(self) -> str:
+        """What the bits are, in words."""
+        return f"{self.of.name} {'with all bits inverted' if self.inverted else 'again'}"
+
+    def follows(self, number: int) -> int:
+        """The bits that follow from a number."""
+        return number ^ self.flips
+
+
 class BitsPart(TypedPart, frozen=True, kw_only=True):
-    """A number whose bits are parts; those of none are the same in each frame."""
+    """A number whose bits are parts, or follow from others; all else is the same in each frame.
+
+    A part that repeats or complements another one as a whole is one without members.
+    """
 
     members: tuple[IdentityPart | CounterPart | ValuePart, ...]
     """These parts, in the order of the schema."""
@@ -169,12 +195,20 @@ class BitsPart(TypedPart, frozen=True, kw_only=True):
     """The bits that are the same, as a number whose other bits are 0."""
     constants: tuple[FixedBits, ...] = ()
     """Those of them that have names, for readers."""
+    mirrors: tuple[MirrorBits, ...] = ()
+    """The bits that follow from others."""
 
     @property
     def mask(self) -> int:
-        """The bits of no member."""
+        """The bits that are the same in each frame."""
         every = (1 << self.type.byte_bits * self.type.size) - 1
-        return every & ~sum(place_mask(part.type) for part in self.members)
+        varying = (*self.members, *self.mirrors)
+        return every & ~sum(place_mask(part.type) for part in varying)
+
+    @property
+    def whole(self) -> MirrorBits | None:
+        """What follows from a number, where the part as a whole does."""
+        return next((item for item in self.mirrors if item.name == self.name), None)
 
     @property
     def has_identity(self) -> bool:
@@ -182,10 +216,14 @@ class BitsPart(TypedPart, frozen=True, kw_only=True):
         return any(isinstance(part, IdentityPart) for part in self.members)
 
 
+def place_of(type_: Integer) -> int:
+    """The lowest bit that an integer has in another one."""
+    return 0 if type_.within is None else type_.within.low
+
+
 def place_mask(type_: Integer) -> int:
     """The bits that a member of a part has among those of the part."""
-    low = 0 if type_.within is None else type_.within.low
-    return ((1 << type_.bits) - 1) << low
+    return ((1 << type_.bits) - 1) << place_of(type_)
 
 
 class PayloadPart(Part, frozen=True, kw_only=True):
@@ -414,9 +452,14 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     def holder(self, name: str) -> Part:
         """The part of that name, or the one that has it among its bits; raises KeyError."""
         for part in self.parts:
-            if part.name == name or any(item.name == name for item in members_of(part)):
+            if part.name == name or any(item.name == name for item in varying_bits(part)):
                 return part
         raise KeyError(name)
+
+    @cached_property
+    def mirrors(self) -> tuple[MirrorBits, ...]:
+        """The bits that follow from others, in wire order of the parts that have them."""
+        return tuple(item for part in self.parts for item in mirrors_of(part))
 
     def key(self, identity: tuple[int, ...]) -> int:
         """Values of the identity parts as one number, the first part in its highest bits."""
@@ -455,6 +498,16 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
 def members_of(part: Part) -> tuple[IdentityPart | CounterPart | ValuePart, ...]:
     """The parts that are bits of this one."""
     return part.members if isinstance(part, BitsPart) else ()
+
+
+def mirrors_of(part: Part) -> tuple[MirrorBits, ...]:
+    """The bits of this part that follow from others."""
+    return part.mirrors if isinstance(part, BitsPart) else ()
+
+
+def varying_bits(part: Part) -> tuple[TypedPart, ...]:
+    """The bits of this part that vary."""
+    return (*members_of(part), *mirrors_of(part))
 
 
 def written_apart(parts: Iterable[Part]) -> tuple[Part, ...]:

@@ -21,7 +21,7 @@ from protogen.model.frame import (
     IdentityPart,
     Part,
     ValuePart,
-    members_of,
+    varying_bits,
     written_apart,
 )
 from protogen.model.frame_places import PlacedPart
@@ -211,11 +211,11 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
 
     @cached_property
     def _members(self) -> dict[str, PlacedPart]:
-        """The parts that are bits of others, where these lie."""
+        """The parts, and what follows from parts, that are bits of others, where these lie."""
         return {
             part.name: PlacedPart(part, item.place, item.is_stuffed)
             for item in self.placed
-            for part in members_of(item.part)
+            for part in varying_bits(item.part)
         }
 
     def written_apart(self, items: Iterable[PlacedPart]) -> tuple[PlacedPart, ...]:

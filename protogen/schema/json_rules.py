@@ -26,7 +26,10 @@ _LENGTHS = ("size", "until")
 _LAST_ELEMENT: JsonObject = {"type": "object", "required": ["element"]}
 """What ends an array, and no text."""
 _WRITTEN = ("digits", "code", "chars")
-_PART_ROLES = ("literal", "bits", "id", "virtual", "counts", "counter", "algorithm", "idle")
+_MIRRORS = ("repeats", "complements")
+_PART_ROLES = (
+    *("literal", "bits", *_MIRRORS, "id", "virtual", "counts", "counter", "algorithm", "idle"),
+)
 
 
 def _with(*keys: str) -> JsonObject:
@@ -208,6 +211,11 @@ _PART_RULES = (
         {"propertyNames": {"enum": ["type", "bits", "byte_order", "unprotected", "doc", "source"]}},
     ),
     _where(
+        _any_of(_MIRRORS),
+        "What follows from another number has nothing of its own.",
+        {"propertyNames": {"enum": [*_MIRRORS, "type", "byte_order", "doc", "source"]}},
+    ),
+    _where(
         _with("virtual"),
         "What is not sent has no bounds, and no delimiter can be mistaken for it.",
         _none_of(("range", "unprotected")),
@@ -221,6 +229,12 @@ _PART_BITS_RULES = (
     _where(
         _with("const"),
         "Bits that are the same in each frame are no part.",
+        _none_of((*_MIRRORS, "id", "counter", "range", "default")),
+    ),
+    _at_most_one_of("Bits follow from one number.", _MIRRORS),
+    _where(
+        _any_of(_MIRRORS),
+        "Bits that follow from another number are no part.",
         _none_of(("id", "counter", "range", "default")),
     ),
     _where(_with("id"), "What tells the message is not chosen.", _none_of(("counter", "default"))),

@@ -353,9 +353,18 @@ class _Drawing:
             head.insert(0, maker.number("value", start=True))
         elif head and "bits" in head[0].data and self._start == "none":
             head.insert(0, maker.number("counter"))  # Bits might mark a start.
+        self._mirror(head)
+        self._mirror(tail)
         tail += sums
         self._mark(head, tail)
         return head, tail
+
+    def _mirror(self, parts: list[PartPlan]) -> None:
+        """Put in what follows from some of the parts, behind them, sometimes."""
+        for part in [part for part in parts if part.can_be_mirrored]:
+            if self._draw(forms.one_in(6)):
+                place = self._draw(st.integers(parts.index(part) + 1, len(parts)))
+                parts.insert(place, self._maker.mirror(part))
 
     def _checksums(self) -> list[PartPlan]:
         count = self._draw(st.sampled_from([0, 1, 1, 2]))
@@ -468,7 +477,11 @@ class _Drawing:
         values = type_.bytes_between(0, greatest)
         bounds = (counted, greatest)
         part = PartPlan(parts[place].name, "length", keys, values, type=type_, bounds=bounds)
-        return [*parts[:place], part, *parts[place + 1 :]], greatest - counted
+        found = [part]
+        if region is None and type_.digits is None and "range" not in keys:
+            # Where parts have no places yet that one more would move.
+            found += [self._maker.mirror(part)] if self._draw(forms.one_in(3)) else []
+        return [*parts[:place], *found, *parts[place + 1 :]], greatest - counted
 
     # -- the greatest size -------------------------------------------------------------------
 

@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 from schema_fuzzing import forms
 
 Data = dict[str, Any]
+_FEW = 7
+"""Bits of which each value is looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,22 +24,30 @@ class Run:
     least: int
     greatest: int
     is_constant: bool = False
+    of: Run | None = None
+    """The bits whose value these have, too."""
+    flips: int = 0
+    """What that is XORed with."""
 
     @property
     def written(self) -> str | int:
         """As a schema has it."""
         return self.low if self.bits == 1 else f"{self.low}..{self.low + self.bits - 1}"
 
-    def within(self, low: int, bits: int) -> frozenset[int]:
-        """What they can be in a byte that has these bits of the number."""
+    def within(self, low: int, bits: int, copies: Sequence[Run]) -> frozenset[int]:
+        """What they can be in a byte that has these bits of the number, and their `copies`."""
         every = (1 << bits) - 1
-        if self.is_constant:
-            return frozenset({self.least << self.low >> low & every})
-        if low <= self.low and self.low + self.bits <= low + bits:
-            values = range(self.least, self.greatest + 1)
-            return frozenset(value << self.low - low for value in values)
+        if self.bits <= bits:
+            placed = ((self.low, 0), *((copy.low, copy.flips) for copy in copies))
+            return frozenset(
+                sum((value ^ flips) << place >> low & every for place, flips in placed)
+                for value in range(self.least, self.greatest + 1)
+            )
         mask = ((1 << self.bits) - 1) << self.low >> low & every
-        return frozenset(value & mask for value in range(every + 1))
+        return frozenset(
+            self.least << self.low >> low & every if self.is_constant else value & mask
+            for value in range(every + 1)
+        )
 
 
 def bytes_of(runs: Sequence[Run], size: int, byte_bits: int) -> list[frozenset[int]]:
@@ -46,7 +56,10 @@ def bytes_of(runs: Sequence[Run], size: int, byte_bits: int) -> list[frozenset[i
     for place in range(size):
         values = frozenset({0})
         for run in runs:
-            own = run.within(byte_bits * place, byte_bits)
+            if run.of is not None:
+                continue
+            copies = [other for other in runs if other.of == run]
+            own = run.within(byte_bits * place, byte_bits, copies)
             values = frozenset(one | other for one in values for other in own)
         found.append(values)
     return found
@@ -70,13 +83,35 @@ def fill(
                 low += size  # These are 0 in each frame.
                 continue
             kinds = ["value"] if is_needed else ["value", "const", "counter"]
-            keys, run = _member(draw, low, size, draw(st.sampled_from(kinds)))
+            mirrored = draw(_mirrors(written, runs, low, end)) if runs else None
+            if mirrored is not None:
+                keys, run = mirrored
+            else:
+                keys, run = _member(draw, low, size, draw(st.sampled_from(kinds)))
             name = new_name()
         is_short = not keys and draw(st.booleans())
         written[name] = run.written if is_short else {"bits": run.written, **keys}
         runs.append(run)
         low += run.bits
     return {name: written[name] for name in draw(st.permutations(list(written)))}, runs
+
+
+@st.composite
+def _mirrors(
+    draw: st.DrawFn, written: Data, runs: Sequence[Run], low: int, end: int
+) -> tuple[Data, Run] | None:
+    """Bits from `low` on that follow from some that are there, if they have room; sometimes."""
+    sources = [
+        (name, run)
+        for name, run in zip(written, runs, strict=True)
+        if run.of is None and not run.is_constant and run.bits <= min(end - low, _FEW)
+    ]
+    if not sources or not draw(forms.one_in(3)):
+        return None
+    name, run = draw(st.sampled_from(sources))
+    key, flips = draw(st.sampled_from([("repeats", 0), ("complements", (1 << run.bits) - 1)]))
+    copy = Run(low, run.bits, run.least, run.greatest, of=run, flips=flips)
+    return {key: name, **draw(forms.about())}, copy
 
 
 def _member(draw: st.DrawFn, low: int, bits: int, kind: str) -> tuple[Data, Run]:

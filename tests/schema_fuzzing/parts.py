@@ -83,6 +83,12 @@ class PartPlan:
         return len(self.values)
 
     @property
+    def can_be_mirrored(self) -> bool:
+        """True if another part can have its value, which is that of all its bits."""
+        plain = self.type is not None and self.type.digits is None and self.type.type != "ascii"
+        return plain and not self.identity and self.role in ("id", "counter", "value")
+
+    @property
     def literal(self) -> bytes:
         """The bytes of a literal."""
         return bytes(next(iter(values)) for values in self.values)
@@ -185,6 +191,21 @@ class Maker:
         keys.update(self._draw(forms.about()))
         values = type_.bytes_between(least, greatest)
         return PartPlan(self.name(), role, keys, values, type=type_, bounds=(least, greatest))
+
+    def mirror(self, of: PartPlan) -> PartPlan:
+        """A part that has the value of a number, or that with each bit inverted."""
+        type_ = of.type
+        assert type_ is not None
+        keys = {key: of.data[key] for key in ("type", "byte_order") if key in of.data}
+        inverts = self._draw(st.booleans())
+        keys["complements" if inverts else "repeats"] = of.name
+        keys.update(self._draw(forms.about()))
+        values = type_.bytes_between(0, type_.greatest)
+        if type_.size == 1:
+            least, greatest = of.bounds
+            flips = type_.greatest if inverts else 0
+            values = (frozenset(value ^ flips for value in range(least, greatest + 1)),)
+        return PartPlan(self.name(), "mirror", keys, values)
 
     def _bits(self, *, tells: bool) -> PartPlan:
         """A number whose bits are parts, an identity among them if it `tells` the message."""

@@ -243,17 +243,27 @@ class _Assembly:
             case LengthPart():
                 return number_bytes(part.type, self._length(part))
             case BitsPart():
-                bits = part.fixed
-                for member in part.members:
-                    assert member.type.within is not None
-                    bits |= int(self._numbers[member.name]) << member.type.within.low
-                return number_bytes(part.type, bits)
+                return number_bytes(part.type, self._joined(part))
             case NumberPart():
                 value = self._numbers[part.name]
                 if isinstance(value, str):
                     return value.encode("latin-1").ljust(part.type.size, b"\0")
                 return number_bytes(part.type, value)
         raise AssertionError(part)
+
+    def _joined(self, part: BitsPart) -> int:
+        """The number of some bits, each multiplied to its place."""
+        total = part.fixed
+        for member in part.members:
+            assert member.type.within is not None
+            total += int(self._numbers[member.name]) * 2**member.type.within.low
+        for mirror in part.mirrors:
+            assert mirror.type.within is not None
+            is_length = isinstance(mirror.of, LengthPart)
+            value = self._length(mirror.of) if is_length else int(self._numbers[mirror.of.name])
+            value = 2**mirror.type.bits - 1 - value if mirror.inverted else value
+            total += value * 2**mirror.type.within.low
+        return total
 
     def _length(self, part: LengthPart) -> int:
         """Bytes that it counts; on the wire, of which all that is stuffed is counted."""

@@ -30,6 +30,8 @@ COMMON = (
     "text as a part: id", "text as a part: literal", "text as a part: value",
     "bits as parts", "bits as parts: id", "bits as parts: const", "bits as parts: counter",
     "bits as parts: range", "bits as parts: default",
+    "bits as parts: repeats", "bits as parts: complements", "part that repeats",
+    "part that complements", "part that follows from a length",
     "several identities", "overload by size", "overload by undecidable", "unspecified payload",
     "empty message",
     "separated fields", "separated fields, one in front", "virtual part",
@@ -110,8 +112,11 @@ def _frame(frame: FramePlan) -> Iterator[str]:
         yield "trailing zeros left out"
     if any("longer" in part.data for part in frame.parts):
         yield "longer payloads cut"
+    lengths = {part.name for part in frame.parts if part.role == "length"}
     for part in frame.parts:
         yield from _part(part.data)
+        if lengths & {part.data.get("repeats"), part.data.get("complements")}:
+            yield "part that follows from a length"
 
 
 def _start(frame: FramePlan) -> str:
@@ -145,6 +150,7 @@ def _part(data: dict[str, Any]) -> Iterator[str]:
             yield "checksum when payload"
     if "byte_order" in data:
         yield "byte order of a part"
+    yield from (f"part that {key}" for key in ("repeats", "complements") if key in data)
     if "bits" in data:
         several = [item for item in data["bits"].values() if isinstance(item, dict)]
         yield "bits as parts"

@@ -20,6 +20,7 @@ from protogen.model.frame import (
     IdentityPart,
     LengthPart,
     LiteralPart,
+    MirrorBits,
     NumberPart,
     Part,
     PayloadPart,
@@ -185,20 +186,36 @@ class _Frame:
         if isinstance(part, BitsPart):
             other = value & part.mask != part.fixed
             fault = f"bits {part.mask:X} must be {part.fixed:X}" if other else ""
+            if part.whole is not None and not fault:
+                return self._mirror(part.whole, value, row)
             return row.reads(value, "bits that are parts", fault)
         assert isinstance(part, NumberPart)
         return self._number(part, value, row)
 
     def _bits(self, part: BitsPart, row: Row) -> Iterator[Row]:
-        """The parts that are bits of one that was read, which have no bytes of their own."""
-        for member in part.members if isinstance(row.value, int) else ():
+        """The parts that are bits of one that was read, which have no bytes of their own.
+
+        Behind them are the bits that follow from others.
+        """
+        bits = (*part.members, *(item for item in part.mirrors if item != part.whole))
+        for member in bits if isinstance(row.value, int) else ():
             own = replace(
                 self._cursor.take(0, member.name, member.type.name, subject=member),
                 value_type=member.type,
             )
             value = codec(member.type).decode(row.bytes)
             own = replace(own, offset=row.offset, bits=f"{value:0{member.type.bits}b}")
-            yield self._number(member, value, own)
+            if isinstance(member, MirrorBits):
+                yield self._mirror(member, value, own)
+            else:
+                yield self._number(member, value, own)
+
+    def _mirror(self, part: MirrorBits, value: int, row: Row) -> Row:
+        """Bits that follow from a number that was read, if there was one."""
+        number = self._numbers.get(part.of.name)
+        due = None if number is None else part.follows(number)
+        fault = f"must be {due}, as {part.of.name} is {number}" if value != due else ""
+        return row.reads(value, part.meaning, "" if due is None else fault)
 
     def _number(self, part: NumberPart, value: int, row: Row) -> Row:
         self._numbers[part.name] = value

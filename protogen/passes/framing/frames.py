@@ -16,8 +16,8 @@ from protogen.model.checksums import (
     variants,
 )
 from protogen.model.frame import (
+    BitsPart,
     ChecksumPart,
-    Cobs,
     CounterPart,
     Frame,
     IdentityPart,
@@ -29,6 +29,7 @@ from protogen.model.frame import (
     ValuePart,
     VirtualPart,
 )
+from protogen.model.origin import About
 from protogen.model.types import ByteOrder
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
@@ -38,8 +39,10 @@ from protogen.passes.framing.capacity import (
     payload_range,
     stated_range,
 )
+from protogen.passes.framing.covered import check_checksums
 from protogen.passes.framing.cutting import cut
 from protogen.passes.framing.literals import literal_of
+from protogen.passes.framing.mirrors import MIRRORS, Mirrors, whole_type
 from protogen.passes.framing.part_bits import are_whole, bits_part, check_names, holders_of
 from protogen.passes.framing.part_digits import (
     digits_type,
@@ -54,7 +57,7 @@ from protogen.passes.framing.silences import check_silence, silence_of
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.framing.trimming import trimmed
 from protogen.passes.framing.virtual_parts import check_virtual_parts, sent_run
-from protogen.passes.framing.wire_counts import check_wire_length, check_wire_sum
+from protogen.passes.framing.wire_counts import check_wire_length
 from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width
 from protogen.problems import hint_for
@@ -67,6 +70,7 @@ _TYPE = frozenset({"type", "byte_order", "digits", "chars", "code"})
 _NUMBER = _TYPE | {"range", "unprotected"}
 _ROLES: dict[str, frozenset[str]] = {
     "bits": frozenset({"type", "byte_order", "bits", "size", "unprotected"}),
+    **{key: frozenset({"type", "byte_order", "size", key}) for key in MIRRORS},
     "virtual": _TYPE | {"virtual", "size", "default"},
     "literal": frozenset({"literal", "unprotected", "type"}),
     "id": _NUMBER | {"id", "size"},
@@ -119,6 +123,7 @@ class FrameBuilder:
         self._syntax = written.parts
         self._names = list(self._syntax)
         self._layout = Layout(context.syntax.byte_bits, context.byte_order(written.endpoint))
+        self._mirrors = Mirrors(context, self._loc, self._syntax)
         self._replaced = 0
         """Errors of checksums that another one stands for."""
 
@@ -126,7 +131,10 @@ class FrameBuilder:
         """The frame, or None where something about it is wrong."""
         before = self._context.tally.errors
         check_names(self._context, self._loc, self._syntax)
-        parts = [self._part(name, item) for name, item in self._syntax.items()]
+        parts: list[Part | None] = []
+        for name, item in self._syntax.items():
+            parts.append(self._part(name, item))
+            self._mirrors.add(parts[-1:])
         if PAYLOAD not in self._syntax:
             text = "the frame has no part called `payload`"
             self._context.error_at_key("PG130", self._loc, text)
@@ -152,7 +160,7 @@ class FrameBuilder:
 
     def _check(self, frame: Frame) -> None:
         """Check what can only be asked when all parts are there."""
-        _check_checksums(self._context, frame, self._loc)
+        check_checksums(self._context, frame, self._loc)
         check_virtual_parts(self._context, frame, self._loc)
         check_wire_length(self._context, frame, self._loc)
         self._check_identity(frame)
@@ -194,7 +202,9 @@ class FrameBuilder:
         if type_ is None:
             return None
         if role == "bits":
-            return bits_part(self._context, (*self._loc, name), item, type_, text)
+            return bits_part(self._context, (*self._loc, name), item, type_, text, self._mirrors)
+        if role in MIRRORS:
+            return self._mirror(name, item, type_, text)
         if role == "algorithm":
             return self._checksum(name, item, type_)
         least, greatest = self._range(name, item, type_)
@@ -207,6 +217,17 @@ class FrameBuilder:
             unprotected=item.unprotected,
         )
         return self._number(role, item, part)
+
+    def _mirror(self, name: str, item: PartSyntax, type_: PartType, text: About) -> Part | None:
+        """A part all of whose bits follow from a number in front."""
+        if type_.is_text:
+            words = f"`{name}` is a text, and what follows from a number is one"
+            self._context.error("PG273", (*self._loc, name, "type"), words)
+            return None
+        found = self._mirrors.read((*self._loc, name), item, whole_type(type_), text)
+        if found is None:
+            return None
+        return BitsPart(name=name, about=text, type=type_, members=(), fixed=0, mirrors=(found,))
 
     def _checksum(self, name: str, item: PartSyntax, type_: PartType) -> Part:
         """The checksum; any other of its size serves where the rest of the frame is asked about."""
@@ -445,40 +466,6 @@ def _spec_of(given: CrcParameters | SumParameters | XorParameters) -> ChecksumSp
     return ChecksumSpec(
         name=kind, kind=kind, width=width, words="little" if in_words else None, **parameters
     )
-
-
-def _check_checksums(context: Context, frame: Frame, loc: Loc) -> None:
-    """Check what can only be asked when all parts are there."""
-    in_circles: set[str] = set()
-    for part in frame.checksums:
-        circle = [] if part.name in in_circles else _circle(frame, part.name)
-        in_circles.update(circle)
-        if circle:
-            text = f"the checksums cover each other: {' -> '.join((*circle, part.name))}"
-            context.error("PG136", (*loc, part.name, "covers"), text)
-        if part.over_wire and _holds_cobs(frame, part):
-            text = "bytes that COBS makes belong to no single part, so none can be summed up"
-            context.error("PG131", (*loc, part.name, "over"), text)
-        check_wire_sum(context, frame, part, loc)
-
-
-def _circle(frame: Frame, name: str) -> list[str]:
-    """The checksums that lead from this one back to it by what they cover, or none."""
-    covers = {part.name: part.covers for part in frame.checksums}
-    paths = [[name]]
-    seen = {name}
-    for path in paths:
-        for covered in covers[path[-1]]:
-            if covered == name:
-                return path
-            if covered in covers and covered not in seen:
-                seen.add(covered)
-                paths.append([*path, covered])
-    return []
-
-
-def _holds_cobs(frame: Frame, part: ChecksumPart) -> bool:
-    return isinstance(frame.encoding, Cobs) and not frame.stuffed.isdisjoint(part.covers)
 
 
 def _close_algorithm(name: str) -> str | None:

@@ -18,14 +18,16 @@ from protogen.model.numbers import BitPlace
 from protogen.model.origin import About
 from protogen.model.types import Integer
 from protogen.passes.context import Context, Loc, about
+from protogen.passes.framing.mirrors import MIRRORS, Mirrors, mirror_key
 from protogen.passes.framing.part_values import number_of
 from protogen.schema.syntax.parts import Part, PartBits
 
-_NO_CONST = ("id", "counter", "range", "default")
+_NO_MEMBER = ("id", "counter", "range", "default")
+"""Keys that only bits have that are a part of their own."""
 
 
 def bits_part(
-    context: Context, loc: Loc, item: Part, type_: Integer, text: About
+    context: Context, loc: Loc, item: Part, type_: Integer, text: About, mirrors: Mirrors
 ) -> BitsPart | None:
     """The part whose bits these are; None where something about them is wrong."""
     before = context.tally.errors
@@ -37,7 +39,9 @@ def bits_part(
     reader = _Reader(context, loc, type_)
     for name, bits in (item.bits or {}).items():
         reader.read(name, bits)
-    if not reader.members and context.tally.errors == before:
+    mirrors.add(reader.members)
+    mirrored = [mirrors.read(*given) for given in reader.mirrors]
+    if not (reader.members or mirrored) and context.tally.errors == before:
         hint = "leave out `bits` and `type`, and write the bytes as a `literal`"
         context.error_at_key("PG260", loc, "no bit of the part varies", hint)
     if context.tally.errors > before:
@@ -50,6 +54,7 @@ def bits_part(
         members=tuple(reader.members),
         fixed=reader.fixed,
         constants=tuple(reader.constants),
+        mirrors=tuple(filter(None, mirrored)),
     )
 
 
@@ -64,6 +69,8 @@ class _Reader:
         self.members: list[IdentityPart | CounterPart | ValuePart] = []
         self.fixed = 0
         self.constants: list[FixedBits] = []
+        self.mirrors: list[tuple[Loc, PartBits, Integer, About]] = []
+        """Bits that follow from others, which may stand behind them in the schema."""
 
     def read(self, name: str, item: PartBits) -> None:
         """Take some bits."""
@@ -88,13 +95,15 @@ class _Reader:
         self._taken[name] = mask
         if item.const is not None:
             self._constant(loc, item, type_)
+        elif mirror_key(item) is not None:
+            self._mirror(loc, item, type_)
         else:
             self._member(loc, item, type_)
 
     def _constant(self, loc: Loc, item: PartBits, type_: Integer) -> None:
         """Bits that are the same in each frame."""
         const = item.const or 0
-        for key in _NO_CONST:
+        for key in (*MIRRORS, *_NO_MEMBER):
             if getattr(item, key) is not None:
                 text = f"`{key}` does not go together with `const`"
                 self._context.error("PG260", (*loc, key), text, f"remove `{key}`")
@@ -106,6 +115,16 @@ class _Reader:
         self.fixed |= const << type_.within.low
         given = about(item.doc, item.source, self._context.find_key(loc))
         self.constants.append(FixedBits(name=str(loc[-1]), about=given, type=type_, value=const))
+
+    def _mirror(self, loc: Loc, item: PartBits, type_: Integer) -> None:
+        """Bits that follow from others; those of this part are known when all of it was read."""
+        own = mirror_key(item)
+        for key in (*MIRRORS, *_NO_MEMBER):
+            if key != own and getattr(item, key) is not None:
+                text = f"`{key}` does not go together with `{own}`"
+                self._context.error("PG276", (*loc, key), text, f"remove `{key}`")
+        given = about(item.doc, item.source, self._context.find_key(loc))
+        self.mirrors.append((loc, item, type_, given))
 
     def _member(self, loc: Loc, item: PartBits, type_: Integer) -> None:
         """Bits that are a part of their own."""

@@ -45,10 +45,15 @@ def contents_of(
 ) -> Contents:
     """The bytes of frames with this payload and, as far as it is known, this identity."""
     size = sum(stretch.count for stretch in payload)
+    length = frame.length
+    stated = None if length is None or length.over_wire else _stated(frame, length, size)
+    known = dict(identity)
+    if length is not None and stated is not None:
+        known[length.name] = stated
     found: dict[str, tuple[Stretch, ...]] = {}
     for part in frame.parts:
         if size or not part.is_optional:
-            found[part.name] = _part(frame, part, payload, identity)
+            found[part.name] = _part(part, payload, known)
     for checksum in frame.checksums:
         _settle(frame, checksum, found)
     return found
@@ -72,15 +77,14 @@ def _field(field: Field, rest: int, values: ByteSet) -> tuple[Stretch, ...]:
 
 
 def _part(
-    frame: Frame, part: Part, payload: tuple[Stretch, ...], identity: Mapping[str, int]
+    part: Part, payload: tuple[Stretch, ...], known: Mapping[str, int]
 ) -> tuple[Stretch, ...]:
+    """The bytes of a part; `known` has the values of numbers that are always the same."""
     if isinstance(part, PayloadPart):
         return payload
-    value = identity.get(part.name)
-    if isinstance(part, LengthPart) and not part.over_wire:
-        value = _stated(frame, part, sum(stretch.count for stretch in payload))
+    value = known.get(part.name)
     if isinstance(part, BitsPart):
-        return tuple(Stretch(values) for values in bits_bytes(part, identity))
+        return tuple(Stretch(values) for values in bits_bytes(part, known))
     if isinstance(part, NumberPart) and value is not None:
         return known_bytes(part.encode(value))
     return tuple(Stretch(values) for values in part_bytes(part, frozenset()))

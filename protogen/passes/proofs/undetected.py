@@ -12,6 +12,7 @@ from itertools import combinations
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
     Base16,
+    BitsPart,
     ChecksumPart,
     ChoicePart,
     Cobs,
@@ -19,9 +20,12 @@ from protogen.model.frame import (
     IdentityPart,
     LengthPart,
     LiteralPart,
+    NumberPart,
     Part,
     PayloadPart,
+    TypedPart,
     VirtualPart,
+    place_of,
 )
 from protogen.model.framing import Anywhere, End, Start, StartLiteral, StartSet
 from protogen.model.identities import Identities
@@ -56,7 +60,7 @@ def undetected_errors(
 def _part(
     frame: Frame, part: Part, end: End | None, messages: list[Message], payload: ByteSet
 ) -> str:
-    if isinstance(part, LiteralPart | ChecksumPart):
+    if isinstance(part, LiteralPart | ChecksumPart | BitsPart) or _is_seen(frame, part):
         return ""
     holder = frame.holder(part.name).name
     covering = [checksum for checksum in frame.checksums if holder in checksum.covers]
@@ -72,6 +76,22 @@ def _part(
     if isinstance(part, ChoicePart):
         return _other_literal(part)
     return f"a wrong `{part.name}`: no checksum covers it"
+
+
+def _is_seen(frame: Frame, part: Part) -> bool:
+    """True if a wrong byte of a number is seen by bits of other bytes, which follow from it."""
+    if not isinstance(part, NumberPart):
+        return False
+    own = _bytes_of_bits(frame, part)
+    mirrors = [mirror for mirror in frame.mirrors if mirror.of.name == part.name]
+    copies = (_bytes_of_bits(frame, mirror) for mirror in mirrors)
+    return any(not any(map(tuple.__eq__, own, copy)) for copy in copies)
+
+
+def _bytes_of_bits(frame: Frame, part: TypedPart) -> list[tuple[str, int]]:
+    """The byte that has each bit of a number, from the lowest bit on."""
+    holder, low = frame.holder(part.name).name, place_of(part.type)
+    return [(holder, (low + bit) // part.type.byte_bits) for bit in range(part.type.bits)]
 
 
 def _other_literal(part: ChoicePart) -> str:
@@ -252,7 +272,8 @@ def _misread_size(frame: Frame, end: End | None, messages: list[Message]) -> str
     if frame.silence is not None or (end is not None and end.protected):
         return ""  # It then stands in the wrong place.
     if frame.length is not None:
-        return _wrong_length(frame, frame.length, messages)
+        seen = _is_seen(frame, frame.length)
+        return "" if seen else _wrong_length(frame, frame.length, messages)
     return _wrong_field(frame, messages) if end is None else ""
 
 
@@ -262,6 +283,8 @@ def _misread_absence(frame: Frame, messages: list[Message]) -> str:
     optional = any(part.when_payload for part in frame.checksums)
     always = any(not part.when_payload for part in frame.checksums)
     if length is None or not optional or always or frame.silence is not None:
+        return ""
+    if _is_seen(frame, length):
         return ""
     if not any(0 in sizes and sizes.fixed is None for sizes in _acceptable(frame, messages)):
         return ""

@@ -6,7 +6,8 @@ The framing analysis asks of these segments whether a delimiter can occur where 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from functools import cache
+from functools import cache, reduce
+from operator import or_
 
 from protogen.copying import replace
 from protogen.model.frame import (
@@ -24,6 +25,8 @@ from protogen.model.frame import (
     Part,
     Substitution,
     TypedPart,
+    place_mask,
+    place_of,
 )
 from protogen.model.numbers import Numeral
 from protogen.passes.proofs.codewords import Inserted, Segment
@@ -95,30 +98,45 @@ def _number_bytes(part: TypedPart, least: int, greatest: int) -> tuple[ByteSet, 
 def bits_bytes(part: BitsPart, known: Mapping[str, int]) -> tuple[ByteSet, ...]:
     """Values of each byte of a part whose bits are parts, some of which have known values."""
     width = part.type.byte_bits
+    numbers: dict[str, NumberPart] = {item.name: item for item in part.members}
+    numbers |= {mirror.of.name: mirror.of for mirror in part.mirrors}
     found: list[ByteSet] = []
     for low in range(0, width * part.type.size, width):
         values = {part.fixed >> low & (1 << width) - 1}
-        for item in part.members:
-            own = _bits_in(item, known.get(item.name), low, width)
+        for item in numbers.values():
+            own = _bits_in(part, item, known.get(item.name), low)
             values = {one | other for one in values for other in own}
         found.append(frozenset(values))
     return tuple(found if part.type.byte_order == "little" else reversed(found))
 
 
-def _bits_in(item: NumberPart, value: int | None, low: int, width: int) -> ByteSet:
-    """What the bits of a part can be in a byte that has `width` bits of a number, from `low`."""
-    every, within = (1 << width) - 1, item.type.within
-    shift = (0 if within is None else within.low) - low
+def _bits_in(part: BitsPart, item: NumberPart, value: int | None, low: int) -> ByteSet:
+    """What a number can make of the byte of a part that has the bits from `low` on.
+
+    It has bits of its own there, or others follow from it.
+    """
+    width = part.type.byte_bits
+    every = (1 << width) - 1
+    mirrors = [mirror for mirror in part.mirrors if mirror.of.name == item.name]
+    own_type = [item.type for member in part.members if member.name == item.name]
 
     def in_byte(number: int) -> int:
-        return (number << shift if shift >= 0 else number >> -shift) & every
+        placed = [(type_, number) for type_ in own_type]
+        placed += [(mirror.type, mirror.follows(number)) for mirror in mirrors]
+        moved = (_moved(bits, place_of(type_) - low) for type_, bits in placed)
+        return reduce(or_, moved) & every
 
     if value is not None:
         return frozenset({in_byte(value)})
-    if shift >= 0 and shift + item.type.bits <= width:
+    if item.type.bits <= width:
         return frozenset(map(in_byte, range(item.least, item.greatest + 1)))
-    own = in_byte(item.type.greatest)
+    masks = (place_mask(type_) for type_ in (*own_type, *(mirror.type for mirror in mirrors)))
+    own = reduce(or_, masks) >> low & every
     return frozenset(number & own for number in range(every + 1))
+
+
+def _moved(number: int, shift: int) -> int:
+    return number << shift if shift >= 0 else number >> -shift
 
 
 def _digits(form: Numeral, least: int, greatest: int) -> tuple[ByteSet, ...]:

@@ -13,6 +13,7 @@ from protogen.problems.catalogue.framing import FRAMING_CODES
 from protogen.problems.catalogue.keys_and_names import KEY_AND_NAME_CODES
 from protogen.problems.catalogue.last_elements import LAST_ELEMENT_CODES
 from protogen.problems.catalogue.messages import MESSAGE_CODES
+from protogen.problems.catalogue.mirrors import MIRROR_CODES
 from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.part_bits import PART_BITS_CODES
 from protogen.problems.catalogue.parts import PART_CODES
@@ -46,5 +47,6 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *MESSAGE_CODES,
     *PART_CODES,
     *PART_BITS_CODES,
+    *MIRROR_CODES,
     *WIRE_COUNT_CODES,
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
+from functools import cached_property
 from itertools import groupby
 from typing import Any, Self
 
@@ -195,8 +196,16 @@ class _Assembly:
         if isinstance(part, PayloadPart):
             return self._payload
         if isinstance(part, BitsPart):
-            return part.encode(self._numbers)
+            return part.encode(self._known)
         return self._number(part, self._value(part))
+
+    @cached_property
+    def _known(self) -> Mapping[str, int]:
+        """The numbers from which bits follow: those that are given, and a length."""
+        length = self._layout.length
+        if length is None or length.over_wire:
+            return self._numbers
+        return {**self._numbers, length.name: self._length(length)}
 
     def _value(self, part: NumberPart) -> int:
         if isinstance(part, ChecksumPart):

@@ -152,6 +152,11 @@ class Content:
             raise Rejected(error.reason, f"{part.name}: {error}") from None
         for member in part.members:
             self._read(member, data)
+        for mirror in part.mirrors:
+            try:
+                mirror.check(data, self.numbers[mirror.of])
+            except ByteError as error:
+                raise Rejected(error.reason, str(error)) from None
 
     def _read(self, part: NumberPart, data: bytes) -> None:
         try:

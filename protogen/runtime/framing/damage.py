@@ -112,7 +112,9 @@ class Judge:
             for item in head
             for part in written_apart((item.part,))
             if isinstance(part, NumberPart)
-            and (part in checked or part.number.bits < 8 * part.size)
+            and (
+                part in checked or part.name in layout.mirrored or part.number.bits < 8 * part.size
+            )
         ]
 
     def verdict(self, data: bytes, start: int, end: int, *, is_all: bool) -> Verdict:
@@ -179,6 +181,9 @@ class Judge:
             for held, place in self._held:
                 held.check(head[place])
             numbers = {part.name: part.number.decode(head[place]) for part, place in self._checked}
+            for held, place in self._held:
+                for mirror in held.mirrors:
+                    mirror.check(head[place], numbers[mirror.of])
         except ByteError:
             return None
         bounded = self._layout.bounded

@@ -105,10 +105,35 @@ class CounterPart(ValuePart):
     """Counts frames from `default` or `least` on; behind `greatest` comes `least`."""
 
 
+class MirrorBits(NamedTuple):
+    """Bits of a part that follow from the number of another: it, or all of its bits inverted.
+
+    That part is called `of`. It stands in front, or is some bits of the same part.
+    """
+
+    name: str
+    number: Number
+    of: str
+    flips: int = 0
+    """What the number is XORed with."""
+
+    def encode(self, numbers: Mapping[str, int]) -> bytes:
+        """The bytes with these bits, by the values of parts."""
+        return self.number.encode(numbers[self.of] ^ self.flips)
+
+    def check(self, data: bytes, of: int) -> None:
+        """Raise ByteError where the bits do not follow from the number of the other part."""
+        number = self.number.decode(data)
+        if number != of ^ self.flips:
+            problem = f"{self.name} is {number}, and has to be {of ^ self.flips}"
+            raise ByteError("value", f"{problem}, as {self.of} is {of}")
+
+
 class BitsPart(NamedTuple):
     """A number whose bits are parts, `members`; each of these has the bytes of all.
 
-    The bits of `mask` belong to none of them: they are those of `fixed` in each frame.
+    Some bits may follow from numbers in front, or from members: `mirrors`. The bits of `mask` are
+    neither: they are those of `fixed` in each frame.
     """
 
     name: str
@@ -116,6 +141,7 @@ class BitsPart(NamedTuple):
     members: tuple[IdentityPart | ValuePart, ...]
     mask: int
     fixed: int
+    mirrors: tuple[MirrorBits, ...] = ()
 
     @property
     def size(self) -> int:
@@ -130,7 +156,7 @@ class BitsPart(NamedTuple):
             raise ByteError("value", problem)
 
     def encode(self, numbers: Mapping[str, int]) -> bytes:
-        """The bytes for the values of its members. Raises EncodeError where one can't be."""
+        """The bytes for the values of parts. Raises EncodeError where one can't be."""
         joined = self.fixed
         for part in self.members:
             try:
@@ -138,6 +164,8 @@ class BitsPart(NamedTuple):
             except ValueError as error:
                 raise EncodeError(part.name, str(error)) from None
             joined |= self.number.decode(data)
+        for mirror in self.mirrors:
+            joined |= self.number.decode(mirror.encode(numbers))
         return self.number.encode(joined)
 
 
@@ -210,6 +238,11 @@ Part = LiteralPart | PayloadPart | BitsPart | NumberPart
 def members_of(part: Part) -> tuple[IdentityPart | ValuePart, ...]:
     """The parts that are bits of this one."""
     return part.members if isinstance(part, BitsPart) else ()
+
+
+def mirrors_of(part: Part) -> tuple[MirrorBits, ...]:
+    """The bits of this part that follow from other numbers."""
+    return part.mirrors if isinstance(part, BitsPart) else ()
 
 
 def written_apart(parts: Iterable[Part]) -> tuple[Part, ...]:

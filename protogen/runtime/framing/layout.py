@@ -18,6 +18,7 @@ from protogen.runtime.framing.frame import (
     StartLiteral,
     StartMark,
     ValuePart,
+    mirrors_of,
     written_apart,
 )
 from protogen.runtime.payload.number import Characters
@@ -103,6 +104,11 @@ class Layout:
     def early_identity(self) -> bool:
         """True if there is an identity, and all of it in front of the payload."""
         return bool(self.identity) and self.identity[-1] in written_apart(self.head)
+
+    @cached_property
+    def mirrored(self) -> frozenset[str]:
+        """The names of the parts from which bits follow."""
+        return frozenset(item.of for part in self.parts for item in mirrors_of(part))
 
     @cached_property
     def ends_idle(self) -> bool:

@@ -64,8 +64,11 @@ def _tells(part: Part, told: tuple[Part, ...]) -> bool:
 
 def _is_checked(part: Part, layout: Layout) -> bool:
     """True if some bytes are no value of the part, or of one that is bits of it."""
+    if any(item.name in layout.mirrored for item in (part, *members_of(part))):
+        return True
     if isinstance(part, BitsPart):
-        return bool(part.mask) or any(item in layout.bounded for item in part.members)
+        is_bounded = any(item in layout.bounded for item in part.members)
+        return bool(part.mask or part.mirrors) or is_bounded
     if part in layout.bounded:
         return True
     if isinstance(part, NumberPart):

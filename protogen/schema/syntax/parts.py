@@ -174,7 +174,7 @@ _Cutting = Annotated[
 
 
 class PartBits(Syntax):
-    """Some bits of a part: they are a part of their own, or the same in each frame."""
+    """Some bits of a part: a part of their own, the same in each frame, or those of a number."""
 
     bits: BitRange = Field(description="Bit number, or LOW..HIGH counted from bit 0.")
     id: OnlyTrue | None = Field(None, description="The bits tell which message this is.")
@@ -182,6 +182,16 @@ class PartBits(Syntax):
         None, description="The bits count frames; encoders advance them by one and wrap."
     )
     const: Count | None = Field(None, description="What the bits are in each frame.")
+    repeats: PartName | None = Field(
+        None,
+        description="The number whose value the bits have: a part in front, or bits of one or of "
+        "this part.",
+    )
+    complements: PartName | None = Field(
+        None,
+        description="The number whose value the bits have with each bit inverted: a part in front, "
+        "or bits of one or of this part.",
+    )
     range: RawRange | None = Field(None, description="Least and greatest value of the bits.")
     default: PartValue | None = Field(
         None, description="What an encoder writes where the caller gives no value."
@@ -234,6 +244,15 @@ class Part(Syntax):
         "name has are 0.",
     )
     id: OnlyTrue | None = Field(None, description="The part tells which message this is.")
+    repeats: PartName | None = Field(
+        None,
+        description="The number in front whose value the part has, too: a part, or bits of one.",
+    )
+    complements: PartName | None = Field(
+        None,
+        description="The number in front whose value the part has with each bit inverted: a part, "
+        "or bits of one.",
+    )
     virtual: OnlyTrue | None = Field(
         None,
         description="The part goes into the checksums that cover it and is not sent; each message "

@@ -16,6 +16,7 @@ from protogen.model.frame import (
     Insertion,
     LengthPart,
     LiteralPart,
+    MirrorBits,
     NumberPart,
     Part,
     PayloadPart,
@@ -42,7 +43,8 @@ def part(item: Part) -> str:
         case BitsPart():
             members = f"members={tuple_of(map(part, item.members))}"
             bits = {"mask": f"0x{item.mask:02X}", "fixed": f"0x{item.fixed:02X}"}
-            return call("_rt.BitsPart", name, number(item), members, **bits)
+            mirrors = tuple_of(map(mirror, item.mirrors)) if item.mirrors else None
+            return call("_rt.BitsPart", name, number(item), members, **bits, mirrors=mirrors)
         case IdentityPart():
             return call("_rt.IdentityPart", name, number(item))
         case LengthPart():
@@ -62,6 +64,12 @@ def part(item: Part) -> str:
             kept, longest = (None if it is None else str(it) for it in (item.kept, item.longest))
             return call("_rt.PayloadPart", name, kept=kept, longest=longest)
     raise TypeError(f"{type(item).__name__} is no part that a frame has")
+
+
+def mirror(item: MirrorBits) -> str:
+    """Bits that follow from another number."""
+    flips = f"0x{item.flips:02X}" if item.inverted else None
+    return call("_rt.MirrorBits", text(item.name), number(item), text(item.of.name), flips=flips)
 
 
 def virtual_part(plan: VirtualPlan) -> str:

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
 
-from protogen.model.frame import BitsPart
+from protogen.model.frame import BitsPart, MirrorBits, place_of, varying_bits
 from protogen.model.frame_places import Place, Side
 from protogen.model.types import Integer, NumberType
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
@@ -123,11 +123,6 @@ def _byte_of(value: str, shift: int, mask: str) -> str:
     return f"(uint8_t)({shifted}{mask})" if shift or mask else f"(uint8_t){value}"
 
 
-def place_of(type_: Integer) -> int:
-    """The lowest bit that an integer has in another one."""
-    return 0 if type_.within is None else type_.within.low
-
-
 def bits_of(type_: Integer, number: str, carrier_bits: int) -> str:
     """The bits that an integer has in another one, as a number in the type that holds them."""
     low = place_of(type_)
@@ -137,8 +132,18 @@ def bits_of(type_: Integer, number: str, carrier_bits: int) -> str:
     return f"({unsigned_type(type_.bits)}){masked}"
 
 
+def mirrored(item: MirrorBits, number: str) -> str:
+    """The bits that follow from a number."""
+    if not item.inverted:
+        return number
+    return f"({unsigned_type(item.type.bits)})({number} ^ {hexadecimal(item.flips)})"
+
+
 def bytes_of_bits(part: BitsPart, names: Mapping[str, str]) -> tuple[str, ...]:
-    """The bytes of a number whose bits are parts, in wire order; each of these has its C."""
+    """The bytes of a number whose bits are parts, in wire order.
+
+    Each of these has its C, and so has each number from which bits follow.
+    """
     width = part.type.byte_bits
     items = [_byte_of_bits(part, names, low) for low in range(0, width * part.type.size, width)]
     return tuple(items if part.type.byte_order == "little" else reversed(items))
@@ -151,8 +156,13 @@ def _byte_of_bits(part: BitsPart, names: Mapping[str, str], low: int) -> str:
     fixed, terms = part.fixed >> low & own, []
     if fixed:
         terms.append(byte(fixed))
-    for item in part.members:
-        name, shift = names[item.name], place_of(item.type) - low
+    for item in varying_bits(part):
+        name = (
+            mirrored(item, names[item.of.name])
+            if isinstance(item, MirrorBits)
+            else names[item.name]
+        )
+        shift = place_of(item.type) - low
         if -item.type.bits < shift < width:
             operator = "<<" if shift > 0 else ">>"
             terms.append(f"(uint8_t)({name} {operator} {abs(shift)})" if shift else name)

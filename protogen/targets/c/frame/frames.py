@@ -282,15 +282,11 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         match part:
             case LiteralPart():
                 values = tuple(map(byte, part.bytes))
-            case LengthPart():
-                values = self.decoder.numbers.bytes_of(part.type, "length")
             case BitsPart():
-                names = {it.name: argument_name(it.name, self._names) for it in part.members}
-                values = bytes_of_bits(part, names)
+                numbers = (*part.members, *(mirror.of for mirror in part.mirrors))
+                values = bytes_of_bits(part, {it.name: self._value(it) for it in numbers})
             case NumberPart():
-                values = self.decoder.numbers.bytes_of(
-                    part.type, argument_name(part.name, self._names)
-                )
+                values = self.decoder.numbers.bytes_of(part.type, self._value(part))
             case ChecksumPart():
                 values = self.decoder.numbers.bytes_of(part.type, "due")
             case _:
@@ -301,6 +297,11 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         checksum = next((c for c in self.decoder.checksums if c.name == part.name), None)
         counts = isinstance(part, LengthPart) and self.decoder.length_over_wire
         return Step(item.in_head, stores, checksum, counts=counts)
+
+    def _value(self, part: NumberPart) -> str:
+        """The value of a number that is not worked out of other bytes."""
+        is_length = isinstance(part, LengthPart)
+        return "length" if is_length else argument_name(part.name, self._names)
 
     # --- byte by byte -----------------------------------------------------------------------------
 

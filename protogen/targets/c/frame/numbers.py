@@ -12,10 +12,12 @@ from protogen.model.frame import (
     IdentityPart,
     LengthPart,
     LiteralPart,
+    MirrorBits,
     NumberPart,
 )
 from protogen.model.frame_places import PlacedPart
 from protogen.model.frame_plan import FramePlan, StartRule
+from protogen.model.types import Integer
 from protogen.targets.c.frame.expressions import byte, less_absent
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of
@@ -109,10 +111,11 @@ def _bits(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberView
     """A number whose bits are parts: what is checked of each, and of those that are of none."""
     part = item.part
     assert isinstance(part, BitsPart)
-    members = [_number(plan, member, numbers) for member in plan.written_apart([item])]
+    members = [_number(plan, plan.part(member.name), numbers) for member in part.members]
     less = less_absent(item.place, "decoder->payload")
     value = numbers.whole(part.type.whole, "content", item.offset, less)
     bounds = [view.bounds for view in members if view.bounds]
+    bounds += [_is_other(plan, mirror, numbers) for mirror in part.mirrors]
     mask = part.mask
     if mask:
         bounds.insert(0, f"({value} & {hexadecimal(mask)}) != {hexadecimal(part.fixed)}")
@@ -128,6 +131,22 @@ def _bits(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberView
         identifies=any(view.identifies for view in members),
         tells_sizes=any(view.tells_sizes for view in members),
     )
+
+
+def _is_other(plan: FramePlan, mirror: MirrorBits, numbers: PartNumbers) -> str:
+    """The condition that bits do not follow from their number, on the same side of the payload."""
+
+    def value(type_: Integer, placed: PlacedPart) -> str:
+        less = less_absent(placed.place, "decoder->payload")
+        return numbers.value(type_, "content", placed.offset, less)
+
+    bits = value(mirror.type, plan.part(mirror.name))
+    of = value(mirror.of.type, plan.part(mirror.of.name))
+    if not mirror.inverted:
+        return f"{bits} != {of}"
+    # Compilers look twice at a number that is compared with the complement of another.
+    type_ = unsigned_type(mirror.type.bits)
+    return f"({type_})({bits} ^ {of}) != {hexadecimal(mirror.flips)}"
 
 
 def _number(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberView:

@@ -23,7 +23,7 @@ from protogen.model.frame import (
     Part,
     PayloadPart,
     VirtualPart,
-    members_of,
+    varying_bits,
 )
 from protogen.model.sizes import SizeSet
 from protogen.targets.markdown.text.words import code, size_text, span
@@ -112,7 +112,9 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
     def rows(self) -> Iterator[tuple[str, str, Part]]:
         """Place, size and part, then those of the parts that are bits of it."""
         yield self.place, self.size, self.part
-        for part in members_of(self.part):
+        for part in varying_bits(self.part):
+            if part.name == self.part.name:
+                continue  # All bits of a part that follows from another, which is there already.
             yield ", ".join(filter(None, (self.place, part.type.label))), "", part
 
     @property

@@ -22,6 +22,7 @@ from protogen.model.frame import (
     Insertion,
     LengthPart,
     LiteralPart,
+    MirrorBits,
     NumberPart,
     Part,
     PayloadPart,
@@ -145,7 +146,8 @@ def meaning(part: Part, names: EmittedNames) -> str:
 @lru_cache(maxsize=256)
 def role(part: Part) -> str:
     """Say in a word what a part is."""
-    return next(word for kind, word in _ROLE_WORDS if isinstance(part, kind))
+    whole = part.whole if isinstance(part, BitsPart) else None
+    return next(word for kind, word in _ROLE_WORDS if isinstance(whole or part, kind))
 
 
 _ROLE_WORDS: tuple[tuple[type[Part], str], ...] = (
@@ -157,6 +159,7 @@ _ROLE_WORDS: tuple[tuple[type[Part], str], ...] = (
     (ValuePart, "Given by the sender."),
     (ChecksumPart, "Checksum."),
     (PayloadPart, "Payload."),
+    (MirrorBits, "Follows from another part."),
     (BitsPart, "Its bits are parts."),
     (VirtualPart, "Not sent, but summed."),
     (CodePart, "How far on the next zero is, or the end."),
@@ -173,14 +176,24 @@ def _roles(part: Part) -> tuple[str, ...]:
             return _number_roles(part)
         case ChecksumPart():
             return _checksum_roles(part)
-        case BitsPart():
-            return (role(part), *map(_fixed_bits, part.constants), _other_bits(part))
+        case BitsPart() | MirrorBits():
+            return _bits_roles(part)
         case CodePart():
             return (role(part),)
         case VirtualPart():
             return _virtual_roles(part)
         case _:
             return tuple(_payload_roles(part))
+
+
+def _bits_roles(part: BitsPart | MirrorBits) -> tuple[str, ...]:
+    mirror = part.whole if isinstance(part, BitsPart) else part
+    if isinstance(part, BitsPart) and mirror is None:
+        return (role(part), *map(_fixed_bits, part.constants), _other_bits(part))
+    assert mirror is not None
+    if mirror.inverted:
+        return (f"The bits of {code(mirror.of.name)}, each of them inverted.",)
+    return (f"The value of {code(mirror.of.name)} again.",)
 
 
 def _fixed_bits(item: FixedBits) -> str:

@@ -12,6 +12,7 @@ from protogen.targets.python.engine import identities
 from protogen.targets.python.engine.checksums import ChecksumFunction
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Constants, Lines
+from protogen.targets.python.engine.numbers import bracketed
 from protogen.targets.python.engine.place import Place
 from protogen.targets.python.literals import octets_in_class as literal
 from protogen.targets.python.literals import tuple_of
@@ -416,7 +417,7 @@ class _Cutter(ChecksumFunction):
                 place = Place("", self.frame.offset(part))
                 number = self.number_at(self.content, part, place)
                 self.stop_if(f"{number} & 0x{part.mask:02X} != 0x{part.fixed:02X}")
-
+        self._mirrors()
         for item in self.plan.bounded:
             part = item.part
             assert isinstance(part, NumberPart)
@@ -428,6 +429,14 @@ class _Cutter(ChecksumFunction):
                 self.stop_if(f"not {part.least} <= {number} <= {part.greatest}")
             elif item.end > self.plan.start_size:
                 self.stop_if(f"{number} not in {tuple_of(map(str, part.values))}")
+
+    def _mirrors(self) -> None:
+        """Check bits that follow from other numbers."""
+        for mirror in self.plan.frame.mirrors:
+            bits = self.number(self.content, mirror)
+            of = self.number(self.content, mirror.of)
+            differs = f"{bracketed(bits)} ^ {bracketed(of)} != 0x{mirror.flips:02X}"
+            self.stop_if(differs if mirror.inverted else f"{bits} != {of}")
 
     # --- the event --------------------------------------------------------------------------------
 

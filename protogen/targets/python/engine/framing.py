@@ -11,11 +11,13 @@ from protogen.model.frame import (
     CounterPart,
     IdentityPart,
     LiteralPart,
+    MirrorBits,
     NumberPart,
     Part,
     PayloadPart,
     ValuePart,
     VirtualPart,
+    place_of,
 )
 from protogen.model.messages import Message
 from protogen.model.types import Integer
@@ -30,7 +32,7 @@ from protogen.targets.python.engine.checksums import (
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.layout import UNSIGNED, byte_order
 from protogen.targets.python.engine.lines import Constants, Lines
-from protogen.targets.python.engine.numbers import FrameFunction
+from protogen.targets.python.engine.numbers import FrameFunction, bracketed
 from protogen.targets.python.engine.struct_calls import Packed, Packer
 from protogen.targets.python.engine.writing import content_writer, is_of_one_size, payload_writer
 from protogen.targets.python.literals import octets_in_class as literal
@@ -325,7 +327,7 @@ class _Framer(FrameFunction):
 
     def _value(self, part: NumberPart | BitsPart, bare: bool) -> str:
         if isinstance(part, BitsPart):
-            return self._joined_bits(part)
+            return self._joined_bits(part, bare)
         length = self.plan.length
         if length is not None and part is length.part:
             counted = length.base + (0 if bare else length.optional)
@@ -337,14 +339,24 @@ class _Framer(FrameFunction):
         assert isinstance(part, CounterPart | ValuePart)
         return _variable(part)
 
-    def _joined_bits(self, part: BitsPart) -> str:
+    def _joined_bits(self, part: BitsPart, bare: bool) -> str:
         """The number whose bits are parts."""
         terms = [f"0x{part.fixed:02X}"] if part.fixed else []
         for item in part.members:
-            low = 0 if item.type.within is None else item.type.within.low
-            value = self._value(item, bare=False)
+            low = place_of(item.type)
+            value = self._value(item, bare)
             terms.append(f"{value} << {low}" if low else value)
+        terms += [self._mirror(item, bare) for item in part.mirrors]
         return " | ".join(terms)
+
+    def _mirror(self, item: MirrorBits, bare: bool) -> str:
+        """The bits that follow from another number, where they stand."""
+        value, low = self._value(item.of, bare), place_of(item.type)
+        if value.isdigit():
+            return str(item.follows(int(value)) << low)
+        if item.inverted:
+            value = f"{bracketed(value)} ^ 0x{item.flips:02X}"
+        return f"{bracketed(value)} << {low}" if low else value
 
     def _insert(self, part: ChecksumPart) -> None:
         """Put a checksum behind all that the content has; only the last parts are checksums."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import BitsPart, NumberPart, TypedPart
+from protogen.model.frame import BitsPart, TypedPart
 from protogen.model.framing import are_run
 from protogen.model.types import Integer
 from protogen.targets.python import frames as tables
@@ -10,6 +10,11 @@ from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.layout import UNSIGNED, byte_order
 from protogen.targets.python.engine.lines import Lines
 from protogen.targets.python.engine.place import Place
+
+
+def bracketed(value: str) -> str:
+    """An expression that an operator may stand beside."""
+    return f"({value})" if " " in value else value
 
 
 class FrameFunction:
@@ -41,7 +46,7 @@ class FrameFunction:
         high = bool(plan.start_set) and plan.start_set[0] >= 0x80
         return plan.seven_bit and high and alone and outside
 
-    def number(self, source: str, part: NumberPart, base: str | None = None) -> str:
+    def number(self, source: str, part: TypedPart, base: str | None = None) -> str:
         """The value of a part of the head, in the content or, with a base, in the data.
 
         The base is where the frame starts in them: a variable, or empty where it is at 0.
