@@ -26,17 +26,21 @@ def cut(context: Context, loc: Loc, frame: Frame) -> Frame:
 
 def check_cut(context: Context, draft: Draft) -> None:
     """Check that something can be cut in frames that say so, and that sizes tell nothing else."""
+    sharing: dict[Loc, list[str]] = {}
     for sender in draft.senders:
         frame = draft.frames.get(sender)
-        if frame is not None and frame.payload.longest is not None:
-            _check_sizes(context, draft, sender, frame.payload.longest)
+        if frame is not None and frame.payload.is_cut:
+            sharing.setdefault(context.frames[sender].loc, []).append(sender)
             _check_overloads(context, draft, sender)
+    for loc, senders in sharing.items():
+        _check_sizes(context, draft, loc, senders)
 
 
-def _check_sizes(context: Context, draft: Draft, sender: str, longest: int) -> None:
+def _check_sizes(context: Context, draft: Draft, frame: Loc, senders: list[str]) -> None:
     """A message that always has the same size, and room behind it, is what can be cut."""
-    messages = list(draft.sent_by(sender))
-    loc = (*context.frames[sender].loc, "payload", "longer")
+    longest = draft.frames[senders[0]].payload.longest or 0
+    messages = [message for sender in senders for message in draft.sent_by(sender)]
+    loc, sender = (*frame, "payload", "longer"), " or ".join(senders)
     fixed = [message for message in messages if message.sizes.fixed is not None]
     if messages and not fixed:
         text = f"no message of {sender} always has the same size, so none has bytes behind it"
