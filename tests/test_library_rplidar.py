@@ -6,10 +6,12 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from compiled import module_at
 from library_support import cases_of, compare_frames, compare_recovery, encoded, peer_module
 
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
+from protogen.library import FOLDER
 
 HEAD = 7
 """Bytes of an answer in front of its data."""
@@ -39,6 +41,7 @@ ANNOUNCEMENTS = [
     "dense_capsules_follow",
     "ultra_dense_capsules_follow",
 ]
+MEASUREMENTS = ["node"]
 
 
 class Line:
@@ -86,6 +89,8 @@ class Lidar:
     def values(self, case: Case, frame: bytes) -> Values:
         if case.message in REQUESTS:
             return case.values  # it reads none
+        if case.message in MEASUREMENTS:
+            return self._measured(case, frame)
         data = self._content(frame)
         if case.message in ANNOUNCEMENTS:
             assert data is None
@@ -110,6 +115,13 @@ class Lidar:
                 rate = self._protocol.PyRPlidarSamplerate(data)
                 return {"standard": rate.t_standard, "express": rate.t_express}
         return case.values  # it reads no more of the others
+
+    def _measured(self, case: Case, frame: bytes) -> Values:
+        """What it reads in a measurement, of which the check bit is left to its callers."""
+        found = self._protocol.PyRPlidarMeasurement(frame)
+        assert {"start": found.start_flag, "quality": found.quality} == case.parts
+        direction = {"check": frame[1] & 1, "angle": found.angle * 64}
+        return {"direction": direction, "distance": found.distance * 4}
 
     def _content(self, data: bytes) -> bytes | None:
         """Data of an answer, or None for what announces measurements. Raises what it raises."""
@@ -141,9 +153,24 @@ def lidar() -> Lidar:
     return Lidar()
 
 
-@pytest.mark.parametrize("messages", [REQUESTS, ANSWERS, ANNOUNCEMENTS])
+@pytest.mark.parametrize("messages", [REQUESTS, ANSWERS, ANNOUNCEMENTS, MEASUREMENTS])
 def test_both_make_and_read_the_same(lidar: Lidar, messages: list[str]) -> None:
     compare_frames("rplidar", lidar, cases_of("rplidar", messages))
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong"),
+    [("start_not", "BF 8B 46 34 10"), ("start_not", "BC 8B 46 34 10"), ("check", "BD 8A 46 34 10")],
+)
+def test_measurements_are_told_by_three_bits(name: str, wrong: str) -> None:
+    module: Any = module_at(FOLDER / "rplidar.yaml")
+    right = bytes.fromhex("BD 8B 46 34 10")  # 0x2345 / 64 degrees, 0x1034 / 4 mm, 47, start
+    decoder = module.Decoder("nodes")
+    events = [*decoder.feed(bytes.fromhex(wrong) + right), *decoder.flush()]
+    (event,) = (event for event in events if event.kind == "message")
+    assert (event.raw, event.parts.start, event.parts.quality) == (right, 1, 47)
+    assert event.message.direction.angle == 0x2345
+    assert event.message.distance == 0x1034
 
 
 def test_no_answer_is_lost_that_it_finds(lidar: Lidar) -> None:
