@@ -16,9 +16,10 @@ _STRINGS = ("ascii", "bytes")
 
 def check_until(context: Context, name: str, item: Effective) -> None:
     """Report a terminator where nothing ends at one."""
-    syntax, loc = item.syntax, item.at("until")
+    syntax = item.syntax
     if syntax.until is None:
         return
+    loc = item.at("until")
     if isinstance(syntax.until, UntilElement):
         check_last_element(context, name, item)
     elif syntax.type not in _STRINGS:
