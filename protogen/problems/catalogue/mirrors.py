@@ -6,11 +6,12 @@ from protogen.problems.catalogue.code import Code
 from protogen.problems.catalogue.sketch import with_framed
 
 
-def _framed(parts: str) -> str:
+def _framed(*parts: str) -> str:
     """A schema whose frames have these parts behind their identity."""
+    lines = "\n        ".join(parts)
     frame = f"""
         kind: {{type: uint8, id: true}}
-        {parts}
+        {lines}
         payload: {{}}
         crc: {{type: uint8, algorithm: CRC-8/SMBUS, covers: kind..payload}}
         end: {{literal: 0xC0}}
@@ -59,8 +60,8 @@ A receiver compares both as soon as it has them, so that a wrong start is given 
 number itself stands in front, or in the same part, and no payload lies between the two. Of two
 parts with one value, the first is the number, and the second repeats it.
 """,
-        _framed("size_again: {type: uint8, repeats: size}\nsize: {type: uint8, counts: payload}"),
-        _framed("size: {type: uint8, counts: payload}\nsize_again: {type: uint8, repeats: size}"),
+        _framed("size_again: {type: uint8, repeats: size}", "size: {type: uint8, counts: payload}"),
+        _framed("size: {type: uint8, counts: payload}", "size_again: {type: uint8, repeats: size}"),
     ),
     Code(
         "PG276",
