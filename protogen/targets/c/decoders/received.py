@@ -132,17 +132,17 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         content = self.around + self.plan.payload.greatest
         return self.plan.greatest if self.length is None else min(self.plan.greatest, content)
 
-    @property
+    @cached_property
     def filled_size(self) -> int:
         """Bytes of the greatest payload that is filled up with zeros; 0 where none is."""
         return max((item.fills for group in self.groups for item in group.messages), default=0)
 
-    @property
+    @cached_property
     def fits_payloads(self) -> bool:
         """True if some payloads are filled up, or cut, to the size that their message has."""
         return any(item.is_fitted for group in self.groups for item in group.messages)
 
-    @property
+    @cached_property
     def cuts_payloads(self) -> bool:
         """True if some payloads are cut to the size that their message has."""
         return any(item.cuts is not None for group in self.groups for item in group.messages)
