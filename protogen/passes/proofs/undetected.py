@@ -72,6 +72,8 @@ def _part(
     if isinstance(part, IdentityPart):
         return _identity(frame, part, end, messages)
     if isinstance(part, PayloadPart):
+        if messages and not any(message.sizes.greatest for message in messages):
+            return ""  # It has no bytes.
         return f"a wrong byte in the payload{_inside(frame, payload)}: nothing checks it"
     if isinstance(part, ChoicePart):
         return _other_literal(part)
