@@ -90,6 +90,14 @@ forms:
     behind: accepted
     frame:
       number: {type: uint8, id: true}
+      again: {type: uint8, repeats: number}
+      not_again: {type: uint8, complements: number}
+      flags:
+        type: uint8
+        bits:
+          urgent: 0..1
+          urgent_again: {bits: 2..3, repeats: urgent}
+          urgent_not: {bits: 4..5, complements: urgent}
       payload: {}
       sum: {type: uint8, algorithm: sum-8, covers: number..payload}
     transparency: {covers: payload, preset: slip}
