@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from protogen.copying import replace
 from protogen.model.frame import Frame
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
 from protogen.passes.framing.capacity import payload_range
+from protogen.passes.framing.fitting import check_overloads, has_length, with_payload
 
 
 def cut(context: Context, loc: Loc, frame: Frame) -> Frame:
     """The frame with a payload that is cut. The longest is what the length and the frame allow."""
-    payload = frame.payload
-    if frame.length is None:
-        text = "nothing tells a receiver how many bytes of payload a newer sender has"
-        hint = "give the frame a length part that counts the payload"
-        context.error_at_key("PG280", (*loc, payload.name, "longer"), text, hint)
+    what = "payload a newer sender has"
+    if not has_length(context, loc, frame, "PG280", "longer", what):
         return frame
     carried = payload_range(frame)
     if carried is None:
         return frame  # The length states no payload at all, which is reported.
-    parts = (replace(it, longest=carried.greatest) if it == payload else it for it in frame.parts)
-    return replace(frame, parts=tuple(parts))
+    return with_payload(frame, longest=carried.greatest)
 
 
 def check_cut(context: Context, draft: Draft) -> None:
@@ -31,7 +27,8 @@ def check_cut(context: Context, draft: Draft) -> None:
         frame = draft.frames.get(sender)
         if frame is not None and frame.payload.is_cut:
             sharing.setdefault(context.frames[sender].loc, []).append(sender)
-            _check_overloads(context, draft, sender)
+            why = f"payloads of {sender} may be longer than known"
+            check_overloads(context, draft, sender, "PG282", "longer", why)
     for loc, senders in sharing.items():
         _check_sizes(context, draft, loc, senders)
 
@@ -50,13 +47,3 @@ def _check_sizes(context: Context, draft: Draft, frame: Loc, senders: list[str])
         text = f"no frame of {sender} has room for more than a message has: {longest} bytes"
         hint = "widen the range of the length part, raise `max_frame`, or leave out `longer`"
         context.error_at_key("PG281", loc, text, hint)
-
-
-def _check_overloads(context: Context, draft: Draft, sender: str) -> None:
-    """A size that a newer sender may exceed tells no messages apart."""
-    for overload in draft.overloads.get(sender, ()):
-        if overload.yields is None:
-            text = f"payloads of {sender} may be longer than known, so their size does not tell"
-            text = f"{text} messages apart"
-            hint = "give each message an identity of its own, or leave out `longer`"
-            context.error("PG282", ("overloads", overload.name, "by"), text, hint)

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from protogen.copying import replace
 from protogen.model.frame import Frame
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
 from protogen.passes.framing.capacity import stated_range
+from protogen.passes.framing.fitting import check_overloads, has_length, with_payload
 
 
 def trimmed(context: Context, loc: Loc, frame: Frame) -> Frame:
     """The frame with a payload that is trimmed. A byte stays, and what the length can say."""
-    payload = frame.payload
-    if frame.length is None:
-        text = "nothing tells a receiver how many bytes of the payload were sent"
-        hint = "give the frame a length part that counts the payload"
-        context.error_at_key("PG235", (*loc, payload.name, "trailing_zeros"), text, hint)
+    what = "the payload were sent"
+    if not has_length(context, loc, frame, "PG235", "trailing_zeros", what):
         return frame
     stated = stated_range(frame)
     kept = max(1, stated.least if stated is not None else 0)
-    parts = (replace(part, kept=kept) if part == payload else part for part in frame.parts)
-    return replace(frame, parts=tuple(parts))
+    return with_payload(frame, kept=kept)
 
 
 def check_trimmed(context: Context, draft: Draft) -> None:
@@ -29,7 +25,8 @@ def check_trimmed(context: Context, draft: Draft) -> None:
         frame = draft.frames.get(sender)
         if frame is not None and frame.payload.is_trimmed:
             _check_sizes(context, draft, sender)
-            _check_overloads(context, draft, sender)
+            why = f"{sender} leaves out zeros at the end of payloads"
+            check_overloads(context, draft, sender, "PG237", "trailing_zeros", why)
 
 
 def _check_sizes(context: Context, draft: Draft, sender: str) -> None:
@@ -40,13 +37,3 @@ def _check_sizes(context: Context, draft: Draft, sender: str) -> None:
             text = f"{text} the end: a receiver can't tell to what size to fill it up"
             hint = "give the message a fixed size, or leave out `trailing_zeros`"
             context.error_at_key("PG236", ("messages", message.name), text, hint)
-
-
-def _check_overloads(context: Context, draft: Draft, sender: str) -> None:
-    """A size that varies tells no messages apart."""
-    for overload in draft.overloads.get(sender, ()):
-        if overload.yields is None:
-            text = f"{sender} leaves out zeros at the end of payloads, so their size does not tell"
-            text = f"{text} messages apart"
-            hint = "give each message an identity of its own, or leave out `trailing_zeros`"
-            context.error("PG237", ("overloads", overload.name, "by"), text, hint)

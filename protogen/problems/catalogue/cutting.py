@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
-from protogen.problems.catalogue.sketch import with_framed
+from protogen.problems.catalogue.sketch import with_payload
 
-_LENGTH = "length: {type: uint8, counts: payload}\n"
-_IDENTITY = "id: {type: uint8, id: true}\n"
-_CUT = "payload: {longer: cut}\n"
-_CHECKED = "crc: {type: uint16, algorithm: CRC-16/KERMIT, covers: id..payload}\n"
+_CUT = "longer: cut"
 _GYRO = "gyro: {id: 1, from: robot, fields: {angle: uint16}}\n"
 _OTHER = "other: {id: 1, from: robot, fields: {angle: uint32}}\n"
 _TEXT = "text: {id: 2, from: robot, fields: {text: {type: ascii, size: fill}}}\n"
@@ -23,8 +20,8 @@ With `longer: cut`, a receiver takes the bytes of a payload that it knows and le
 sender has behind them. It has to know how many there are to find the end of the frame, and no
 identity tells that. So the frame has a length part that counts the payload.
 """,
-        with_framed(_IDENTITY + _CUT + _CHECKED, _GYRO),
-        with_framed(_LENGTH + _IDENTITY + _CUT + _CHECKED, _GYRO),
+        with_payload(_CUT, _GYRO, length=False),
+        with_payload(_CUT, _GYRO),
     ),
     Code(
         "PG281",
@@ -36,8 +33,8 @@ size. A message whose size varies is as long as its fields say, and one that fil
 all of it: there is nothing to cut. Nor is there where the length part, or `max_frame`, allows no
 more bytes than the messages have.
 """,
-        with_framed(_LENGTH + _IDENTITY + _CUT + _CHECKED, _TEXT),
-        with_framed(_LENGTH + _IDENTITY + _CUT + _CHECKED, _TEXT + _GYRO),
+        with_payload(_CUT, _TEXT),
+        with_payload(_CUT, _TEXT + _GYRO),
     ),
     Code(
         "PG282",
@@ -47,13 +44,11 @@ more bytes than the messages have.
 An overload `by: size` tells messages of one identity apart by how long their payloads are. With
 `longer: cut` a longer one may be any of them. Give each message an identity of its own.
 """,
-        with_framed(
-            _LENGTH + _IDENTITY + _CUT + _CHECKED,
+        with_payload(
+            _CUT,
             _GYRO + _OTHER,
             more="overloads: {both: {messages: [gyro, other], by: size}}",
         ),
-        with_framed(
-            _LENGTH + _IDENTITY + _CUT + _CHECKED, _GYRO + _OTHER.replace("id: 1", "id: 2")
-        ),
+        with_payload(_CUT, _GYRO + _OTHER.replace("id: 1", "id: 2")),
     ),
 )

@@ -53,6 +53,17 @@ def with_frame(parts: str, *, more: str = "") -> str:
     return _HEAD + "frame:\n" + _lines(parts, 2) + _lines(more, 0) + _MESSAGE + _FIELDS
 
 
+def with_payload(keys: str, messages: str, *, length: bool = True, more: str = "") -> str:
+    """A schema whose frame has a payload with these keys, and a length if it says so."""
+    parts = [
+        *(["length: {type: uint8, counts: payload}"] if length else []),
+        "id: {type: uint8, id: true}",
+        f"payload: {{{keys}}}",
+        "crc: {type: uint16, algorithm: CRC-16/KERMIT, covers: id..payload}",
+    ]
+    return with_framed("".join(f"{part}\n" for part in parts), messages, more=more)
+
+
 def with_framed(parts: str, messages: str, *, more: str = "") -> str:
     """A schema whose frame has these parts, with these messages; `more` are keys of the root."""
     frame = "frame:\n" + _lines(parts, 2)

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
-from protogen.problems.catalogue.sketch import with_framed
+from protogen.problems.catalogue.sketch import with_payload
 
-_LENGTH = "length: {type: uint8, counts: payload}\n"
-_IDENTITY = "id: {type: uint8, id: true}\n"
-_TRIMMED = "payload: {trailing_zeros: trimmed}\n"
-_CHECKED = "crc: {type: uint16, algorithm: CRC-16/KERMIT, covers: id..payload}\n"
+_TRIMMED = "trailing_zeros: trimmed"
 _GYRO = "gyro: {id: 1, from: robot, fields: {angle: uint16}}\n"
 _OTHER = "other: {id: 1, from: robot, fields: {angle: uint32}}\n"
 
@@ -22,8 +19,8 @@ With `trailing_zeros: trimmed`, a payload has fewer bytes on the wire than its m
 has to know how many, and no identity tells that; an end literal alone would not tell a zero that
 was left out from one that was lost. So the frame has a length part that counts the payload.
 """,
-        with_framed(_IDENTITY + _TRIMMED + _CHECKED, _GYRO),
-        with_framed(_LENGTH + _IDENTITY + _TRIMMED + _CHECKED, _GYRO),
+        with_payload(_TRIMMED, _GYRO, length=False),
+        with_payload(_TRIMMED, _GYRO),
     ),
     Code(
         "PG236",
@@ -35,12 +32,12 @@ condition or `fill` lets that size vary, it could not tell which one is meant. G
 fixed size (fields that are seldom used cost nothing at its end, where they are zero), or a form of
 frame that leaves nothing out.
 """,
-        with_framed(
-            _LENGTH + _IDENTITY + _TRIMMED + _CHECKED,
+        with_payload(
+            _TRIMMED,
             "text: {id: 1, from: robot, fields: {text: {type: ascii, size: fill}}}\n",
         ),
-        with_framed(
-            _LENGTH + _IDENTITY + _TRIMMED + _CHECKED,
+        with_payload(
+            _TRIMMED,
             "text: {id: 1, from: robot, fields: {text: {type: ascii, size: 50}}}\n",
         ),
     ),
@@ -53,13 +50,11 @@ An overload `by: size` tells messages of one identity apart by how long their pa
 `trailing_zeros: trimmed` that depends on the values, so it tells nothing. Give each message an
 identity of its own.
 """,
-        with_framed(
-            _LENGTH + _IDENTITY + _TRIMMED + _CHECKED,
+        with_payload(
+            _TRIMMED,
             _GYRO + _OTHER,
             more="overloads: {both: {messages: [gyro, other], by: size}}",
         ),
-        with_framed(
-            _LENGTH + _IDENTITY + _TRIMMED + _CHECKED, _GYRO + _OTHER.replace("id: 1", "id: 2")
-        ),
+        with_payload(_TRIMMED, _GYRO + _OTHER.replace("id: 1", "id: 2")),
     ),
 )
