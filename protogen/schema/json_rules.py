@@ -28,7 +28,15 @@ _LAST_ELEMENT: JsonObject = {"type": "object", "required": ["element"]}
 _WRITTEN = ("digits", "code", "chars")
 _MIRRORS = ("repeats", "complements")
 _PART_ROLES = (
-    *("literal", "bits", *_MIRRORS, "id", "virtual", "counts", "counter", "algorithm", "idle"),
+    "literal",
+    "bits",
+    *_MIRRORS,
+    "id",
+    "virtual",
+    "counts",
+    "counter",
+    "algorithm",
+    "idle",
 )
 
 

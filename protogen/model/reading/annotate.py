@@ -280,7 +280,7 @@ class _Frame:
         own = message.sizes.greatest
         if self._is_cut(message) and size > own:
             return dissect(message.plan, inside.part(own))
-        missing = message.sizes.greatest - size
+        missing = own - size
         if missing <= 0 or not self._sender.plan.is_trimmed:
             return dissect(message.plan, inside)
         zeros = Cursor([*inside.rest(), *[Unit(0, b"")] * missing], offset)

@@ -133,8 +133,9 @@ class FrameBuilder:
         check_names(self._context, self._loc, self._syntax)
         parts: list[Part | None] = []
         for name, item in self._syntax.items():
-            parts.append(self._part(name, item))
-            self._mirrors.add(parts[-1:])
+            part = self._part(name, item)
+            self._mirrors.add(part)
+            parts.append(part)
         if PAYLOAD not in self._syntax:
             text = "the frame has no part called `payload`"
             self._context.error_at_key("PG130", self._loc, text)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from protogen.model.frame import LengthPart, MirrorBits, NumberPart, Part, varying_bits
 from protogen.model.numbers import BitPlace
@@ -47,7 +47,7 @@ class Mirrors:
         }
         self._numbers: dict[str, Part] = {}
 
-    def add(self, parts: Sequence[Part | None]) -> None:
+    def add(self, *parts: Part | None) -> None:
         """Take what was read, from which what stands behind it may follow."""
         for part in parts:
             if part is not None:

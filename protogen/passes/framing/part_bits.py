@@ -39,7 +39,7 @@ def bits_part(
     reader = _Reader(context, loc, type_)
     for name, bits in (item.bits or {}).items():
         reader.read(name, bits)
-    mirrors.add(reader.members)
+    mirrors.add(*reader.members)
     mirrored = [mirrors.read(*given) for given in reader.mirrors]
     if not (reader.members or mirrored) and context.tally.errors == before:
         hint = "leave out `bits` and `type`, and write the bytes as a `literal`"
@@ -103,10 +103,7 @@ class _Reader:
     def _constant(self, loc: Loc, item: PartBits, type_: Integer) -> None:
         """Bits that are the same in each frame."""
         const = item.const or 0
-        for key in (*MIRRORS, *_NO_MEMBER):
-            if getattr(item, key) is not None:
-                text = f"`{key}` does not go together with `const`"
-                self._context.error("PG260", (*loc, key), text, f"remove `{key}`")
+        self._check_alone(loc, item, "const", "PG260")
         if const > type_.greatest:
             text = f"{const} does not fit {type_.label}"
             self._context.error("PG114", (*loc, "const"), text)
@@ -119,12 +116,17 @@ class _Reader:
     def _mirror(self, loc: Loc, item: PartBits, type_: Integer) -> None:
         """Bits that follow from others; those of this part are known when all of it was read."""
         own = mirror_key(item)
+        assert own is not None
+        self._check_alone(loc, item, own, "PG276")
+        given = about(item.doc, item.source, self._context.find_key(loc))
+        self.mirrors.append((loc, item, type_, given))
+
+    def _check_alone(self, loc: Loc, item: PartBits, own: str, code: str) -> None:
+        """Report other keys that say what the bits are."""
         for key in (*MIRRORS, *_NO_MEMBER):
             if key != own and getattr(item, key) is not None:
                 text = f"`{key}` does not go together with `{own}`"
-                self._context.error("PG276", (*loc, key), text, f"remove `{key}`")
-        given = about(item.doc, item.source, self._context.find_key(loc))
-        self.mirrors.append((loc, item, type_, given))
+                self._context.error(code, (*loc, key), text, f"remove `{key}`")
 
     def _member(self, loc: Loc, item: PartBits, type_: Integer) -> None:
         """Bits that are a part of their own."""
