@@ -19,7 +19,7 @@ from protogen.targets.escape import paragraphs, python_comment
 from protogen.targets.python import describing
 from protogen.targets.python import frames as tables
 from protogen.targets.python.formats import constant, field_format, is_empty
-from protogen.targets.python.literals import call, octets_in_class, text, tuple_of
+from protogen.targets.python.literals import bracketed, call, octets_in_class, text, tuple_of
 from protogen.targets.python.names import Names, RecordNames
 from protogen.targets.python.rules import field_rule
 from protogen.targets.python.spelling import member_name
@@ -214,8 +214,7 @@ def _counted(item: Computed) -> str:
         count = f"{offset} - {count}"
     elif offset:
         count = f"{count} {_signed(-offset)}"
-    whole = f"({count})" if " " in count else count
-    return count if abs(factor) == 1 else f"{whole} // {abs(factor)}"
+    return count if abs(factor) == 1 else f"{bracketed(count)} // {abs(factor)}"
 
 
 def _signed(number: int) -> str:

@@ -7,6 +7,11 @@ from fractions import Fraction
 from functools import lru_cache
 
 
+def bracketed(expression: str) -> str:
+    """An expression that an operator may stand beside."""
+    return f"({expression})" if " " in expression else expression
+
+
 def number(value: Fraction | int) -> str:
     """An exact number, as short as Python has it."""
     exact = Fraction(value)

@@ -12,10 +12,9 @@ from protogen.targets.python.engine import identities
 from protogen.targets.python.engine.checksums import ChecksumFunction
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Constants, Lines
-from protogen.targets.python.engine.numbers import bracketed
 from protogen.targets.python.engine.place import Place
+from protogen.targets.python.literals import bracketed, tuple_of
 from protogen.targets.python.literals import octets_in_class as literal
-from protogen.targets.python.literals import tuple_of
 
 
 def cutter(frame: EngineFrame, constants: Constants) -> tuple[str, ...]:

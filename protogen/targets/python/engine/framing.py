@@ -32,11 +32,11 @@ from protogen.targets.python.engine.checksums import (
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.layout import UNSIGNED, byte_order
 from protogen.targets.python.engine.lines import Constants, Lines
-from protogen.targets.python.engine.numbers import FrameFunction, bracketed
+from protogen.targets.python.engine.numbers import FrameFunction
 from protogen.targets.python.engine.struct_calls import Packed, Packer
 from protogen.targets.python.engine.writing import content_writer, is_of_one_size, payload_writer
+from protogen.targets.python.literals import bracketed, text, tuple_of
 from protogen.targets.python.literals import octets_in_class as literal
-from protogen.targets.python.literals import text, tuple_of
 
 
 def framer(frame: EngineFrame, of_caller: tuple[str, ...], constants: Constants) -> tuple[str, ...]:

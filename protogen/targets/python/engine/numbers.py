@@ -12,11 +12,6 @@ from protogen.targets.python.engine.lines import Lines
 from protogen.targets.python.engine.place import Place
 
 
-def bracketed(value: str) -> str:
-    """An expression that an operator may stand beside."""
-    return f"({value})" if " " in value else value
-
-
 class FrameFunction:
     """Writes the body of one function."""
 
