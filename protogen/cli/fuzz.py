@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from protogen.cli.wire.codec import Codec
     from protogen.fuzzing.engine import Engine
     from protogen.fuzzing.trips import Outcome
+    from protogen.model.protocol import Protocol
 
 EXAMPLE = "Example: protogen fuzz schemas/rn1.yaml --examples 1000"
 
@@ -51,8 +52,10 @@ def fuzz(
         find_message(codec.protocol, message)
     run = Run(examples, SystemRandom().randrange(_GREATEST_SEED) if seed is None else seed, message)
     engines, are_whole = _engines(codec)
-    failed = [engine for engine in engines if _fuzz(codec, engine, run, engines[0])]
-    return FINDINGS if failed or not are_whole else CLEAN
+    tallies = _tallies(codec.protocol, engines, run)
+    for tally in tallies:
+        tally.print(run.seed)
+    return FINDINGS if any(tally.failed for tally in tallies) or not are_whole else CLEAN
 
 
 class Run(msgspec.Struct, frozen=True):
@@ -85,35 +88,65 @@ def _engines(codec: Codec) -> tuple[list[Engine], bool]:
         return found, False
 
 
-def _fuzz(codec: Codec, engine: Engine, run: Run, first: Engine) -> bool:
-    """Try an engine, and print what became of it; return whether anything failed."""
+def _tallies(protocol: Protocol, engines: list[Engine], run: Run) -> list[_Tally]:
+    """Take every sample through all engines, and return what became of it in each."""
     from protogen.cli.progress import progress
-    from protogen.fuzzing.trips import case_count, cases, smallest, try_case
+    from protogen.fuzzing.trips import case_count, cases, smallest, try_engines
 
-    protocol = codec.protocol
-    reference = None if engine is first else first
+    tallies = [_Tally(engine) for engine in engines]
     total = case_count(protocol, run.examples, run.message)
-    failures: dict[str, Outcome] = {}
-    tried, refused = Counter[str](), Counter[str]()
-    reasons: dict[str, str] = {}
-    with progress(f"{protocol.name} through {engine.name}", total) as advance:
+    with progress(f"{protocol.name} through {len(engines)} engines", total) as advance:
         for case in cases(protocol, run.examples, run.seed, run.message):
-            outcome = try_case(engine, protocol, case, reference)
-            if outcome.problem and case.message not in failures:
-                failures[case.message] = smallest(engine, protocol, outcome, reference)
-            tried[case.message] += 1
-            if outcome.refused:
-                refused[case.message] += 1
-                reasons[case.message] = outcome.refused
+            for tally, outcome in zip(tallies, try_engines(engines, protocol, case), strict=True):
+                shown = outcome
+                if tally.is_first_failure(outcome):
+                    reference = None if tally.engine is engines[0] else engines[0]
+                    shown = smallest(tally.engine, protocol, outcome, reference)
+                tally.add(shown)
             advance(1)
-    for failure in failures.values():
-        _print_failure(failure, engine, run.seed)
-    never = [name for name, count in refused.items() if count == tried[name]]
-    for name in never:
-        typer.echo(f"{name} through {engine.name}: no sample can be encoded: {reasons[name]}")
-    count = len(failures.keys() | never)
-    _print_summary(engine, tried.total(), refused.total(), count, run.seed)
-    return bool(count)
+    return tallies
+
+
+class _Tally:
+    """Counts of one engine's samples, and the first failure of each message."""
+
+    def __init__(self, engine: Engine) -> None:
+        self.engine = engine
+        self._tried, self._refused = Counter[str](), Counter[str]()
+        self._failures: dict[str, Outcome] = {}
+        self._reasons: dict[str, str] = {}
+
+    def is_first_failure(self, outcome: Outcome) -> bool:
+        """True if a message fails that has not failed before."""
+        return bool(outcome.problem) and outcome.case.message not in self._failures
+
+    def add(self, outcome: Outcome) -> None:
+        """Count a sample."""
+        message = outcome.case.message
+        self._tried[message] += 1
+        if outcome.problem:
+            self._failures.setdefault(message, outcome)
+        if outcome.refused:
+            self._refused[message] += 1
+            self._reasons[message] = outcome.refused
+
+    @property
+    def _never(self) -> list[str]:
+        return [name for name, count in self._refused.items() if count == self._tried[name]]
+
+    @property
+    def failed(self) -> int:
+        """Number of messages that failed, or of which no sample could be encoded."""
+        return len(self._failures.keys() | self._never)
+
+    def print(self, seed: int) -> None:
+        """Print the failures, and one line about all samples."""
+        for failure in self._failures.values():
+            _print_failure(failure, self.engine, seed)
+        for name in self._never:
+            reason = self._reasons[name]
+            typer.echo(f"{name} through {self.engine.name}: no sample can be encoded: {reason}")
+        _print_summary(self.engine, self._tried.total(), self._refused.total(), self.failed, seed)
 
 
 def _print_failure(failure: Outcome, engine: Engine, seed: int) -> None:

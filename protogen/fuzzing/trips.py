@@ -62,15 +62,25 @@ def _messages(protocol: Protocol, only: str | None) -> Iterator[tuple[Sender, Me
                 yield sender, message
 
 
+def try_engines(engines: Sequence[Engine], protocol: Protocol, case: Case) -> list[Outcome]:
+    """Take one case through each engine; the others have to make the frame of the first."""
+    first, *others = engines
+    expected = _try_alone(first, protocol, case)
+    outcomes = (_try_alone(engine, protocol, case) for engine in others)
+    return [expected, *(_compared(outcome, expected, first) for outcome in outcomes)]
+
+
 def try_case(
     engine: Engine, protocol: Protocol, case: Case, reference: Engine | None = None
 ) -> Outcome:
     """Take one case through an engine, there and back; a reference has to make the same frame."""
-    outcome = _try_alone(engine, protocol, case)
-    if reference is None or outcome.problem:
-        return outcome
-    expected = _try_alone(reference, protocol, case)
-    if outcome.frame == expected.frame:
+    if reference is None:
+        return _try_alone(engine, protocol, case)
+    return try_engines([reference, engine], protocol, case)[1]
+
+
+def _compared(outcome: Outcome, expected: Outcome, reference: Engine) -> Outcome:
+    if outcome.problem or outcome.frame == expected.frame:
         return outcome
     made = f"makes {expected.frame.hex()}" if expected.frame else f"refuses: {expected.refused}"
     return replace(outcome, problem=f"another engine, {reference.name}, {made}")
