@@ -238,3 +238,39 @@ def test_a_length_in_bits_is_in_the_reference(path: Path, tmp_path: Path) -> Non
     assert "bits 4..7" in row
     assert "Number of bytes of `payload`." in row
     assert any("| `0x1` |" in row for row in of_messages)
+
+
+FORMS = """\
+protocol: forms
+endpoints: {robot: Robot}
+forms:
+  short:
+    from: robot
+    frame:
+      begin: {literal: 0xC0, unprotected: begin_in_data}
+      head: {type: uint8, bits: {way: {bits: 6..7, const: 0}, kind: {bits: 0..5, id: true}}}
+      payload: {}
+      crc: {type: uint8, algorithm: sum-8, covers: head..payload}
+  long:
+    from: robot
+    frame:
+      begin: {literal: 0xC0, unprotected: begin_in_data}
+      head: {type: uint8, bits: {way: {bits: 6..7, KEYS}, length: {bits: 0..5, counts: payload}}}
+      kind: {type: uint8, id: true}
+      payload: {}
+      crc: {type: uint8, algorithm: sum-8, covers: head..payload}
+messages:
+  beat: {id: 2, from: robot, fields: {value: uint8}}
+decisions: {begin_in_data: {question: q, document: d, choice: c, because: b}}
+"""
+
+
+def test_bits_that_are_always_the_same_tell_forms_apart(path: Path) -> None:
+    protocol = written(path, FORMS.replace("KEYS", "const: 1"))
+    assert [sender.name for sender in protocol.senders] == ["robot_short", "robot_long"]
+
+
+@pytest.mark.parametrize("keys", ["range: [1, 3]", "const: 0"])
+def test_values_that_a_receiver_hands_on_tell_no_forms_apart(path: Path, keys: str) -> None:
+    path.write_text(FORMS.replace("KEYS", keys), encoding="utf-8")
+    assert [item.code for item in compile_file(path).problems] == ["PG173"]
