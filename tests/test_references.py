@@ -98,6 +98,7 @@ forms:
           urgent: 0..1
           urgent_again: {bits: 2..3, repeats: urgent}
           urgent_not: {bits: 4..5, complements: urgent}
+          length: {bits: 6..7, counts: flags..payload}
       payload: {}
       sum: {type: uint8, algorithm: sum-8, covers: number..payload}
     transparency: {covers: payload, preset: slip}

@@ -151,6 +151,10 @@ class ChoicePart(ValuePart, frozen=True, kw_only=True):
         return True
 
 
+BitsMember = IdentityPart | LengthPart | CounterPart | ValuePart
+"""A part that is bits of another one."""
+
+
 class FixedBits(msgspec.Struct, frozen=True, kw_only=True):
     """Bits of a part that have a name and are the same in each frame."""
 
@@ -189,7 +193,7 @@ class BitsPart(TypedPart, frozen=True, kw_only=True):
     A part that repeats or complements another one as a whole is one without members.
     """
 
-    members: tuple[IdentityPart | CounterPart | ValuePart, ...]
+    members: tuple[BitsMember, ...]
     """These parts, in the order of the schema."""
     fixed: int
     """The bits that are the same, as a number whose other bits are 0."""
@@ -476,7 +480,7 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     @cached_property
     def length(self) -> LengthPart | None:
         """The length part, if there is one."""
-        return next((part for part in self.parts if isinstance(part, LengthPart)), None)
+        return next((part for part in self.numbers if isinstance(part, LengthPart)), None)
 
     @cached_property
     def checksums(self) -> tuple[ChecksumPart, ...]:
@@ -495,7 +499,7 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
         return tuple(part for part in self.numbers if isinstance(part, CounterPart | ValuePart))
 
 
-def members_of(part: Part) -> tuple[IdentityPart | CounterPart | ValuePart, ...]:
+def members_of(part: Part) -> tuple[BitsMember, ...]:
     """The parts that are bits of this one."""
     return part.members if isinstance(part, BitsPart) else ()
 

@@ -233,19 +233,27 @@ _PART_RULES = (
     _together("These are for a checksum.", {key: ["algorithm"] for key in ("covers", "when")}),
 )
 
+_OF_MEMBERS = ("id", "counts", "counter", "range", "default")
+"""Keys of bits that are a part of their own."""
+
 _PART_BITS_RULES = (
     _where(
         _with("const"),
         "Bits that are the same in each frame are no part.",
-        _none_of((*_MIRRORS, "id", "counter", "range", "default")),
+        _none_of((*_MIRRORS, *_OF_MEMBERS)),
     ),
     _at_most_one_of("Bits follow from one number.", _MIRRORS),
     _where(
         _any_of(_MIRRORS),
         "Bits that follow from another number are no part.",
-        _none_of(("id", "counter", "range", "default")),
+        _none_of(_OF_MEMBERS),
     ),
-    _where(_with("id"), "What tells the message is not chosen.", _none_of(("counter", "default"))),
+    _at_most_one_of("Bits have one purpose.", ("id", "counts", "counter")),
+    _where(
+        _any_of(("id", "counts")),
+        "What tells the message, or its length, is not chosen.",
+        _none_of(("default",)),
+    ),
 )
 
 _MESSAGE_RULES = (

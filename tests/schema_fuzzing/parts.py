@@ -207,6 +207,25 @@ class Maker:
             values = (frozenset(value ^ flips for value in range(least, greatest + 1)),)
         return PartPlan(self.name(), "mirror", keys, values)
 
+    def length_in_bits(self, length: PartPlan) -> PartPlan:
+        """The part of which some bits are the length, if these can say enough."""
+        type_, (counted, _) = length.type, length.bounds
+        assert type_ is not None
+        least = (counted + 18).bit_length()
+        if least > type_.bits or type_.digits is not None or type_.type == "char":
+            return length
+        width = self._draw(st.integers(least, type_.bits))
+        low = self._draw(st.integers(0, type_.bits - width))
+        own = {"counts": length.data["counts"]}
+        run = Run(low, width, 0, (1 << width) - 1)
+        keys = {key: length.data[key] for key in ("type", "byte_order") if key in length.data}
+        keys["bits"], runs = fill(self._draw, type_.bits, self.name, (self.name(), own, run))
+        values = bytes_of(runs, type_.size, type_.byte_bits)
+        values = values if type_.order == "little" else values[::-1]
+        keys.update(self._draw(forms.about()))
+        bounds = counted, run.greatest
+        return PartPlan(length.name, "length", keys, tuple(values), type=type_, bounds=bounds)
+
     def _bits(self, *, tells: bool) -> PartPlan:
         """A number whose bits are parts, an identity among them if it `tells` the message."""
         size, byte_bits = self._draw(st.sampled_from([1, 1, 1, 2])), self._byte_bits

@@ -256,14 +256,17 @@ class _Assembly:
         total = part.fixed
         for member in part.members:
             assert member.type.within is not None
-            total += int(self._numbers[member.name]) * 2**member.type.within.low
+            total += self._number(member) * 2**member.type.within.low
         for mirror in part.mirrors:
             assert mirror.type.within is not None
-            is_length = isinstance(mirror.of, LengthPart)
-            value = self._length(mirror.of) if is_length else int(self._numbers[mirror.of.name])
+            value = self._number(mirror.of)
             value = 2**mirror.type.bits - 1 - value if mirror.inverted else value
             total += value * 2**mirror.type.within.low
         return total
+
+    def _number(self, part: NumberPart) -> int:
+        is_length = isinstance(part, LengthPart)
+        return self._length(part) if is_length else int(self._numbers[part.name])
 
     def _length(self, part: LengthPart) -> int:
         """Bytes that it counts; on the wire, of which all that is stuffed is counted."""

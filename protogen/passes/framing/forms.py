@@ -4,8 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
+from typing import TypeVar
 
-from protogen.model.frame import ChoicePart, LengthPart, LiteralPart, PayloadPart
+from protogen.copying import replace
+from protogen.model.frame import (
+    BitsPart,
+    ChoicePart,
+    LengthPart,
+    LiteralPart,
+    MirrorBits,
+    NumberPart,
+    PayloadPart,
+)
 from protogen.model.framing import AfterEnd, Framing, StartLiteral, StartSet
 from protogen.passes.context import Context
 from protogen.passes.draft import Draft
@@ -13,6 +23,7 @@ from protogen.passes.proofs.wire_code import EVERY_BYTE, ByteSet, part_bytes
 
 _HELD = LiteralPart | ChoicePart | LengthPart
 """Parts of which a receiver takes no other values than the schema allows."""
+_Number = TypeVar("_Number", bound=NumberPart)
 
 
 def check_forms(context: Context, draft: Draft) -> None:
@@ -106,5 +117,25 @@ def _beginning(draft: Draft, sender: str) -> Iterator[ByteSet]:
             return
         if isinstance(part, _HELD) or (isinstance(start, StartSet) and part is frame.parts[0]):
             yield from part_bytes(part, EVERY_BYTE)
+        elif isinstance(part, BitsPart):
+            yield from part_bytes(_held_bits(part), EVERY_BYTE)
         else:
             yield from (EVERY_BYTE,) * part.size
+
+
+def _held_bits(part: BitsPart) -> BitsPart:
+    """The part with all values that a receiver takes: bits that are the same, or a length, hold."""
+    members = tuple(_held(member) for member in part.members)
+    mirrors = tuple(_held_mirror(mirror) for mirror in part.mirrors)
+    return replace(part, members=members, mirrors=mirrors)
+
+
+def _held_mirror(mirror: MirrorBits) -> MirrorBits:
+    return replace(mirror, of=_held(mirror.of))
+
+
+def _held(number: _Number) -> _Number:
+    """A number with the bounds to which a receiver holds it."""
+    if isinstance(number, LengthPart):
+        return number
+    return replace(number, least=number.type.least, greatest=number.type.greatest)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
 from protogen.copying import field_names, replace
 from protogen.model.checksums import (
@@ -33,6 +32,12 @@ from protogen.model.origin import About
 from protogen.model.types import ByteOrder
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
+from protogen.passes.framing.bit_names import (
+    are_whole,
+    check_names,
+    holders_of,
+    place_of_number,
+)
 from protogen.passes.framing.capacity import (
     counted_size,
     least_size,
@@ -41,9 +46,10 @@ from protogen.passes.framing.capacity import (
 )
 from protogen.passes.framing.covered import check_checksums
 from protogen.passes.framing.cutting import cut
+from protogen.passes.framing.lengths import Lengths
 from protogen.passes.framing.literals import literal_of
 from protogen.passes.framing.mirrors import MIRRORS, Mirrors, whole_type
-from protogen.passes.framing.part_bits import are_whole, bits_part, check_names, holders_of
+from protogen.passes.framing.part_bits import Others, bits_part
 from protogen.passes.framing.part_digits import (
     digits_type,
     is_written,
@@ -56,7 +62,7 @@ from protogen.passes.framing.part_values import number_of, text_bounds, text_typ
 from protogen.passes.framing.silences import check_silence, silence_of
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.framing.trimming import trimmed
-from protogen.passes.framing.virtual_parts import check_virtual_parts, sent_run
+from protogen.passes.framing.virtual_parts import check_virtual_parts
 from protogen.passes.framing.wire_counts import check_wire_length
 from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width
@@ -124,6 +130,7 @@ class FrameBuilder:
         self._names = list(self._syntax)
         self._layout = Layout(context.syntax.byte_bits, context.byte_order(written.endpoint))
         self._mirrors = Mirrors(context, self._loc, self._syntax)
+        self._lengths = Lengths(context, self._loc, self._syntax)
         self._replaced = 0
         """Errors of checksums that another one stands for."""
 
@@ -141,7 +148,7 @@ class FrameBuilder:
             self._context.error_at_key("PG130", self._loc, text)
         transparency = transparency_of(self._context, self._written)
         silence = silence_of(self._context, self._written)
-        self._one_length(parts)
+        self._lengths.check_number(parts)
         before += self._replaced
         if self._context.tally.errors > before or self._loc in self._context.doubtful:
             return None
@@ -172,7 +179,8 @@ class FrameBuilder:
             besides = "1 byte" if around == 1 else f"{around} bytes"
             text = f"`{length.name}` counts {besides} besides the payload"
             text = f"{text}, and can't say more than {length.greatest}"
-            self._context.error_at_key("PG137", (*self._loc, length.name), text)
+            place = place_of_number(self._loc, frame, length.name)
+            self._context.error_at_key("PG137", place, text)
         elif frame.limit is not None and payload_range(frame) is None:
             text = f"a frame of {self._written.endpoint} has at least {least_size(frame)} bytes"
             loc = self._written.limit_loc
@@ -184,9 +192,8 @@ class FrameBuilder:
         if bits > _IDENTITY_BITS:
             text = f"the identity has {bits} bits together, and {_IDENTITY_BITS} are the most"
             hint = "make one of its parts a value: a part with a `type` and no `id`"
-            self._context.error_at_key(
-                "PG193", (*self._loc, frame.identity[-1].name, "id"), text, hint
-            )
+            place = place_of_number(self._loc, frame, frame.identity[-1].name)
+            self._context.error_at_key("PG193", (*place, "id"), text, hint)
 
     # -- parts --------------------------------------------------------------------------------
 
@@ -203,7 +210,8 @@ class FrameBuilder:
         if type_ is None:
             return None
         if role == "bits":
-            return bits_part(self._context, (*self._loc, name), item, type_, text, self._mirrors)
+            others = Others(self._mirrors, self._lengths)
+            return bits_part(self._context, (*self._loc, name), item, type_, text, others)
         if role in MIRRORS:
             return self._mirror(name, item, type_, text)
         if role == "algorithm":
@@ -255,7 +263,8 @@ class FrameBuilder:
             return IdentityPart(**given)
         if role == "counts":
             over_wire = item.over == "wire"
-            return LengthPart(**given, counts=self._counted(part.name, item), over_wire=over_wire)
+            counts = self._lengths.counted((*self._loc, part.name), item.counts or ())
+            return LengthPart(**given, counts=counts, over_wire=over_wire)
         kind = CounterPart if role == "counter" else ValuePart
         return kind(**given, default=self._default(item, part))
 
@@ -339,28 +348,6 @@ class FrameBuilder:
         elif not (type_.holds(least) and type_.holds(greatest)):
             self._context.error("PG114", loc, f"{least} to {greatest} does not fit {item.type}")
         return least, greatest
-
-    # -- lengths ------------------------------------------------------------------------------
-
-    def _counted(self, name: str, item: PartSyntax) -> tuple[str, ...]:
-        loc = (*self._loc, name)
-        what = "a length counts bytes"
-        place = (*loc, "counts")
-        counts = sent_run(self._context, self._syntax, item.counts or (), place, what)
-        names = self._names
-        if counts and PAYLOAD not in counts:
-            text = "a length that does not count the payload can't tell where the frame ends"
-            self._context.error("PG133", (*loc, "counts"), text)
-        if PAYLOAD in names and names.index(name) > names.index(PAYLOAD):
-            text = "a length behind the payload comes too late for a receiver"
-            self._context.error_at_key("PG133", loc, text)
-        return counts
-
-    def _one_length(self, parts: Sequence[Part | None]) -> None:
-        lengths = [part for part in parts if isinstance(part, LengthPart)]
-        for part in lengths[1:]:
-            text = f"the frame already has a length: `{lengths[0].name}`"
-            self._context.error_at_key("PG133", (*self._loc, part.name), text)
 
     # -- checksums ----------------------------------------------------------------------------
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 from protogen.copying import field_names, replace
 from protogen.model.frame import (
+    BitsMember,
     BitsPart,
     CounterPart,
     FixedBits,
     IdentityPart,
+    LengthPart,
     NumberPart,
     ValuePart,
     place_mask,
@@ -18,16 +20,26 @@ from protogen.model.numbers import BitPlace
 from protogen.model.origin import About
 from protogen.model.types import Integer
 from protogen.passes.context import Context, Loc, about
+from protogen.passes.framing.lengths import Lengths
 from protogen.passes.framing.mirrors import MIRRORS, Mirrors, mirror_key
 from protogen.passes.framing.part_values import number_of
 from protogen.schema.syntax.parts import Part, PartBits
 
-_NO_MEMBER = ("id", "counter", "range", "default")
+_NO_MEMBER = ("id", "counts", "counter", "range", "default")
 """Keys that only bits have that are a part of their own."""
+_ROLES = {"id": ("counts", "counter", "default"), "counts": ("counter", "default")}
+"""Keys that say what bits are that are a part, and keys that do not go together with them."""
+
+
+class Others(NamedTuple):
+    """What bits of a part have to do with other parts of the frame."""
+
+    mirrors: Mirrors
+    lengths: Lengths
 
 
 def bits_part(
-    context: Context, loc: Loc, item: Part, type_: Integer, text: About, mirrors: Mirrors
+    context: Context, loc: Loc, item: Part, type_: Integer, text: About, others: Others
 ) -> BitsPart | None:
     """The part whose bits these are; None where something about them is wrong."""
     before = context.tally.errors
@@ -36,11 +48,11 @@ def bits_part(
         hint = "give the part a type such as `uint8`"
         context.error_at_key("PG256", loc, "the bits of a text are those of its characters", hint)
         return None
-    reader = _Reader(context, loc, type_)
+    reader = _Reader(context, loc, type_, others.lengths)
     for name, bits in (item.bits or {}).items():
         reader.read(name, bits)
-    mirrors.add(*reader.members)
-    mirrored = [mirrors.read(*given) for given in reader.mirrors]
+    others.mirrors.add(*reader.members)
+    mirrored = [others.mirrors.read(*given) for given in reader.mirrors]
     if not (reader.members or mirrored) and context.tally.errors == before:
         hint = "leave out `bits` and `type`, and write the bytes as a `literal`"
         context.error_at_key("PG260", loc, "no bit of the part varies", hint)
@@ -61,12 +73,13 @@ def bits_part(
 class _Reader:
     """The named bits of one part, read one after another."""
 
-    def __init__(self, context: Context, loc: Loc, type_: Integer) -> None:
+    def __init__(self, context: Context, loc: Loc, type_: Integer, lengths: Lengths) -> None:
         self._context = context
         self._loc = loc
         self._type = type_
+        self._lengths = lengths
         self._taken: dict[str, int] = {}
-        self.members: list[IdentityPart | CounterPart | ValuePart] = []
+        self.members: list[BitsMember] = []
         self.fixed = 0
         self.constants: list[FixedBits] = []
         self.mirrors: list[tuple[Loc, PartBits, Integer, About]] = []
@@ -130,9 +143,12 @@ class _Reader:
 
     def _member(self, loc: Loc, item: PartBits, type_: Integer) -> None:
         """Bits that are a part of their own."""
-        if item.id is not None and (item.counter is not None or item.default is not None):
-            key = "default" if item.counter is None else "counter"
-            self._context.error("PG131", (*loc, key), f"`{key}` does not go together with `id`")
+        role = next((key for key in _ROLES if getattr(item, key) is not None), None)
+        others = _ROLES.get(role or "", ())
+        strange = next((key for key in others if getattr(item, key) is not None), None)
+        if strange is not None:
+            text = f"`{strange}` does not go together with `{role}`"
+            self._context.error("PG131", (*loc, strange), text)
             return
         least, greatest = item.range or (type_.least, type_.greatest)
         if least > greatest:
@@ -152,6 +168,10 @@ class _Reader:
         if item.id is not None:
             self.members.append(IdentityPart(**given))
             return
+        if item.counts is not None:
+            counts = self._lengths.counted(loc, item.counts)
+            self.members.append(LengthPart(**given, counts=counts))
+            return
         kind = ValuePart if item.counter is None else CounterPart
         self.members.append(kind(**given, default=self._default(loc, item, part)))
 
@@ -163,40 +183,3 @@ class _Reader:
         if default is not None and not part.holds(default):
             self._context.error("PG114", place, f"{default} is out of {part.allowed}")
         return default
-
-
-def check_names(context: Context, loc: Loc, parts: Mapping[str, Part]) -> None:
-    """Report bits that are called as another part of the frame is, or as other bits."""
-    seen = dict.fromkeys(parts, "another part of the frame")
-    for holder, item in parts.items():
-        for name in item.bits or {}:
-            if name in seen:
-                text = f"`{name}` is {seen[name]}, and these bits are called so, too"
-                place = (*loc, holder, "bits", name)
-                context.error_at_key("PG258", place, text, "give one of them another name")
-            seen[name] = f"some bits of `{holder}`" if name not in parts else seen[name]
-
-
-def holders_of(parts: Mapping[str, Part]) -> dict[str, str]:
-    """The parts that have bits with names, by these."""
-    return {
-        name: holder
-        for holder, item in parts.items()
-        for name in item.bits or {}
-        if name not in parts
-    }
-
-
-def are_whole(
-    context: Context, holders: Mapping[str, str], written: Sequence[str], loc: Loc
-) -> bool:
-    """True if a run of parts names no bits, whose holders these are; else that is reported."""
-    found = [name for name in dict.fromkeys(_names(written)) if name in holders]
-    for name in found:
-        text = f"`{name}` is some bits of `{holders[name]}`, and whole bytes are meant here"
-        context.error("PG259", loc, text, f"name `{holders[name]}`")
-    return not found
-
-
-def _names(written: Iterable[str]) -> list[str]:
-    return [name for item in written for name in item.split("..")]

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from protogen.model.frame import Frame
 from protogen.passes.context import Context, Loc
-from protogen.passes.framing.part_bits import are_whole, holders_of
+from protogen.passes.framing.bit_names import are_whole, holders_of
 from protogen.passes.framing.part_runs import written_out
 from protogen.schema.syntax.parts import Part
 

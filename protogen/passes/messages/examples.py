@@ -18,8 +18,8 @@ from protogen.model.messages import Contradiction, Example, Exchange, Message, S
 from protogen.model.types import Array, Field, Octets, Struct, Switch, Type, is_integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
+from protogen.passes.framing.bit_names import are_whole
 from protogen.passes.framing.capacity import head_literals, joined_words
-from protogen.passes.framing.part_bits import are_whole
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.part_values import number_of
 from protogen.passes.types.constants import named_raw_value

@@ -336,8 +336,9 @@ def _acceptable(frame: Frame, messages: list[Message]) -> list[SizeSet]:
 
 def _settled_early(frame: Frame, length: LengthPart) -> bool:
     """True if a checksum of the header alone covers the length."""
+    holder = frame.holder(length.name).name
     return any(
-        length.name in part.covers
+        holder in part.covers
         and not part.when_payload
         and part in frame.head
         and frame.payload.name not in part.covers

@@ -19,6 +19,9 @@ from protogen.model.frame import (
     Frame,
     Insertion,
     LengthPart,
+    Part,
+    members_of,
+    mirrors_of,
 )
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
@@ -28,8 +31,6 @@ from protogen.passes.proofs.together import Together
 from protogen.passes.proofs.wire_code import EVERY_BYTE, ByteSet, code_of
 
 _COBS_BLOCK = 254
-_FOLLOWING = (LengthPart, ChecksumPart)
-"""Parts that follow from the payload and its size."""
 
 
 class WireSizes:
@@ -123,7 +124,7 @@ class WireSizes:
 
     def _ceiling(self, contents: Contents, sign: int) -> int:
         """Bound on the worth of a frame, whatever length and checksums it has."""
-        free = [part.name for part in self._frame.parts if isinstance(part, _FOLLOWING)]
+        free = [part.name for part in self._frame.parts if _follows(part)]
         most = sum(
             self._frame.part(name).size * self._byte(name, EVERY_BYTE, sign) for name in free
         )
@@ -204,3 +205,10 @@ class WireSizes:
         if not worst:
             return 0 if self._lenient and not inside else 1
         return 1 + inside // _COBS_BLOCK if self._lenient else max(1, -(-inside // _COBS_BLOCK))
+
+
+def _follows(part: Part) -> bool:
+    """True if a part, or some bits of it, follow from the payload and its size."""
+    of = (mirror.of for mirror in mirrors_of(part))
+    numbers = (part, *members_of(part), *of)
+    return any(isinstance(item, LengthPart | ChecksumPart) for item in numbers)

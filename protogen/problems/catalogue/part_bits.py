@@ -75,8 +75,8 @@ that has the bytes, and none of the bits that it has.
         "Bits that are the same in each frame, and more",
         """\
 Bits with `const` are the same in each frame: receivers refuse any others, and nobody gives them. So
-they tell no message and count nothing, and have no `range` or `default`. Where all named bits of a
-part are so, it is a `literal`.
+they tell no message, are no length and count nothing, and have no `range` or `default`. Where all
+named bits of a part are so, it is a `literal`.
 """,
         _marked("const: 2, default: 2"),
         _marked("const: 2"),

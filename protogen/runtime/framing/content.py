@@ -139,10 +139,10 @@ class Content:
             self._read_bits(part, data)
         elif isinstance(part, NumberPart) and not isinstance(part, ChecksumPart):
             self._read(part, data)
-        identity = self._layout.identity
-        if part is self._layout.length:
+        numbers = (part, *members_of(part))
+        if self._layout.length in numbers:
             self._read_length(self._layout.length)
-        elif self._layout.early_identity and identity[-1] in (part, *members_of(part)):
+        if self._layout.early_identity and self._layout.identity[-1] in numbers:
             self._identify()
 
     def _read_bits(self, part: BitsPart, data: bytes) -> None:

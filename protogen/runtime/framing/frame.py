@@ -105,6 +105,10 @@ class CounterPart(ValuePart):
     """Counts frames from `default` or `least` on; behind `greatest` comes `least`."""
 
 
+BitsMember = IdentityPart | LengthPart | ValuePart
+"""A part that is bits of another one."""
+
+
 class MirrorBits(NamedTuple):
     """Bits of a part that follow from the number of another: it, or all of its bits inverted.
 
@@ -138,7 +142,7 @@ class BitsPart(NamedTuple):
 
     name: str
     number: Number
-    members: tuple[IdentityPart | ValuePart, ...]
+    members: tuple[BitsMember, ...]
     mask: int
     fixed: int
     mirrors: tuple[MirrorBits, ...] = ()
@@ -235,7 +239,7 @@ NumberPart = IdentityPart | LengthPart | ValuePart | ChecksumPart
 Part = LiteralPart | PayloadPart | BitsPart | NumberPart
 
 
-def members_of(part: Part) -> tuple[IdentityPart | ValuePart, ...]:
+def members_of(part: Part) -> tuple[BitsMember, ...]:
     """The parts that are bits of this one."""
     return part.members if isinstance(part, BitsPart) else ()
 

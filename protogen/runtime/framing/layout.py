@@ -61,18 +61,19 @@ class Layout:
         self.head = self.parts[: self.payload_index]
         self.tail = self.parts[self.payload_index + 1 :]
         self.head_size = sum(part.size for part in self.head)
-        self.length = next((part for part in self.head if isinstance(part, LengthPart)), None)
+        early = written_apart(self.head)
+        self.length = next((part for part in early if isinstance(part, LengthPart)), None)
         self._counted_around = {
             (part.name, has_payload): _counted_around(spec.parts, part, has_payload)
-            for part in spec.parts
+            for part in early
             if isinstance(part, LengthPart)
             for has_payload in (False, True)
         }
         apart = written_apart(self.parts)
         self.identity = tuple(part for part in apart if isinstance(part, IdentityPart))
         self.values = tuple(part for part in apart if isinstance(part, ValuePart))
-        early = written_apart(self.head) if spec.rescans else ()
-        self.bounded = tuple(part for part in self.values if part in early or part.values)
+        held = early if spec.rescans else ()
+        self.bounded = tuple(part for part in self.values if part in held or part.values)
         """The values that a receiver holds to their bounds."""
         self.shown = tuple(
             part.name for part in apart if isinstance(part, IdentityPart | ValuePart)

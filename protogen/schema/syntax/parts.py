@@ -178,6 +178,9 @@ class PartBits(Syntax):
 
     bits: BitRange = Field(description="Bit number, or LOW..HIGH counted from bit 0.")
     id: OnlyTrue | None = Field(None, description="The bits tell which message this is.")
+    counts: PartRun | None = Field(
+        None, description="The bits are the length in bytes of these parts, unstuffed."
+    )
     counter: OnlyTrue | None = Field(
         None, description="The bits count frames; encoders advance them by one and wrap."
     )

@@ -119,15 +119,16 @@ def _bits(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberView
     mask = part.mask
     if mask:
         bounds.insert(0, f"({value} & {hexadecimal(mask)}) != {hexadecimal(part.fixed)}")
+    length = next((view for view in members if view.is_length), None)
     # Of one byte, all was seen when it was seen to be a start.
     is_start = plan.start is StartRule.SET and item.in_head and item.end <= plan.start_size
     return NumberView(
         last=item.end - 1,
-        value=value,
+        value=value if length is None else length.value,
         seven_bit=tuple(range(item.offset, item.end)) if part.type.byte_bits == 7 else (),
         fault="",
         bounds="" if is_start else " || ".join(bounds),
-        is_length=False,
+        is_length=length is not None,
         identifies=any(view.identifies for view in members),
         tells_sizes=any(view.tells_sizes for view in members),
     )
@@ -275,8 +276,11 @@ def length_of(plan: FramePlan) -> LengthView | None:
     if plan.length is None:
         return None
     part = plan.length.part
-    is_digits = part.type.text is not None
-    held = part.type.width if is_digits else part.type.byte_bits * part.type.size
+    held = part.type.byte_bits * part.type.size
+    if part.type.text is not None:
+        held = part.type.width
+    elif part.type.within is not None:
+        held = part.type.bits
     return LengthView(
         least=part.least,
         greatest=min(plan.length.greatest, (1 << held) - 1),

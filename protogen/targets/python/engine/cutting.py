@@ -231,7 +231,8 @@ class _Cutter(ChecksumFunction):
         assert length is not None
         counted = length.base + length.optional
         less = f" - {counted}" if counted else ""
-        self.lines.add(f"count = {self.number('data', length.part, 'at')}{less}")
+        number = self.number("data", length.part, "at")
+        self.lines.add(f"count = {bracketed(number) if less else number}{less}")
         if self.plan.optional_size:
             with self.lines.block(f"if count == {-length.optional}:"):
                 self.lines.add(f"end = {self._place(around - self.plan.optional_size)}")
