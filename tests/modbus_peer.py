@@ -1,15 +1,19 @@
-"""What pymodbus makes of the messages of Modbus RTU."""
+"""What pymodbus makes of the messages of Modbus."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import count
 from typing import Any
 
 import msgspec
-from library_support import peer_module
+from compiled import protocol_of
+from library_support import cases_of, peer_module
 
+from protogen.copying import replace
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
+from protogen.library import FOLDER
 
 ENDPOINTS = ["client", "server"]
 DIAGNOSTICS = {
@@ -281,14 +285,16 @@ RESPONSES = {
 
 
 class Pymodbus:
-    """Its framer for RTU, and its classes of messages."""
+    """A framer of it, `rtu` or `ascii`, and its classes of messages."""
 
-    def __init__(self) -> None:
-        rtu: Any = peer_module("pymodbus.framer.rtu")
+    def __init__(self, framing: str) -> None:
+        framers: Any = peer_module("pymodbus.framer")
         pdu: Any = peer_module("pymodbus.pdu")
+        framer = framers.FRAMER_NAME_TO_CLASS[framers.FramerType(framing)]
+        self._is_rtu = framing == "rtu"
         self._exception = pdu.ExceptionResponse
         self._decoders = {name: pdu.DecodePDU(name == "client") for name in ENDPOINTS}
-        self._framers = {name: rtu.FramerRTU(self._decoders[name]) for name in ENDPOINTS}
+        self._framers = {name: framer(self._decoders[name]) for name in ENDPOINTS}
 
     def frame(self, case: Case) -> bytes:
         framer, address = self._framers[case.sender], case.parts["address"]
@@ -344,7 +350,7 @@ class Pymodbus:
     def values(self, case: Case, frame: bytes) -> Values:
         if not is_read(case):
             return case.values
-        if is_cut(case):
+        if not self._is_rtu or is_cut(case):
             used, pdu = self._framers[case.sender].handleFrame(frame, 0, 0)
             assert used == len(frame)
             assert pdu.dev_id == case.parts["address"]
@@ -363,11 +369,16 @@ class Pymodbus:
         return {"mei_type": pdu.sub_function_code, "data": identification(case, pdu)}
 
     def found(self, endpoint: str, data: bytes) -> Iterator[bytes]:
-        """It takes one frame of what comes between two silences."""
+        """It takes one frame of what comes between two silences, or behind a colon."""
         framer = self._framers[endpoint]
-        _, address, _, pdu = framer.decode(data)
-        if pdu and self._decoders[endpoint].decode(pdu) is not None:
-            yield framer.encode(pdu, address, 0)
+        bursts = [data] if self._is_rtu else [b":" + line for line in data.split(b":")[1:]]
+        for burst in bursts:
+            try:
+                _, address, _, pdu = framer.decode(burst)
+            except ValueError:  # It does not expect an address of other characters than digits.
+                continue
+            if pdu and self._decoders[endpoint].decode(pdu) is not None:
+                yield framer.encode(pdu, address, 0)
 
 
 def kinds(case: Case) -> dict[str, Kind]:
@@ -419,3 +430,34 @@ def is_cut(case: Case) -> bool:
     if case.values.get("sub_function") == 0:
         return len(case.values["data"]["value"]) == 1
     return case.message != "fifo_queue"
+
+
+def understood(case: Case) -> Case:
+    """The case, with what pymodbus makes of it: less than the document leaves open."""
+    values = case.values
+    if case.message == "write_multiple_coils":
+        states = bits_of(values["coils"]["states"])[: values["quantity"]]
+        values = {**values, "coils": {"states": bytes_of(states).hex()}}
+    elif "state" in values:
+        values = {**values, "state": 0 if values["state"] % 2 else 0xFFFF}
+    elif case.message == "server_id":
+        data = values["data"][:-2] + ("ff" if values["bytes"] % 2 else "00")
+        values = {"bytes": len(data) // 2, "data": data}
+    elif "objects" in values.get("data", ()):
+        objects = {item["id"]: item for item in values["data"]["objects"]}
+        data = {**values["data"], "count": len(objects), "objects": list(objects.values())}
+        values = {**values, "data": data}
+    return replace(case, values=values)
+
+
+def cases_from(name: str, endpoint: str, messages: list[str] | None = None) -> list[Case]:
+    """Values that pymodbus can say, of some messages or of all: it also reads 500 at least."""
+    if messages is None:
+        sender = protocol_of(FOLDER / f"{name}.yaml").sender(endpoint)
+        messages = [message.name for message in sender.messages]
+    drawn: list[Case] = []
+    seeds = count(1)
+    while sum(map(is_read, drawn)) < 500:
+        cases = cases_of(name, messages, next(seeds))
+        drawn += [understood(case) for case in cases if case.sender == endpoint]
+    return drawn

@@ -1,0 +1,44 @@
+"""Modbus ASCII, beside pymodbus."""
+
+from __future__ import annotations
+
+import pytest
+from compiled import module_at
+from library_support import compare_frames, compare_recovery, encoded
+from modbus_peer import ENDPOINTS, Pymodbus, cases_from
+
+from protogen.library import FOLDER
+
+NAME = "modbus_ascii"
+PEER = "pymodbus"
+
+
+@pytest.fixture(scope="module")
+def peer() -> Pymodbus:
+    return Pymodbus("ascii")
+
+
+@pytest.mark.parametrize("endpoint", ENDPOINTS)
+def test_both_make_and_read_the_same_frames(peer: Pymodbus, endpoint: str) -> None:
+    compare_frames(NAME, peer, cases_from(NAME, endpoint))
+
+
+@pytest.mark.parametrize("endpoint", ENDPOINTS)
+def test_no_frame_is_lost_that_it_finds(peer: Pymodbus, endpoint: str) -> None:
+    compare_recovery(NAME, endpoint, peer, cases_from(NAME, endpoint))
+
+
+@pytest.mark.parametrize("endpoint", ENDPOINTS)
+def test_digits_in_small_letters_are_read_too(peer: Pymodbus, endpoint: str) -> None:
+    decoder = module_at(FOLDER / f"{NAME}.yaml").Decoder(endpoint)
+    for case in cases_from(NAME, endpoint)[::5]:
+        frame = encoded(NAME, case)
+        (event,) = decoder.feed(frame.lower())
+        assert case.message == event.message.NAME
+        assert peer.values(case, frame.lower()) == case.values
+
+
+def test_a_frame_that_is_broken_off_hides_none() -> None:
+    whole = b":110600010003E5\r\n"
+    *_, event = module_at(FOLDER / f"{NAME}.yaml").Decoder("client").feed(b":1106" + whole)
+    assert event.raw == whole
