@@ -8,8 +8,18 @@ from functools import lru_cache
 
 
 def bracketed(expression: str) -> str:
-    """An expression that an operator may stand beside."""
-    return f"({expression})" if " " in expression else expression
+    """An expression that an operator may stand beside: a call or an index is one as it is."""
+    return f"({expression})" if _has_operator(expression) else expression
+
+
+def _has_operator(expression: str) -> bool:
+    """True if blanks stand outside of all brackets, where an operator is between them."""
+    depth = 0
+    for character in expression:
+        depth += (character in "([") - (character in ")]")
+        if character == " " and not depth:
+            return True
+    return False
 
 
 def number(value: Fraction | int) -> str:
