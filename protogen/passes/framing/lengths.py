@@ -39,12 +39,13 @@ class Lengths:
 
     def check_number(self, parts: Sequence[Part | None]) -> None:
         """Report a length behind another one."""
-        found: LengthPart | None = None
-        for holder in filter(None, parts):
-            for part in written_apart([holder]):
-                if isinstance(part, LengthPart) and found is not None:
-                    own = () if part.name == holder.name else ("bits", part.name)
-                    text = f"the frame already has a length: `{found.name}`"
-                    self._context.error_at_key("PG133", (*self._loc, holder.name, *own), text)
-                elif isinstance(part, LengthPart):
-                    found = part
+        lengths = [
+            (holder.name, part.name)
+            for holder in filter(None, parts)
+            for part in written_apart([holder])
+            if isinstance(part, LengthPart)
+        ]
+        for holder, name in lengths[1:]:
+            place = (holder,) if name == holder else (holder, "bits", name)
+            text = f"the frame already has a length: `{lengths[0][1]}`"
+            self._context.error_at_key("PG133", (*self._loc, *place), text)
