@@ -30,7 +30,9 @@ check: $(INSTALLED)
 test: check
 	@$(call tested,-m "not slow")
 
-# The tests that `make test` leaves out: the same on more schemas, machines and seeds.
+# The tests that `make test` leaves out: the same on more schemas, machines and seeds, and, like CI,
+# with more examples of each property.
+test-rest: export HYPOTHESIS_PROFILE ?= ci
 test-rest: $(INSTALLED)
 	@$(call tested,-m slow)
 
