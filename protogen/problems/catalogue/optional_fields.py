@@ -3,24 +3,13 @@
 from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
-from protogen.problems.catalogue.sketch import with_fields, with_framed
+from protogen.problems.catalogue.sketch import with_fields, with_payload
 
-_BY_IDENTITY = """\
-start: {literal: 0x55, unprotected: accepted}
-id: {type: uint8, id: true}
-payload: {}
-crc: {type: uint16, algorithm: CRC-16/KERMIT, covers: id..payload}
-"""
-_LENGTH = "length: {type: uint8, counts: payload}\n"
 _STATUS = """\
 status:
   id: 1
   from: robot
   fields: {angle: uint16, speed: {type: uint16, optional: true}}
-"""
-_ACCEPTED = """\
-decisions:
-  accepted: {question: A sync in the data?, document: Silent., choice: Accept it., because: CRC.}
 """
 
 OPTIONAL_FIELD_CODES: tuple[Code, ...] = (
@@ -71,7 +60,7 @@ A receiver tells by the end of the payload whether an optional field is there. W
 neither a length part nor an end, the payload ends where its fields do, and nothing tells a field
 that was left out from one that is still to come.
 """,
-        with_framed(_BY_IDENTITY, _STATUS, more=_ACCEPTED),
-        with_framed(_LENGTH + _BY_IDENTITY, _STATUS, more=_ACCEPTED),
+        with_payload("", _STATUS, length=False),
+        with_payload("", _STATUS),
     ),
 )

@@ -44,6 +44,8 @@ def type_text(step: AnyStep, region: RegionStep | None = None) -> str:
             return f"depends on {code(step.expression.text)}"
         case RecordStep():
             return "struct" + _packed(step)
+        case OptionalStep() if step.member:
+            return f"{type_text(step.step, region)}, may be left out"
         case OptionalStep():
             return f"{type_text(step.step, region)}, if {code(step.expression.text)}"
         case RegionStep():
