@@ -21,7 +21,7 @@ def with_appended(
     """The changes of a message; fields that were appended have a rule of their own.
 
     `plans` are the frames of OLD and NEW that carry it. Old receivers leave what is behind the
-    fields that they know; new ones take it for zeros that were left out, or see that it is optional.
+    fields that they know; new ones take it for zeros, or for fields, that were left out.
     """
     behind = other.fields[len(message.fields) :]
     is_cut = bool(plans) and all(_is_cut(old, message, other) for old, _ in plans)
@@ -37,7 +37,7 @@ def with_appended(
 
 def _is_cut(old: FramePlan, message: Message, other: Message) -> bool:
     """True if old receivers leave what new payloads have more."""
-    before, longest = message.sizes.fixed, old.frame.payload.longest
+    before, longest = message.cut_size, old.frame.payload.longest
     if before is None or longest is None:
         return False
     return before <= other.sizes.greatest <= longest

@@ -121,6 +121,8 @@ def message_class(item: Message, identity: str, names: Names) -> RecordClass:
     """A message; `identity` says in words what its identity is."""
     values = tuple_of(f"0x{value:02X}" for value in item.identity)
     several = () if item.identities is None else (f"IDENTITIES = {_identities(item.identities)}",)
+    is_told = item.cut_size is None or item.sizes.fixed is not None
+    cut = () if is_told else (f"CUT_SIZE = {item.cut_size}",)
     constants = (
         f"NAME = {text(item.name)}",
         f"SPEC_HASH = {text(item.spec_hash)}",
@@ -128,6 +130,7 @@ def message_class(item: Message, identity: str, names: Names) -> RecordClass:
         f"IDENTITY = {values}" + (f"  # {identity}" if identity else ""),
         *several,
         f"SIZES = {_sizes(item.sizes)}",
+        *cut,
     )
     doc = docstring(describing.message(item), _INDENT)
     return _record(item, "_rt.Message", doc, constants, names)
