@@ -285,6 +285,8 @@ def spoilings(
         if field.const is None and field.name not in used and is_there:
             for value in others(field.type, values[field.name], used, scope):
                 yield {**values, field.name: value}
+        if field.behind and values[field.name] is not None:
+            yield {**values, field.behind: None}
 
 
 def counting_names(fields: Sequence[Field]) -> frozenset[str]:
