@@ -82,6 +82,8 @@ class _Reader:
         for field in fields:
             if field.when is not None and not worked_out(field.when, inner):
                 continue
+            if field.optional and not self._left:
+                continue
             found = self._of_field(field, inner)
             if field.const is not None and not _is(found, field.const):
                 raise Wrong("value")

@@ -58,7 +58,7 @@ def _structure(members: list[tuple[str, Any]]) -> type[ctypes.Structure]:
 def _members(fields: Sequence[Field], field: Field) -> list[tuple[str, Any]]:
     if field.const is not None:
         return []
-    found = []
+    found = [(flag_name(fields, field), ctypes.c_bool)] if field.optional else []
     if isinstance(_extent(field.type), Fill | Until | Marked):
         found.append((count_name(fields, field), _counting(_extent(field.type))))
     if has_room(field.type):
@@ -84,6 +84,12 @@ def count_name(fields: Sequence[Field], field: Field) -> str:
         f"{field.name}_{'count' if isinstance(field.type, Array) else 'size'}",
         {other.name for other in fields},
     )
+
+
+def flag_name(fields: Sequence[Field], field: Field) -> str:
+    """Whether a field that may be left out is there."""
+    counts = {count_name(fields, other) for other in fields}
+    return _free(f"has_{field.name}", {other.name for other in fields} | counts)
 
 
 def rest_name(type_: Switch) -> str:
@@ -155,6 +161,10 @@ def fill(record: Any, fields: Sequence[Field], values: Mapping[str, Any], scope:
         if field.when is not None and not worked_out(field.when, inner):
             continue
         value = field.const if field.const is not None else values[field.name]
+        if field.optional:
+            _set(record, flag_name(fields, field), value is not None)
+            if value is None:
+                continue
         if isinstance(field.type, Integer | Struct):
             inner[field.name] = value
         if field.const is not None:
@@ -234,7 +244,9 @@ def read(record: Any, fields: Sequence[Field], scope: Scope) -> Values:
     inner = dict(scope)
     found: Values = {}
     for field in fields:
-        if field.when is not None and not worked_out(field.when, inner):
+        if (field.when is not None and not worked_out(field.when, inner)) or (
+            field.optional and not getattr(record, flag_name(fields, field))
+        ):
             found[field.name] = None
         elif field.const is not None:
             found[field.name] = _shown(field.type, field.const)

@@ -11,7 +11,7 @@ from compiled import module_at
 from expression_oracle import worked_out
 
 from protogen.capture import Column, Tables
-from protogen.capture.schema import Choice, Number, Record, Shape, Text
+from protogen.capture.schema import OF_MESSAGES, Choice, Number, Record, Shape, Text
 from protogen.model.expressions import Expression
 from protogen.runtime.values import as_dict
 
@@ -48,7 +48,7 @@ def assert_same_messages(found: Tables, expected: Tables, name: str) -> None:
 
 def _shown(tables: Tables, name: str, row: Any) -> tuple[Any, ...]:
     columns = tables.schema.messages[name].columns
-    head = [row[c.name].item() for c in columns if c.role not in ("field", "count")]
+    head = [row[c.name].item() for c in columns if c.role not in OF_MESSAGES]
     return (*head, fields_of(tables, name, row))
 
 

@@ -281,9 +281,12 @@ def spoilings(
     scope = outer | values
     for field in fields:
         is_there = field.when is None or worked_out(field.when, scope)
+        is_there = is_there and not (field.optional and values[field.name] is None)
         if field.const is None and field.name not in used and is_there:
             for value in others(field.type, values[field.name], used, scope):
                 yield {**values, field.name: value}
+        if field.behind and values[field.name] is not None:
+            yield {**values, field.behind: None}
 
 
 def counting_names(fields: Sequence[Field]) -> frozenset[str]:

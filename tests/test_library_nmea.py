@@ -50,6 +50,8 @@ class Receiver:
     def _text(self, path: str, value: int) -> str:
         """The text of a value: positions, times and dates are written by pynmeagps."""
         name = path.rpartition(".")[2]
+        if name == "system":
+            return f"{value:X}" if value <= 0xF else ""
         if name in FRACTIONS:
             front, behind = FRACTIONS[name]
             is_there = value != 10 ** (front + behind)
@@ -96,6 +98,8 @@ def typed_of(name: str, value: int) -> Any:
 def raw_of(path: str, value: Any) -> int:
     """The raw number of what pynmeagps reads."""
     name = path.rpartition(".")[2]
+    if name == "system":
+        return int(value or "10", 16)
     if name in FRACTIONS:
         front, behind = FRACTIONS[name]
         return int(10 ** (front + behind)) if value == "" else round(value * 10**behind)
@@ -115,7 +119,7 @@ def raw_of(path: str, value: Any) -> int:
 
 
 def refilled(case: Case, value_of: Callable[[str, int], Any]) -> Values:
-    """The values with others in their places, by the path of each."""
+    """The values with others in their places, by the path of each; those left out stay so."""
     made: Values = {}
     for name, value in case.values.items():
         path = f"{case.message}.{name}"
@@ -127,7 +131,7 @@ def refilled(case: Case, value_of: Callable[[str, int], Any]) -> Values:
                 for item in value
             ]
         else:
-            made[name] = value_of(path, value)
+            made[name] = None if value is None else value_of(path, value)
     return made
 
 

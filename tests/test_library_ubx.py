@@ -61,7 +61,7 @@ ITEMS = {"cfg_valset", "cfg_valget"}
 ONE_BLOCK = {"mon_io": "ports", "cfg_inf": "protocols"}
 """Messages of which pyubx2 has but one block, and the array that we have of them."""
 WITHOUT = {
-    *(("cfg_cfg_device", f"{what}mask") for what in ("clear", "save", "load")),
+    *(("cfg_cfg", f"{what}mask") for what in ("clear", "save", "load")),
     *(("cfg_navx5", "aopcfg"), ("nav_aopstatus", "aopcfg"), ("cfg_senif", "pioconf")),
     *(("esf_raw", "data"), ("mon_spt", "drvver"), ("cfg_nmea_12", "gnsstofilter")),
 }
@@ -69,7 +69,6 @@ WITHOUT = {
 LARGE = 300
 """Bytes of a frame from which on pyubx2 takes too long to make it of values."""
 UNKNOWN = {
-    "cfg_cfg": "It always has a mask of devices.",
     "cfg_msg_rate": "It reads the eight bytes of the longer message.",
     "cfg_fixseed": "Its messages have a `length` of their own.",
     "sec_uniqid_v2": "Its table has it, but it reads version 1.",
@@ -323,6 +322,8 @@ def is_known(case: Case) -> bool:
         return False
     if name in ("cfg_nmea_4", "cfg_nmea_12"):
         return endpoint_of("ubx", case) == "receiver"  # It has only the newest to be sent.
+    if name == "cfg_cfg":  # To it, the mask of devices is always there.
+        return values["device_mask"] is not None
     if name in ONE_BLOCK:
         return len(values[ONE_BLOCK[name]]) == 1
     if name in ITEMS:  # It takes the highest bit of a key, which is reserved, for one of the size.

@@ -39,6 +39,7 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import NumberType, counting_bits
 from protogen.model.types import Text as TextType
 
+_FLAG = Number("?", 1)
 _BYTE = Number("u1", 1)
 _WORD = Number("u4", 4)
 _LONG = Number("u8", 8)
@@ -149,6 +150,15 @@ def _columns(
         if isinstance(step, OptionalStep):  # Outside of a region, where there are both.
             by = step.condition
             when = by if isinstance(by, int) else _referred(by, outer)
+            if step.member:
+                when = _free(step.member, taken)
+                yield Column(
+                    name=when,
+                    role="presence",
+                    source=step.name,
+                    shape=_FLAG,
+                    field=step.field,
+                )
         if isinstance(held, BytesStep | RepeatStep) and held.count.member:
             yield Column(
                 name=_free(held.count.member, taken),

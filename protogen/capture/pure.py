@@ -157,7 +157,9 @@ def _fill(found: Rows, columns: Sequence[Column], records: Values, scope: Scope)
     for column in columns:
         name = attribute(column.source)
         values = [getattr(record, name) for record in records]
-        if column.role == "count":
+        if column.role == "presence":
+            found[column.name] = [value is not None for value in values]
+        elif column.role == "count":
             found[column.name] = [0 if value is None else len(value) for value in values]
         elif column.when is None:
             found[column.name] = _array(column, column.dimensions, values, scope)

@@ -20,9 +20,14 @@ from protogen.model.messages import Message
 from protogen.model.types import Field, NumberType, Type
 from protogen.runtime.errors import Reason
 
-Role = Literal["offset", "sequence", "size", "part", "field", "count", "reason", "payload"]
+Role = Literal[
+    "offset", "sequence", "size", "part", "field", "count", "presence", "reason", "payload"
+]
 """Contents of a column: about the event, a part of the frame, a field, the number of elements or
-bytes of the field behind it, the reason of invalid bytes, or the place of an unknown payload."""
+bytes of the field behind it, whether the field behind it is there, the reason of invalid bytes, or
+the place of an unknown payload."""
+OF_MESSAGES: frozenset[Role] = frozenset({"field", "count", "presence"})
+"""Contents of the columns of a message."""
 
 
 class InvalidReason(IntEnum):
@@ -228,7 +233,7 @@ class TableSchema(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def fields(self) -> tuple[Column, ...]:
         """The message's columns alone."""
-        return tuple(item for item in self.columns if item.role in ("field", "count"))
+        return tuple(item for item in self.columns if item.role in OF_MESSAGES)
 
     @property
     def holes(self) -> tuple[range, ...] | None:

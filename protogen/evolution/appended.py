@@ -21,22 +21,26 @@ def with_appended(
     """The changes of a message; fields that were appended have a rule of their own.
 
     `plans` are the frames of OLD and NEW that carry it. Old receivers leave what is behind the
-    fields that they know, and new ones take it for zeros that were left out.
+    fields that they know; new ones take it for zeros, or for fields, that were left out.
     """
-    is_safe = bool(plans) and all(_passes(*pair, message, other) for pair in plans)
-    behind = other.fields[len(message.fields) :] if is_safe else ()
-    names = {field.name for field in behind if _may_be_zeros(field)}
+    behind = other.fields[len(message.fields) :]
+    is_cut = bool(plans) and all(_is_cut(old, message, other) for old, _ in plans)
+    is_filled_up = (
+        is_cut and other.sizes.fixed is not None and all(new.is_trimmed for _, new in plans)
+    )
+    names = {field.name for field in behind if is_cut and field.optional}
+    names |= {field.name for field in behind if is_filled_up and _may_be_zeros(field)}
     for change in changes:
         is_appended = change.rule == "field-added" and change.path in names
         yield replace(change, rule="field-appended") if is_appended else change
 
 
-def _passes(old: FramePlan, new: FramePlan, message: Message, other: Message) -> bool:
-    """True if receivers take the other side's payloads, however much longer or shorter."""
-    before, after, longest = message.sizes.fixed, other.sizes.fixed, old.frame.payload.longest
-    if before is None or after is None or longest is None:
+def _is_cut(old: FramePlan, message: Message, other: Message) -> bool:
+    """True if old receivers leave what new payloads have more."""
+    before, longest = message.cut_size, old.frame.payload.longest
+    if before is None or longest is None:
         return False
-    return before <= after <= longest and new.is_trimmed
+    return before <= other.sizes.greatest <= longest
 
 
 def _may_be_zeros(field: Field) -> bool:

@@ -68,7 +68,8 @@ class FieldComparison(msgspec.Struct, frozen=True):
     ) -> Iterator[Change]:
         types = TypeComparison(self._change, self.compare, renamed)
         yield from types.compare(old.type, new.type, path)
-        if (old.when and types.now(old.when)) != new.when:
+        is_other = (old.when and types.now(old.when)) != new.when
+        if is_other or old.optional != new.optional:
             words = named(_condition(old), _condition(new))
             yield self._change("field-presence", path, words)
         yield from types.compare_regions(old.region, new.region, path)
@@ -188,6 +189,8 @@ def _shown(value: object) -> str:
 
 
 def _condition(field: Field) -> str:
+    if field.optional:
+        return "there if it is not left out"
     return "always there" if field.when is None else f"there if {field.when.text}"
 
 

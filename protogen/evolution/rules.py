@@ -129,7 +129,7 @@ RULES: tuple[Rule, ...] = (
     Rule(
         "field-appended",
         _N,
-        "a message has one field more, which old receivers leave and new ones may take for zeros",
+        "a message has one field more, which old receivers leave and new ones can do without",
         "nothing",
     ),
     Rule("field-deleted", _W, "a message has one field less", _BOTH),

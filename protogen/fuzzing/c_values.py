@@ -118,14 +118,16 @@ class _Exchange(ABC):
             case RepeatStep():
                 return self._elements(step, given)
             case ChooseStep() | OptionalStep():
-                chosen = self._chosen(step)
+                chosen = self._chosen(step, given)
                 return None if chosen is None else self._value(chosen, given)
             case RestStep():
                 data = bytes.fromhex(given or "")
                 return self.octets(data, self._filled(step.count, len(data))).hex()
 
-    def _chosen(self, step: ChooseStep | OptionalStep) -> AnyStep | RestStep | None:
+    def _chosen(self, step: ChooseStep | OptionalStep, given: Any) -> AnyStep | RestStep | None:
         """The step that there is; None where there is none, or nothing in it."""
+        if isinstance(step, OptionalStep) and step.member:
+            return step.step if self._number(int(given is not None), 1) else None
         if isinstance(step, OptionalStep):
             return step.step if said(step.condition, self._records) else None
         chosen = step.case(said(step.selector, self._records))

@@ -55,6 +55,11 @@ class Choices(msgspec.Struct, frozen=True):
     draw: Callable[[Random], Any]
 
 
+def any_of(values: Sequence[Any]) -> Choices:
+    """Choices for what is one of some values, all of which are boundaries."""
+    return Choices(values, lambda random: random.choice(values))
+
+
 def part_choices(part: CounterPart | ValuePart) -> Choices:
     """Choices for a part of the frame that the caller gives."""
     if isinstance(part, ChoicePart):
@@ -180,10 +185,10 @@ def _needs(step: AnyStep, level: int) -> Iterator[tuple[Reference, Need]]:
 
 
 def _needs_around(step: OptionalStep | RegionStep) -> Iterator[tuple[Reference, Need]]:
-    if isinstance(step, OptionalStep):
-        yield from _needs_of_formula(step.condition, (0, 1))
-    else:
+    if isinstance(step, RegionStep):
         yield from _needs_of_count(step.region)
+    elif not step.member:
+        yield from _needs_of_formula(step.condition, (0, 1))
 
 
 def _needs_of_count(count: Count) -> Iterator[tuple[Reference, Need]]:

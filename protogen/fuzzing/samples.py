@@ -15,6 +15,7 @@ from protogen.fuzzing.choices import (
     SEVEN_BITS,
     Choices,
     Need,
+    any_of,
     bytes_choices,
     constant_value,
     count_choices,
@@ -197,6 +198,10 @@ class _Sampler:
         self._records: list[Values] = []
         self._said_of: set[tuple[int, str]] = set()
         """Numbers that told something already, by their records."""
+        self._going_on = 0
+        """Fields that are still to come, of those that may be left out at the end."""
+        self._tails = 1
+        """How many ends a message can have."""
         self._mark: Mark | None = None
         """What the next record says of being the last, where it has to."""
 
@@ -206,6 +211,10 @@ class _Sampler:
         needs = needs_of(steps, level)
         values: Values = {}
         self._records.append(values)
+        optional = sum(isinstance(step, OptionalStep) and bool(step.member) for step in steps)
+        if optional:
+            self._tails = optional + 1
+            self._going_on = chooser.choose(any_of(range(optional, -1, -1)))
         for step in steps:
             values[step.name] = self._value(step, chooser, needs.get((level, step.name)))
             if mark is not None and step.name == mark.operand.path[0]:
@@ -224,6 +233,10 @@ class _Sampler:
                 return self._array(step, chooser)
             case ChooseStep():
                 return self._case(step, chooser)
+            case OptionalStep() if step.member:
+                self._going_on -= 1
+                inside = chooser.inside(self._tails)
+                return self._value(step.step, inside) if self._going_on >= 0 else None
             case OptionalStep():
                 # What is there half of the time takes twice the rounds.
                 is_there = self._told(step.condition)

@@ -253,10 +253,13 @@ class PayloadPart(Part, frozen=True, kw_only=True):
         """True if receivers fill payloads up, or cut them, to the size that the message has."""
         return self.is_trimmed or self.is_cut
 
-    def carried(self, sizes: SizeSet) -> SizeSet:
-        """The sizes in which a receiver takes the payloads of a message that has these itself."""
+    def carried(self, sizes: SizeSet, cut_size: int | None) -> SizeSet:
+        """The sizes in which a receiver takes the payloads of a message that has these itself.
+
+        It cuts longer ones to so many bytes, or does not: None.
+        """
         least = 0 if self.is_trimmed else sizes.least
-        if self.longest is not None and sizes.fixed is not None:
+        if self.longest is not None and cut_size is not None:
             return SizeSet.between(least, max(self.longest, sizes.greatest))
         return SizeSet.between(0, sizes.greatest) if self.is_trimmed else sizes
 

@@ -75,6 +75,16 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return plan_of(self.fields)
 
     @property
+    def cut_size(self) -> int | None:
+        """Bytes that receivers know of a longer payload; None where its fields say how long it is.
+
+        Beside those of a fixed size, these are messages whose size varies by what is left out.
+        """
+        if all(field.sizes_in_front.fixed is not None for field in self.fields):
+            return self.sizes.greatest
+        return self.sizes.fixed
+
+    @property
     def told_by(self) -> Identities:
         """All identities that it has."""
         return self.identities or Identities.only(self.identity)

@@ -160,8 +160,8 @@ class IdentityGroup(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def own(self) -> int | None:
-        """Size that each of these messages has, whatever frames carry of it; None: it varies."""
-        sizes = {message.sizes.fixed for message in self.messages}
+        """Size that receivers know of each of these messages; None: their fields say it."""
+        sizes = {message.cut_size for message in self.messages}
         return sizes.pop() if len(sizes) == 1 else None
 
     @property

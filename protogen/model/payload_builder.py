@@ -52,6 +52,7 @@ from protogen.model.types import (
     count_name,
     is_text,
     packing_of,
+    presence_name,
     total,
 )
 
@@ -69,6 +70,8 @@ def plan_of_struct(struct: Struct) -> PayloadPlan:
 
 _NOTHING: frozenset[Check] = frozenset()
 _NO_NAMES: frozenset[str] = frozenset()
+_PRESENCE = Integer(bits=1, role="bool")
+"""The type of what says in a record whether something is there."""
 _Scope = Mapping[str, "int | Reference"]
 """The numbers in front, some of which are constants; of a member of a struct, `header.count`."""
 _Key = tuple[str, int, bool, frozenset[str], "tuple[tuple[str, int | Reference], ...]"]
@@ -100,7 +103,11 @@ class _Builder:
             if isinstance(step, IntegerStep) and field.name in needed[index]:
                 step = replace(step, is_needed=True)
             step = _constant(field, step) if field.const is not None else step
-            steps.append(step if field.when is None else self._optional(field, field.when, step))
+            if field.when is not None:
+                step = self._optional(field, field.when, step)
+            elif field.optional:
+                step = self._left_out(fields, field, step, steps)
+            steps.append(step)
             for rest in _inside(needed[index], field.name) | {""}:
                 self._remember(_member(field, rest), f"{field.name}.{rest}" if rest else field.name)
         return tuple(steps)
@@ -216,6 +223,18 @@ class _Builder:
             condition=self._formula(when),
             step=step,
         )
+
+    def _left_out(
+        self, fields: Sequence[Field], field: Field, step: AnyStep, front: Sequence[AnyStep]
+    ) -> OptionalStep:
+        """The step of a field behind which, or in front of which, the payload may end."""
+        member = presence_name(fields, field)
+        self._scope[member] = Reference(member, self._level, _PRESENCE)
+        before = front[-1] if front else None
+        behind = before if isinstance(before, OptionalStep) and before.member else None
+        found = self._optional(field, Operand((member,)), step)
+        refusable = found.is_refusable or behind is not None
+        return replace(found, is_refusable=refusable, member=member, behind=behind)
 
     def _inner(self, type_: Struct, name: str, is_last: bool) -> tuple[AnyStep, ...]:
         """The steps of a struct, made once for all places where they are the same."""

@@ -313,13 +313,18 @@ class ChooseStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
 
 
 class OptionalStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
-    """A step that is there or not, as earlier numbers say."""
+    """A step that is there or not, as earlier numbers or the payload's end say."""
 
     expression: Expression
     """The condition, as the schema has it."""
     condition: int | Formula
     """The condition; of constants 0 where it does not hold."""
     step: AnyStep
+    member: str = ""
+    """Name for whether it is there in a record, where the payload's end says it; the condition is
+    that."""
+    behind: OptionalStep | None = None
+    """What has to be there, too: the step in front, if that is one that the end leaves out."""
 
     @cached_property
     def known_size(self) -> int | None:

@@ -65,6 +65,7 @@ __all__ = [
     "is_integer",
     "is_text",
     "packing_of",
+    "presence_name",
     "storage_bits",
     "total",
 ]
@@ -319,6 +320,10 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     unknown: bool = False
     when: Expression | None = None
     """The condition on which the field is there; None: it always is."""
+    optional: bool = False
+    """True if only the payload's end says whether it is there: all behind it is such a field."""
+    behind: str = ""
+    """The optional field in front, without which this one is not there either."""
     region: Fixed | Counted | None = None
     """Bytes that what it holds has to take, just as many, where they are told."""
     renamed_from: str | None = None
@@ -328,8 +333,23 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def sizes(self) -> SizeSet:
         """Wire bytes; none where the field is not there."""
-        sizes = self.type.sizes if self.region is None else _within(self.type.sizes, self.region)
-        return sizes if self.when is None else sizes | SizeSet.exactly(0)
+        sizes = self.sizes_there
+        return sizes | SizeSet.exactly(0) if self.may_be_absent else sizes
+
+    @property
+    def sizes_there(self) -> SizeSet:
+        """Wire bytes where the field is there."""
+        return self.type.sizes if self.region is None else _within(self.type.sizes, self.region)
+
+    @property
+    def sizes_in_front(self) -> SizeSet:
+        """Wire bytes in front of the next field, without which nothing optional is left out."""
+        return self.sizes_there if self.optional else self.sizes
+
+    @property
+    def may_be_absent(self) -> bool:
+        """True if the field is not always there."""
+        return self.when is not None or self.optional
 
     @property
     def needs(self) -> frozenset[str]:
@@ -378,7 +398,8 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def constant_number(self) -> int | None:
         """The value of a constant integer, which is always there."""
-        if self.when is None and isinstance(self.type, Integer) and isinstance(self.const, int):
+        is_integer_there = isinstance(self.type, Integer) and not self.may_be_absent
+        if is_integer_there and isinstance(self.const, int):
             return int(self.const)
         return None
 
@@ -392,8 +413,10 @@ def _within(sizes: SizeSet, region: Fixed | Counted) -> SizeSet:
 def total(fields: tuple[Field, ...]) -> SizeSet:
     """Sizes of fields that follow each other."""
     sizes = SizeSet.exactly(0)
-    for field in fields:
-        sizes += field.sizes
+    for field in reversed(fields):
+        sizes += field.sizes_in_front
+        if field.optional:  # As is all behind it.
+            sizes |= SizeSet.exactly(0)
     return sizes
 
 
@@ -413,3 +436,9 @@ def count_name(fields: Sequence[Field], field: Field) -> str:
     """Name beside those of `fields` for the number of elements or bytes of one that has it."""
     word = "count" if isinstance(field.type, Array) else "size"
     return free_name(f"{field.name}_{word}", {item.name for item in fields})
+
+
+def presence_name(fields: Sequence[Field], field: Field) -> str:
+    """Name beside those of `fields`, and of their counts, for whether an optional one is there."""
+    counts = {count_name(fields, item) for item in fields if item.has_count}
+    return free_name(f"has_{field.name}", {item.name for item in fields} | counts)

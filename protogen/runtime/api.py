@@ -92,6 +92,7 @@ __all__ = [
     "Numeral",
     "OctetsRule",
     "OpenEnum",
+    "OptionalRule",
     "PartsT_co",
     "PayloadPart",
     "Physical",
@@ -129,6 +130,7 @@ if TYPE_CHECKING:
     from protogen.runtime.payload.records import (
         ArrayRule,
         FieldRules,
+        OptionalRule,
         StructRule,
         SwitchRule,
         WhenRule,
@@ -151,6 +153,7 @@ else:
             ".payload.records": (
                 "ArrayRule",
                 "FieldRules",
+                "OptionalRule",
                 "StructRule",
                 "SwitchRule",
                 "WhenRule",

@@ -73,7 +73,7 @@ class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
     def payload(self) -> bytes:
         """The message's bytes: with zeros that a frame leaves out, without what is not known."""
         payload = payload_of(self.codec, self.raw)
-        return self.codec.layout.payload.fitted(payload, self.message.SIZES.fixed)
+        return self.codec.layout.payload.fitted(payload, self.message.__known__())
 
     def __repr__(self) -> str:
         shown = ("offset", "raw", "sender", "parts", "message")

@@ -200,7 +200,7 @@ def _writer(
         if tables is not None and not tables.are_filled:
             tables.fill()
         payload = payload_of(sender, message.__encode__(encoders, sender.name, *parts))
-        return sender.layout.payload.fitted(payload, message.SIZES.fixed)
+        return sender.layout.payload.fitted(payload, message.__known__())
 
     return write_payload
 

@@ -151,6 +151,11 @@ _FIELD_RULES = (
         _none_of(_WRITTEN),
     ),
     _ONE_KIND_OF_DIGITS,
+    _where(
+        {"required": ["optional"], "properties": {"optional": {"const": True}}},
+        "The end of the payload says whether it is there, and nothing else does.",
+        _none_of(("when", "const", "default")),
+    ),
     _where(_with("switch"), "A switch has nothing to pack.", _none_of(("packed",))),
     _where(
         {**_type_like(f"{INTEGER_PATTERN}|byte|char|bool"), "required": ["type", "packed"]},

@@ -255,6 +255,23 @@ def _elements(draw: st.DrawFn, setting: Setting) -> Built:
     return replace(built, data=data, counts=None, keys=(), operands={})
 
 
+@st.composite
+def optional(draw: st.DrawFn, setting: Setting) -> Built:
+    """A field at the end of a message that may be left out, with a byte at least."""
+    if draw(forms.one_in(5)):
+        most = min(4, setting.budget)
+        extent = {"fill": True, "min": 1, "max": most} if draw(st.booleans()) else most
+        data = {"type": draw(st.sampled_from(["bytes", "ascii"])), "size": extent}
+        built = Built(data, Size(1, most), fills=isinstance(extent, dict))
+    elif setting.budget > 2 and draw(forms.one_in(3)):
+        data = {name: draw(number(replace(setting, budget=1))).data for name in ("one", "other")}
+        built = Built({"fields": data}, Size(2, 2))
+    else:
+        number_ = draw(number(setting))
+        built = replace(number_, data=_without_constants(number_.data))
+    return Built({**built.data, "optional": True}, built.size | NOTHING, fills=built.fills)
+
+
 _STRING = st.sampled_from(["bytes", "ascii"]).map(lambda kind: Built({"type": kind}, Size(1, 1)))
 """A text or bytes, whose elements are bytes."""
 

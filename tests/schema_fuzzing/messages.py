@@ -10,13 +10,16 @@ from hypothesis import strategies as st
 
 from protogen.copying import replace
 from schema_fuzzing import forms
-from schema_fuzzing.fields import structs
+from schema_fuzzing.fields import optional, structs
 from schema_fuzzing.frames import FramePlan
-from schema_fuzzing.names import MESSAGES, fresh, several
+from schema_fuzzing.names import FIELDS, MESSAGES, fresh, several
 from schema_fuzzing.numbers import ORDERS
 from schema_fuzzing.parts import PartPlan, identity_values, is_text, text_of
 from schema_fuzzing.separated import separated
 from schema_fuzzing.setting import Built, Declared, Setting, Size
+
+_TAIL = 8
+"""Bytes that are kept for fields that may be left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,11 +220,32 @@ class _Message:
         if self._whole:
             fields["whole_byte"] = "byte"
             size = Size(1, 1)
-        built: Built = self._draw(structs(setting.behind(size), greatest=5))
+        here = setting.behind(size)
+        if setting.delimited and here.budget >= _TAIL and self._draw(forms.one_in(4)):
+            return self._with_tail(here, fields, size)
+        built: Built = self._draw(structs(here, greatest=5))
         fields.update(built.data)
         if not fields and self._draw(st.booleans()):
             return {}, size
         return {"fields": fields}, size + built.size
+
+    def _with_tail(
+        self, setting: Setting, fields: dict[str, Any], size: Size
+    ) -> tuple[dict[str, Any], Size]:
+        """Fields, and behind them some that may be left out."""
+        inner = replace(setting, last=False, budget=setting.budget - _TAIL)
+        front: Built = self._draw(structs(inner, greatest=3))
+        fields.update(front.data)
+        size += front.size
+        left = replace(setting.behind(front.size), budget=_TAIL)
+        for _ in range(self._draw(st.integers(1, 3))):
+            built: Built = self._draw(optional(left))
+            fields[self._draw(fresh(FIELDS, fields))] = built.data
+            size += built.size
+            left = left.behind(built.size)
+            if left.budget < 1 or built.fills:
+                break
+        return {"fields": fields}, size
 
     def _may_separate(self, setting: Setting) -> bool:
         return setting.delimited and setting.byte_bits == 8 and setting.budget > 2

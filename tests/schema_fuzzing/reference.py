@@ -55,7 +55,8 @@ def payload_bytes(fields: Sequence[Field], values: Mapping[str, Any], outer: Sco
     scope = dict(outer)
     found = b""
     for field in fields:
-        if field.when is None or worked_out(field.when, scope):
+        is_there = field.when is None or worked_out(field.when, scope)
+        if is_there and not (field.optional and values[field.name] is None):
             found += value_bytes(field.type, values[field.name], scope)
         scope[field.name] = values[field.name]
     return found

@@ -57,6 +57,8 @@ def separated(draw: st.DrawFn, budget: int) -> tuple[Any, Built]:
     scope = _Scope(draw, ord(byte) if isinstance(byte, str) else byte, budget, leads=in_front)
     for left in reversed(range(draw(st.integers(1, 5)))):
         scope.add(last=left == 0)
+    if draw(forms.one_in(3)):
+        scope.leave_out(draw(st.integers(1, 2)), first=in_front)
     written: Any = {"byte": byte, "in_front": True} if in_front else byte
     if not in_front and draw(forms.one_in(3)):
         written = {"byte": byte}
@@ -79,6 +81,17 @@ class _Scope:
 
     def built(self) -> Built:
         return Built(self._fields, self._size)
+
+    def leave_out(self, most: int, *, first: bool) -> None:
+        """Have some fields at the end left out, where each is a number behind a separator."""
+        known = list(self._fields)
+        for name in reversed(known[0 if first else 1 :][-most:]):
+            written = self._fields[name]
+            data = {"type": written} if isinstance(written, str) else written
+            if "count" in data or "fields" in data:
+                return
+            self._fields[name] = {**data, "optional": True}
+            self._size = Size(0, self._size.greatest)
 
     def add(self, *, last: bool) -> None:
         """Add a field, with what counts it, if there is room."""

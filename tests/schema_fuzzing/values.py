@@ -103,9 +103,12 @@ def all_parts(frame: Frame, message: Message, given: dict[str, int | str]) -> di
 def _struct(draw: st.DrawFn, fields: Sequence[Field], outer: Scope) -> dict[str, Any]:
     scope = dict(outer)
     found: dict[str, Any] = {}
+    goes_on = True
     for index, field in enumerate(fields):
         uses = list(_uses(field.name, fields[index + 1 :]))
         is_there = field.when is None or worked_out(field.when, scope)
+        goes_on = goes_on and (not field.optional or draw(st.booleans()))
+        is_there = is_there and goes_on
         found[field.name] = draw(_field(field, scope, uses)) if is_there else None
         if field.region is not None and found[field.name] is not None:
             told = plain_name(field.region.by) if isinstance(field.region, Counted) else None

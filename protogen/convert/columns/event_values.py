@@ -26,6 +26,7 @@ def plain_fields(
     for item in fields:
         scope[item.name] = values[item.name]
         is_there = item.when is None or _said(item.when, scope)
+        is_there = is_there and not (item.optional and values[item.name] is None)
         plain[item.name] = _plain(item.type, values[item.name], scope) if is_there else None
     return plain
 

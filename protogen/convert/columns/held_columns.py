@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from protogen.capture.schema import Choice, Column, Dimension, Record
+from protogen.model.expressions import Expression
 from protogen.model.types import Field
 
 
@@ -22,6 +23,16 @@ def held(
 def held_by(item: Field, columns: Iterable[Column]) -> Column | None:
     """The column of a field."""
     return next((it for it in columns if it.role == "field" and it.source == item.name), None)
+
+
+def condition_of(item: Field, columns: Iterable[Column]) -> str | Expression | None:
+    """What says in a row whether a field is there: a column, or an expression over some.
+
+    None: it always is.
+    """
+    if not item.optional:
+        return item.when
+    return next(it.name for it in columns if it.role == "presence" and it.source == item.name)
 
 
 def members_of(column: Column | None) -> Sequence[Column]:

@@ -20,6 +20,7 @@ from protogen.convert.columns.composite_arrays import Cases, ListsOf, Same, Scat
 from protogen.convert.columns.event_values import constant_of
 from protogen.convert.columns.held_columns import (
     cases_of,
+    condition_of,
     dimensions_of,
     held_by,
     members_of,
@@ -55,9 +56,11 @@ def _reach(
     column = held_by(item, columns)
     scope = around.new_child(_InFront(item, fields, columns, rows))
     held = _in_rows(column, rows)
-    if item.when is None:
+    condition = condition_of(item, columns)
+    if condition is None:
         return _inside(path[1:], item, item.type, column, held, scope)
-    having, places = _having(np.broadcast_to(_said(item.when, scope) != 0, len(held)))
+    said = rows[condition] if isinstance(condition, str) else _said(condition, scope)
+    having, places = _having(np.broadcast_to(said != 0, len(held)))
     scope = _at_places(scope, lambda: having)
     return Scattered(_inside(path[1:], item, item.type, column, held[having], scope), places)
 

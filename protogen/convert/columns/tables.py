@@ -316,7 +316,7 @@ def field_at(fields: Sequence[Field], path: Path) -> Field | None:
 
 def _columns(fields: Sequence[Field], prefix: Path, *, nullable: bool) -> Iterator[Column]:
     for item in fields:
-        may_be_absent = nullable or item.when is not None
+        may_be_absent = nullable or item.may_be_absent
         yield from _value_columns(item, item.type, (*prefix, item.name), nullable=may_be_absent)
 
 
@@ -360,7 +360,7 @@ def column_type(type: Type) -> ColumnType:
             count = (extent.count or None) if isinstance(extent, Fixed) else None
             return Listed(column_type(element), count)
         case Struct(fields=fields):
-            gaps = any(item.when is not None for item in fields)
+            gaps = any(item.may_be_absent for item in fields)
             return Record(tuple((item.name, _member_type(item)) for item in fields), gaps)
         case Switch(cases=cases, rest=rest):
             members = [
@@ -375,7 +375,7 @@ def column_type(type: Type) -> ColumnType:
 def _member_type(item: Field) -> ColumnType:
     """Type of a member of a record."""
     found = column_type(item.type)
-    return found if item.when is None else of_any_count(found)
+    return of_any_count(found) if item.may_be_absent else found
 
 
 def of_any_count(type: ColumnType) -> ColumnType:

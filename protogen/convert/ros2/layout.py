@@ -230,7 +230,7 @@ def _record_members(
     for item in of.fields:
         inner = layout.type_of(kinds[item.name], item.type, f"{way}.{item.name}")
         facts = shown.facts_of(item, item.type)
-        is_flagged = item.when is not None
+        is_flagged = item.may_be_absent
         values, comment = _values(item), _comment(facts)
         yield _Draft(item.name, inner, item.name, is_flagged, None, values, comment)
 

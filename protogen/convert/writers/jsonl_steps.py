@@ -6,7 +6,14 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from protogen.capture.schema import CaptureSchema, Column, InvalidReason, Number, TableSchema
+from protogen.capture.schema import (
+    OF_MESSAGES,
+    CaptureSchema,
+    Column,
+    InvalidReason,
+    Number,
+    TableSchema,
+)
 from protogen.convert.writers.value_steps import Spot, ValueSteps, part_value
 from protogen.model.types import Array, Octets, Type
 from protogen.native.print_steps import (
@@ -74,7 +81,7 @@ def places_of(columns: Sequence[Column]) -> dict[str, Place]:
     return {
         item.source: Spot.row().moved(item).place(item)
         for item in columns
-        if isinstance(item.shape, Number) and item.role not in ("field", "count", "part")
+        if isinstance(item.shape, Number) and item.role not in (*OF_MESSAGES, "part")
     }
 
 

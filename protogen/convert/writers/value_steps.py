@@ -87,8 +87,12 @@ class Spot:
         self, fields: Sequence[Field], columns: Sequence[Column]
     ) -> Iterator[tuple[Field, Column | None, Spot]]:
         """The fields of the record that begins here, which know the numbers in front of them."""
-        counts = (item for item in columns if item.role == "count")
-        scope = self.scope.new_child({item.name: self.moved(item).place(item) for item in counts})
+        counts = {item.name: item for item in columns if item.role == "count"}
+        flags = {_flag(item.source): item for item in columns if item.role == "presence"}
+        front: dict[str, Count] = {
+            name: self.moved(item).place(item) for name, item in (counts | flags).items()
+        }
+        scope = self.scope.new_child(front)
         inner = Spot(self.depth, self.offset, scope)
         for item, column in held(fields, columns):
             here = inner if column is None else inner.moved(column)
@@ -97,6 +101,11 @@ class Spot:
                 scope[item.name] = item.const
             elif column is not None:
                 scope.update(_numbers(item.name, item.type, column, here))
+
+
+def _flag(name: str) -> str:
+    """Name in a scope, unlike that of any field, for whether an optional field is there."""
+    return f"{name}?"
 
 
 def _numbers(name: str, type: Type, column: Column, at: Spot) -> Iterator[tuple[str, Count]]:
@@ -236,14 +245,18 @@ def if_there(
     item: Field, at: Spot, body: Iterable[Step], other: Iterable[Step] = ()
 ) -> Iterator[Step]:
     """The steps of a field where it is there, and others where it is not."""
-    if item.when is None:
-        yield from body
-        return
-    condition = said(item.when, at)
+    condition = presence_of(item, at)
     if isinstance(condition, int):
         yield from body if condition else other
     else:
         yield where(condition, body, other)
+
+
+def presence_of(item: Field, at: Spot) -> Count:
+    """What is not 0 where a field is there."""
+    if item.optional:
+        return at.scope[_flag(item.name)]
+    return 1 if item.when is None else said(item.when, at)
 
 
 def count_of(extent: Extent, left: Sequence[Dimension], at: Spot) -> Count:

@@ -288,8 +288,8 @@ class _Frame:
 
     def _is_cut(self, message: Message | None) -> bool:
         """True if receivers leave what is behind the fields of a message."""
-        is_fixed = message is not None and message.sizes.fixed is not None
-        return is_fixed and self._sender.plan.is_cut
+        is_known = message is not None and message.cut_size is not None
+        return is_known and self._sender.plan.is_cut
 
     def _payload_size(self, part: PayloadPart) -> int:
         """As the length part says, else what the parts behind it leave."""

@@ -184,7 +184,7 @@ class _Reader:
             case ConstantStep():
                 self._step(step.value, path, scope)
             case OptionalStep():
-                if _said(step.expression, scope):
+                if self._cursor.left if step.member else _said(step.expression, scope):
                     self._step(step.step, path, scope)
             case RegionStep():
                 self._region(step, path, scope)

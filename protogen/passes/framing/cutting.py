@@ -38,12 +38,12 @@ def _check_sizes(context: Context, draft: Draft, frame: Loc, senders: list[str])
     longest = draft.frames[senders[0]].payload.longest or 0
     messages = [message for sender in senders for message in draft.sent_by(sender)]
     loc, sender = (*frame, "payload", "longer"), " or ".join(senders)
-    fixed = [message for message in messages if message.sizes.fixed is not None]
-    if messages and not fixed:
+    known = [message for message in messages if message.cut_size is not None]
+    if messages and not known:
         text = f"no message of {sender} always has the same size, so none has bytes behind it"
         hint = "leave out `longer`, or give a message a fixed size"
         context.error_at_key("PG281", loc, text, hint)
-    elif fixed and all(message.sizes.greatest >= longest for message in fixed):
+    elif known and all(message.sizes.greatest >= longest for message in known):
         text = f"no frame of {sender} has room for more than a message has: {longest} bytes"
         hint = "widen the range of the length part, raise `max_frame`, or leave out `longer`"
         context.error_at_key("PG281", loc, text, hint)

@@ -51,7 +51,7 @@ def _size_of(field: Field, count: _Count, choose: _Choose) -> int:
     size = _size(field.type, count, choose)
     if field.region is not None:
         size = min(size, field.region.counts.greatest)
-    return size if field.when is None else choose((0, size))
+    return choose((0, size)) if field.may_be_absent else size
 
 
 def _size(type_: Type, count: _Count, choose: _Choose) -> int:

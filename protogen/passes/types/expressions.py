@@ -344,9 +344,10 @@ class _Reader:
         return Operand(item.path, at=item.at)
 
     def _is_there(self, item: Operand, field: Field) -> None:
-        if field.when is not None:
+        if field.may_be_absent:
             text = f"`{field.name}` is not always there, so nothing can be worked out of it"
-            hint = "put both into a struct that has the `when`"
+            key = "optional" if field.optional else "when"
+            hint = f"put both into a struct that has the `{key}`"
             raise _WrongError("PG201", *_place(item), text, hint)
 
     def _bits(self, item: Operand, field: Field, depth: int) -> Operand:

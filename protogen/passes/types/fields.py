@@ -38,6 +38,7 @@ from protogen.passes.types.extents import Written, extent_of
 from protogen.passes.types.field_keys import check_keys, has_one_form
 from protogen.passes.types.last_elements import is_marked_array, marked_extent
 from protogen.passes.types.named_types import NamedTypes
+from protogen.passes.types.optional_fields import check_tail, is_optional
 from protogen.passes.types.other_cases import ELSE, check_else, hint_at_else, is_else
 from protogen.passes.types.packing import (
     check_packing,
@@ -88,18 +89,22 @@ class FieldBuilder:
         built: dict[str, Field] = {}
         scope = setting.outer.new_child(built)
         behind, bits = SizeSet.exactly(0), 0
-        filler = ""
+        filler = omitted = ""
         final = list(syntax)[-1:]
         for name, item in syntax.items():
             if filler:
                 self._behind(filler, (*loc, name))
             inner = setting.inside(name, behind, scope, first=not built, last=[name] == final)
             built[name] = self.field(name, item, (*loc, name), inner)
-            behind += built[name].sizes
+            check_tail(self._context, omitted, built[name], (*loc, name))
+            if omitted:
+                built[name] = replace(built[name], behind=omitted)
+            behind += built[name].sizes_in_front
             if setting.layout.packed is not None:
                 built[name] = replace(built[name], bit=bits)
                 bits += bits_of(built[name].type)
             filler = filler or (name if fills(built[name]) else "")
+            omitted = name if built[name].optional else ""
         return tuple(built.values())
 
     def field(self, name: str, item: FieldSyntax, loc: Loc, setting: Setting) -> Field:
@@ -117,7 +122,8 @@ class FieldBuilder:
             return unknown
         type_, region = self._in_region(effective)
         found = meaning.attach(self._context, name, type_, effective)
-        return replace(found, when=self._when(effective), region=region)
+        optional = is_optional(self._context, name, effective)
+        return replace(found, when=self._when(effective), region=region, optional=optional)
 
     def _effective(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Effective:
         return self._declarations.effective(item, loc, setting)

@@ -121,7 +121,7 @@ def _placed(fields: Iterable[Field]) -> tuple[Field, ...]:
     behind = SizeSet.exactly(0)
     for field in fields:
         found.append(replace(field, position=behind.fixed))
-        behind += field.sizes
+        behind += field.sizes_in_front
     return tuple(found)
 
 

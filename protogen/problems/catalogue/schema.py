@@ -14,6 +14,7 @@ from protogen.problems.catalogue.keys_and_names import KEY_AND_NAME_CODES
 from protogen.problems.catalogue.last_elements import LAST_ELEMENT_CODES
 from protogen.problems.catalogue.messages import MESSAGE_CODES
 from protogen.problems.catalogue.mirrors import MIRROR_CODES
+from protogen.problems.catalogue.optional_fields import OPTIONAL_FIELD_CODES
 from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.part_bits import PART_BITS_CODES
 from protogen.problems.catalogue.parts import PART_CODES
@@ -38,6 +39,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *SIZED_ARRAY_CODES,
     *SWITCH_CASE_CODES,
     *EXPRESSION_CODES,
+    *OPTIONAL_FIELD_CODES,
     *FRAME_CODES,
     *FRAMING_CODES,
     *FORM_CODES,

@@ -274,6 +274,32 @@ class When(Around):
         raise construct.SizeofError(f"the size depends on {self._condition}", path=path)
 
 
+class IfLeft(Around):
+    """A piece that is there only where the stream goes on; else its value is None.
+
+    `behind` is the piece in front that may be left out as well.
+    """
+
+    def __init__(self, subcon: Construct, behind: str | None = None) -> None:
+        super().__init__(subcon)
+        self._behind = behind
+        self.flagbuildnone = True
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
+        return self.subcon._parsereport(stream, context, path) if bytes_left(stream) else None
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
+        if obj is None:
+            return None
+        if self._behind is not None and context[self._behind] is None:
+            problem = f"must be None, as {self._behind} in front of it is left out"
+            raise PayloadError("value", path, stream.tell(), problem)
+        return self.subcon._build(obj, stream, context, path)
+
+    def _sizeof(self, context: Any, path: str) -> int:
+        raise construct.SizeofError("the size depends on what is left", path=path)
+
+
 class Region(Around):
     """A piece that takes just so many bytes; its end is the end for all that is inside."""
 

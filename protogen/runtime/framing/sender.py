@@ -37,9 +37,10 @@ class IdentityGroup(Generic[MessageT_co]):
     def __init__(self, messages: tuple[type[MessageT_co], ...], part: PayloadPart) -> None:
         self.messages = messages
         self._part = part
-        sizes = {message.SIZES.fixed for message in messages}
+        sizes = {message.__known__() for message in messages}
         self._own = sizes.pop() if len(sizes) == 1 else None
-        self.fixed = None if part.is_fitted else self._own
+        is_fixed = all(message.SIZES.fixed is not None for message in messages)
+        self.fixed = self._own if is_fixed and not part.is_fitted else None
         """The payload's size, where no message has another one, and no frame."""
         self.greatest = max(message.SIZES.greatest for message in messages)
         """The greatest payload of these messages."""
@@ -50,7 +51,9 @@ class IdentityGroup(Generic[MessageT_co]):
         if own is None or not self._part.is_fitted:
             return any(size in message.SIZES for message in self.messages)
         is_filled, is_cut = self._part.kept is not None, self._part.longest is not None
-        return size == own or (is_filled if size < own else is_cut)
+        if size > own:
+            return is_cut
+        return is_filled or any(size in message.SIZES for message in self.messages)
 
     def measure(self, start: bytes) -> int:
         """The size of the payload that starts so; PayloadError with `missing` if it is longer."""

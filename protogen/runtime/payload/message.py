@@ -115,6 +115,8 @@ class Message(Record):
     """SHA-256, in hex, of its identity, its layout and what its values mean."""
     SIZES: ClassVar[Sizes]
     """The sizes that its payload can have."""
+    CUT_SIZE: ClassVar[int | None] = None
+    """Bytes that are known of a longer payload, where sizes vary by what is left out."""
 
     __read__: ClassVar[Callable[[bytes], Any] | None] = None
     """Gives the message of a payload, as the fast engine reads it. Raises where it can't."""
@@ -129,6 +131,11 @@ class Message(Record):
         super().__init_subclass__(**others)
         cls.__encode__ = Message.__encode__  # type: ignore[method-assign]
         cls.__read__ = cls.__write__ = None
+
+    @classmethod
+    def __known__(cls) -> int | None:
+        """Bytes that are known of a payload; None where its fields say how long it is."""
+        return cls.SIZES.fixed if cls.CUT_SIZE is None else cls.CUT_SIZE
 
     def __encode__(self, module: object, sender: str | None, *parts: GivenValue) -> bytes:
         """The frame, as the fast engine of this module makes it. Raises where it can't.

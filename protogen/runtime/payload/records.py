@@ -287,6 +287,41 @@ class _Absent(NothingRule):
             raise EncodeError("", f"must be null, as {self._condition} does not hold")
 
 
+class OptionalRule(Rule):
+    """A rule for a value that may be left out: then it is None, and so is all behind it.
+
+    `behind` is the field in front that may be left out as well.
+    """
+
+    def __init__(self, rule: Rule, behind: str | None = None) -> None:
+        self.rule = rule
+        self.behind = behind
+
+    def to_wire(self, value: Any, scope: Scope, strict: bool) -> Any:
+        """The value that FORMAT builds; None where it is left out."""
+        if value is None:
+            return None
+        if self.behind is not None and scope[self.behind] is None:
+            raise EncodeError("", f"must be None, as {self.behind} in front of it is left out")
+        return self.rule.chosen(scope).to_wire(value, scope, strict)
+
+    def from_wire(self, raw: Any, scope: Scope) -> Any:
+        """The attribute's value."""
+        return None if raw is None else self.rule.chosen(scope).from_wire(raw, scope)
+
+    def violations(self, value: Any, scope: Scope) -> list[Violation]:
+        """Those of the value."""
+        return [] if value is None else self.rule.chosen(scope).violations(value, scope)
+
+    def to_json(self, value: Any, scope: Scope) -> Any:
+        """The value as JSON shows it."""
+        return None if value is None else self.rule.chosen(scope).to_json(value, scope)
+
+    def from_json(self, data: Any, scope: Scope) -> Any:
+        """The value of what JSON shows."""
+        return None if data is None else self.rule.chosen(scope).from_json(data, scope)
+
+
 class SwitchRule(Rule):
     """One of several rules, chosen by the raw values of earlier fields.
 

@@ -270,6 +270,11 @@ class FieldSyntax(Syntax):
         description="The field is there only where this expression over earlier fields is true "
         "(a number: is not 0).",
     )
+    optional: bool = Field(
+        False,
+        description="The field is there only where the payload goes on: it may be left out, and "
+        "all behind it then are.",
+    )
     values: ValueNames | None = Field(
         None,
         description="Enum: names of raw values. Unknown values are kept unless closed.",

@@ -121,6 +121,8 @@ def message_class(item: Message, identity: str, names: Names) -> RecordClass:
     """A message; `identity` says in words what its identity is."""
     values = tuple_of(f"0x{value:02X}" for value in item.identity)
     several = () if item.identities is None else (f"IDENTITIES = {_identities(item.identities)}",)
+    is_told = item.cut_size is None or item.sizes.fixed is not None
+    cut = () if is_told else (f"CUT_SIZE = {item.cut_size}",)
     constants = (
         f"NAME = {text(item.name)}",
         f"SPEC_HASH = {text(item.spec_hash)}",
@@ -128,6 +130,7 @@ def message_class(item: Message, identity: str, names: Names) -> RecordClass:
         f"IDENTITY = {values}" + (f"  # {identity}" if identity else ""),
         *several,
         f"SIZES = {_sizes(item.sizes)}",
+        *cut,
     )
     doc = docstring(describing.message(item), _INDENT)
     return _record(item, "_rt.Message", doc, constants, names)
@@ -263,7 +266,7 @@ def _attribute(field: Field, scope: _Scope, counts: Container[str]) -> Attribute
 def _field_annotation(field: Field, scope: _Scope) -> str:
     """The type of a field's attribute, which is None where the field is not there."""
     kind = _annotation(field.type, scope)
-    is_absent = field.when is not None and not kind.endswith("None")
+    is_absent = field.may_be_absent and not kind.endswith("None")
     return f"{kind} | None" if is_absent else kind
 
 
@@ -314,7 +317,7 @@ def _switch_annotation(type_: Switch, scope: _Scope) -> str:
 
 def _default(field: Field, names: Names) -> str | list[int | str] | None:
     """The default of an attribute, a list as such: a constant needs not be given."""
-    if field.when is not None:
+    if field.may_be_absent:
         return "None"
     value = field.const if field.const is not None else field.default
     match value:
@@ -364,7 +367,7 @@ def _physical(field: Field, names: RecordNames) -> Attribute:
 
 
 def _if_there(field: Field, view: str) -> str:
-    return view if field.when is None else call("_rt.IfThere", view)
+    return call("_rt.IfThere", view) if field.may_be_absent else view
 
 
 def _physical_range(field: Field) -> str:

@@ -35,6 +35,8 @@ def field(item: Field, *, is_computed: bool = False) -> list[str]:
         facts.append("constant")
     if item.when is not None:
         facts.append(f"None unless {item.when.text}")
+    if item.optional:
+        facts.append("None if it is left out")
     if is_computed:
         facts.append("computed where it is left out")
     return escaped(descriptions.of_field(item, facts))

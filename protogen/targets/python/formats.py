@@ -39,6 +39,8 @@ def field_format(field: Field, names: Names) -> str:
         found = call("_c.Fixed", _any_size(field.type, names), constant(field))
     if field.region is not None:
         found = call("_c.Region", extent(field.region), found)
+    if field.optional:
+        return call("_c.IfLeft", found, behind=text(field.behind) if field.behind else None)
     return found if field.when is None else call("_c.When", formula(field.when), found)
 
 

@@ -32,6 +32,8 @@ from protogen.targets.python.names import Names
 def field_rule(field: Field, names: Names) -> str:
     """The rule of a field."""
     found = _rule(field.type, field, names)
+    if field.optional:
+        return call("_rt.OptionalRule", found, behind=text(field.behind) if field.behind else None)
     return found if field.when is None else call("_rt.WhenRule", formula(field.when), found)
 
 

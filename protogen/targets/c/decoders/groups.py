@@ -29,6 +29,8 @@ class ReceivedMessage(msgspec.Struct, frozen=True):
     """Bytes that payloads are filled up to, where frames leave out zeros at their end; else 0."""
     cuts: int | None = None
     """Bytes that longer payloads are cut to; None where they are refused."""
+    varies: bool = False
+    """True if payloads that are cut may also be shorter."""
 
     @property
     def fixed(self) -> bool:
@@ -49,6 +51,10 @@ class ReceivedMessage(msgspec.Struct, frozen=True):
     def own(self) -> int:
         """Size that payloads have when they are filled up or cut."""
         return self.fills if self.cuts is None else self.cuts
+
+    def read_size(self, event: str) -> str:
+        """The size of a payload that was filled up or cut; `event` leads to its members."""
+        return f"{event}payload_size" if self.varies else f"{self.own}U"
 
     def fits(self, size: str) -> str:
         """The condition that a payload of that size can be its, where not any size can."""
@@ -167,7 +173,9 @@ def _message(
     plan: FramePlan, message: Message, sizes: SizeSet, view: MessageView
 ) -> ReceivedMessage:
     checks = view.check if _needs_check(plan, view) else ""
-    own = message.sizes.fixed
+    own, varies = message.cut_size, message.sizes.fixed is None
+    # Where nothing can be longer, there is nothing to cut.
+    is_cut = plan.is_cut and own is not None and (not varies or own < sizes.greatest)
     return ReceivedMessage(
         message.name,
         view.constant,
@@ -176,7 +184,8 @@ def _message(
         sizes.step,
         checks,
         fills=own or 0 if plan.is_trimmed else 0,
-        cuts=own if plan.is_cut else None,
+        cuts=own if is_cut else None,
+        varies=is_cut and varies,
     )
 
 

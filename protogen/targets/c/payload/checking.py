@@ -226,7 +226,18 @@ class Checker(NumberChecker):
             super().optional(step, place)
             return
         with self._joined(step.known_size):
-            super().optional(step, place)
+            if step.member:
+                self._if_left(step, place)
+            else:
+                super().optional(step, place)
+
+    def _if_left(self, step: OptionalStep, place: str) -> None:
+        """A step that is there if bytes are left."""
+        self._settle()
+        with self.lines.block("if (at < size)"), self.branch():
+            self._secured = 1
+            self.step(step.step, place)
+            self.end_branch(step)
 
     def region(self, step: RegionStep, place: str) -> None:
         """What takes just so many bytes: inside of it, `size` is where they end."""

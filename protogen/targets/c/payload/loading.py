@@ -13,6 +13,7 @@ from protogen.model.payload_plan import (
     Formula,
     IntegerStep,
     NumberStep,
+    OptionalStep,
     PayloadPlan,
     RecordStep,
     RegionStep,
@@ -77,6 +78,17 @@ class Load(PlacedWalk):
         value = loaded(self.helpers, step.type, self.byte(), self.address())
         self.lines.add(f"{place} = {value};")
         self.skip(step.type.size)
+
+    def optional(self, step: OptionalStep, place: str) -> None:
+        """A step that may be there; where the payload's end says it, a member keeps that."""
+        if step.member:
+            self.catch_up()
+            self.reads_size = True
+            goes_on = f"{self.address()} < payload + size"
+            if self._name == "payload":
+                goes_on = f"size > {self._offset}U"
+            self.lines.add(f"{self._records[-1]}{step.member} = {goes_on};")
+        super().optional(step, place)
 
     def _written(self, step: IntegerStep, place: str) -> None:
         """A number that takes all characters that are left, or those up to the next separator."""

@@ -12,6 +12,7 @@ from protogen.model.payload_plan import (
     Formula,
     IntegerStep,
     NumberStep,
+    OptionalStep,
     PayloadPlan,
     RegionStep,
     RepeatStep,
@@ -142,6 +143,14 @@ class Validate(Walk):
         with self.loop(count) as index:
             says = self.is_last(mark, f"{place}[{index}]")
             self._refuse(f"({says}) != ({index} + 1U == {amount(count)})")
+
+    def optional(self, step: OptionalStep, place: str) -> None:
+        """A step that may be there, but not behind one that is left out."""
+        if step.behind is not None:
+            base = self._records[-1]
+            self._refuse(f"{base}{step.member} && !{base}{step.behind.member}")
+        if step.step.is_refusable:
+            super().optional(step, place)
 
     def region(self, step: RegionStep, place: str) -> None:
         """What takes just so many bytes."""

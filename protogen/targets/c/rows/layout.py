@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from protogen.capture.layout import message_record
-from protogen.capture.schema import CaptureSchema, Choice, Column, Record, TableSchema
+from protogen.capture.schema import (
+    OF_MESSAGES,
+    CaptureSchema,
+    Choice,
+    Column,
+    Record,
+    TableSchema,
+)
 from protogen.targets.c.spelling import Names
 
 
@@ -31,7 +38,7 @@ def _members(table: TableSchema, names: Names) -> Iterator[tuple[str, int]]:
     for column in table.columns:
         if column.role == "part":
             yield f"part_{column.source}", column.position
-        elif column.role not in ("field", "count"):
+        elif column.role not in OF_MESSAGES:
             yield column.source, column.position
     if table.message is None or not table.fields:
         return

@@ -86,7 +86,7 @@ class _PayloadRows:
             inner = path.field(step.name)
             yield self._field(step, place, inner, code(inner.shown))
             yield from self._inside(step, place, inner)
-            size = step.sizes.fixed
+            size = step.field.sizes_in_front.fixed
             place = behind(inner.shown) if size is None else place.plus(size)
 
     def _inside(self, step: AnyStep, place: Place, path: Path) -> Iterator[Row]:

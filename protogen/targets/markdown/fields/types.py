@@ -45,7 +45,10 @@ def type_text(step: AnyStep, region: RegionStep | None = None) -> str:
         case RecordStep():
             return "struct" + _packed(step)
         case OptionalStep():
-            return f"{type_text(step.step, region)}, if {code(step.expression.text)}"
+            is_there = f"if {code(step.expression.text)}"
+            if step.member:
+                is_there = "may be left out"
+            return f"{type_text(step.step, region)}, {is_there}"
         case RegionStep():
             inner = type_text(step.step, step)
             return inner if step.step.fills else f"{inner}, in {_region(step.region)}"

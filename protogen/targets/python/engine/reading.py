@@ -365,7 +365,9 @@ class _Reader(Converter, Raw):
         value = self.lines.local()
         self._move_to(self.place.text)
         self.lines.add(f"{value}: _typing.Any = None")
-        with self.lines.block(f"if {in_python(step.expression, self.raw_of)}:"):
+        goes_on = f"{self.place.text} < len(data)"
+        condition = goes_on if step.member else in_python(step.expression, self.raw_of)
+        with self.lines.block(f"if {condition}:"):
             found = self._value(step.step)
             self._constant(found, step.step)
             self.lines.add(f"{value} = {found}")

@@ -145,10 +145,13 @@ class _Writer(Raw):
         return self._joined()
 
     def _fields(self, source: str, steps: Sequence[AnyStep]) -> None:
-        outside = dict(self.raw)
+        outside, front = dict(self.raw), ""
         for step in steps:
             value = self.lines.local()
             self.lines.add(f"{value} = {source}.{attribute(step.name)}")
+            if isinstance(step, OptionalStep) and step.behind is not None:
+                self.lines.refuse_if(f"{front} is None and {value} is not None")
+            front = value
             bare = without_constant(step)
             inner = bare.step if isinstance(bare, RegionStep) else bare
             if isinstance(inner, IntegerStep | RecordStep):
@@ -357,13 +360,16 @@ class _Writer(Raw):
     def _optional(self, value: str, step: OptionalStep) -> None:
         self._bytes.flush()
         data = self.lines.local()
-        with self.lines.block(f"if {in_python(step.expression, self.raw_of)}:"):
+        given = f"{value} is not None"
+        condition = given if step.member else in_python(step.expression, self.raw_of)
+        with self.lines.block(f"if {condition}:"):
             bare = without_constant(step.step)
             self.lines.add(f"{data} = {self._apart(value, bare, step.field)}")
             if isinstance(step.step, ConstantStep):
                 self.lines.refuse_if(f"{value} != {constant(step.field)}")
         with self.lines.block("else:"):
-            self.lines.refuse_if(f"{value} is not None")
+            if not step.member:
+                self.lines.refuse_if(given)
             self.lines.add(f'{data} = b""')
         self._bytes.piece(data)
 
