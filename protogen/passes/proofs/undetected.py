@@ -81,13 +81,19 @@ def _part(
 
 
 def _is_seen(frame: Frame, part: Part) -> bool:
-    """True if a wrong byte of a number is seen by bits of other bytes, which follow from it."""
+    """True if a wrong byte of a number is seen by bits of other bytes, which follow from it.
+
+    So is one of a length by another length.
+    """
     if not isinstance(part, NumberPart):
         return False
     own = _bytes_of_bits(frame, part)
     mirrors = [mirror for mirror in frame.mirrors if mirror.of.name == part.name]
     copies = (_bytes_of_bits(frame, mirror) for mirror in mirrors)
-    return any(not any(map(tuple.__eq__, own, copy)) for copy in copies)
+    if any(not any(map(tuple.__eq__, own, copy)) for copy in copies):
+        return True
+    others = frame.lengths if isinstance(part, LengthPart) else ()
+    return any(set(own).isdisjoint(_bytes_of_bits(frame, other)) for other in others)
 
 
 def _bytes_of_bits(frame: Frame, part: TypedPart) -> list[tuple[str, int]]:
