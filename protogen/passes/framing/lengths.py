@@ -16,8 +16,8 @@ from protogen.model.frame import (
 )
 from protogen.model.sizes import SizeSet
 from protogen.passes.context import Context, Loc
-from protogen.passes.framing.capacity import counted_size, range_of, stated_range
 from protogen.passes.framing.bit_names import place_of_number
+from protogen.passes.framing.capacity import counted_size, range_of, stated_range
 from protogen.passes.framing.virtual_parts import sent_run
 from protogen.schema.syntax.parts import Part as PartSyntax
 
@@ -76,9 +76,7 @@ class Lengths:
         for part in frame.lengths:
             if part.over_wire:
                 other = next(it for it in frame.lengths if it is not part)
-                text = (
-                    f"`{part.name}` counts bytes on the wire, and `{other.name}` is a length, too"
-                )
+                text = f"`{part.name}` counts bytes on the wire, and `{other.name}` is one, too"
                 hint = "count unstuffed bytes, or make one of them a part with a `type` alone"
                 self._context.error("PG285", (*self._loc, part.name, "over"), text, hint)
                 return False
@@ -94,7 +92,7 @@ class Lengths:
 
     @staticmethod
     def _apart(frame: Frame) -> tuple[tuple[LengthPart, SizeSet], tuple[LengthPart, SizeSet]]:
-        """Two lengths that never agree, in wire order: one has the least bound, one the greatest."""
+        """Two lengths that never agree, in wire order."""
         found = [(part, range_of(frame, part)) for part in frame.lengths]
         sizes = [(part, item) for part, item in found if item is not None]
         low = min(sizes, key=lambda it: it[1].greatest)

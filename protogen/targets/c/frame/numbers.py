@@ -10,7 +10,6 @@ from protogen.model.frame import (
     BitsPart,
     ChoicePart,
     IdentityPart,
-    LengthPart,
     LiteralPart,
     MirrorBits,
     NumberPart,
