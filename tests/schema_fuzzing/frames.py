@@ -515,10 +515,8 @@ class _Drawing:
         """Several lengths, which may count those that were drawn before them."""
         found, every = list(parts), [part.name for part in parts]
         for place in places:
-            counted = [
-                part for index, part in enumerate(found)
-                if part.values and not part.optional and index != place and self._draw(st.booleans())
-            ]  # fmt: skip
+            others = [part for part in found if part.values and not part.optional]
+            counted = [part for part in others if self._draw(st.booleans())]
             names = {part.name for part in counted} | {"payload"}
             size = sum(part.size for part in counted)
             type_, keys = self._maker.type(least_greatest=size + 18)

@@ -112,11 +112,16 @@ def _frame(frame: FramePlan) -> Iterator[str]:
         yield "trailing zeros left out"
     if any("longer" in part.data for part in frame.parts):
         yield "longer payloads cut"
+    yield from _lengths(frame)
+    for part in frame.parts:
+        yield from _part(part.data)
+
+
+def _lengths(frame: FramePlan) -> Iterator[str]:
     lengths = {part.name for part in frame.parts if part.role == "length"}
     if len(lengths) > 1:
         yield "several lengths"
     for part in frame.parts:
-        yield from _part(part.data)
         if lengths & {part.data.get("repeats"), part.data.get("complements")}:
             yield "part that follows from a length"
 
