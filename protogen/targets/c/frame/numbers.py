@@ -171,7 +171,7 @@ def _number(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberVi
         fault=numbers.fault(type_, "content", item.offset, less),
         bounds=_out_of_bounds(item, value, less) if item in plan.bounded and not starts else "",
         contradicts=_contradicts(plan, part, value, numbers),
-        is_length=plan.length is not None and part is plan.length.part,
+        is_length=plan.length is not None and part.name == plan.length.part.name,
         identifies=is_last and plan.identity_is_early and plan.length is None,
         tells_sizes=item.in_head and item.end == plan.sizes_told_at,
     )
@@ -182,7 +182,7 @@ def _contradicts(plan: FramePlan, part: NumberPart, value: str, numbers: PartNum
 
     Both are numbers of the head. Behind the payload, its size stands for the first.
     """
-    length = next((item for item in plan.further_lengths if item.part is part), None)
+    length = next((item for item in plan.further_lengths if item.part.name == part.name), None)
     if length is None:
         return ""
     first = length.first
