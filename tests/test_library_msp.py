@@ -454,6 +454,49 @@ def test_it_reads_what_it_does_not_send(yamspy: Yamspy, drawn: list[Case], sende
     assert len(read) > 5
 
 
+INSIDE = ("host_v2_in_v1", "fc_v2_in_v1_answer", "fc_v2_in_v1_error")
+
+
+@pytest.mark.parametrize("sender", INSIDE)
+def test_it_reads_what_is_around_and_what_is_inside(
+    yamspy: Yamspy, drawn: list[Case], sender: str
+) -> None:
+    """MSP 2 inside of MSP 1: a message of the code 255, whose payload is all but the mark."""
+    engine = engine_of("msp")
+    inside = [case for case in drawn if case.sender == sender]
+    for case in inside:
+        frame = engine.frame(sender, case.message, case.values, case.parts)
+        mark = frame[2:3]
+        _, around = yamspy.received(case, frame[:2] + b">" + frame[3:])
+        assert (around["code"], around["packet_error"]) == (255, 0)
+        assert yamspy.values(case, b"$X" + mark + bytes(around["dataView"])) == case.values
+        (event,) = engine.events(sender, [frame])
+        assert (event.message, event.values) == (case.message, case.values)
+    assert inside
+
+
+def test_a_size_around_what_is_inside_stands_behind_its_own() -> None:
+    """Of a setting of 249 zeros: 255 bytes are inside, and one more than MSP 1 can say."""
+    inner = bytes.fromhex("00 03 10 F9 00")
+    checksum = 0
+    for byte in inner + bytes(249):
+        checksum ^= byte
+        for _ in range(8):
+            checksum = checksum << 1 ^ (0x1D5 if checksum & 0x80 else 0)
+    # The sizes FF 00, the code, the mark and the size of a jumbo frame: FF ^ FF ^ FF ^ 03 ^ 10 ^ F9
+    around = 0xFF ^ 0x03 ^ 0x10 ^ 0xF9 ^ checksum
+    head = b"$M>\xff\xff" + inner + b"\xff\x00"
+    frame = head + bytes(249) + bytes((checksum, around))
+    engine = engine_of("msp")
+    sender = "fc_v2_in_jumbo_answer"
+    made = engine.frame(sender, "inav_setting", {"value": bytes(249).hex()}, {"flags": 0})
+    assert made == frame
+    (event,) = engine.events(sender, [frame])
+    assert event.message == "inav_setting"
+    wrong = frame[:10] + b"\xfe" + frame[11:]
+    assert not any(event.message for event in engine.events(sender, [wrong]))
+
+
 @pytest.mark.parametrize("endpoint", ["host", "fc"])
 def test_no_frame_is_lost_that_it_finds(yamspy: Yamspy, drawn: list[Case], endpoint: str) -> None:
     compare_recovery("msp", endpoint, yamspy, [case for case in drawn if sends(case)])

@@ -111,11 +111,16 @@ class IdentityPart(NumberPart, frozen=True, kw_only=True):
 
 
 class LengthPart(NumberPart, frozen=True, kw_only=True):
-    """The number of unstuffed bytes of some parts; it may count itself."""
+    """The number of unstuffed bytes of some parts; it may count itself.
+
+    Of several in one frame, each is bounded by what all of them allow.
+    """
 
     counts: tuple[str, ...]
     over_wire: bool = False
     """True if it counts them as they are on the wire, stuffing included."""
+    agrees_with: str | None = None
+    """The first length of the frame, which decides where it ends, if this is another one."""
 
 
 class CounterPart(NumberPart, frozen=True, kw_only=True):
@@ -481,9 +486,14 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
         return self.length is not None and self.length.over_wire
 
     @cached_property
+    def lengths(self) -> tuple[LengthPart, ...]:
+        """The length parts in wire order."""
+        return tuple(part for part in self.numbers if isinstance(part, LengthPart))
+
+    @property
     def length(self) -> LengthPart | None:
-        """The length part, if there is one."""
-        return next((part for part in self.numbers if isinstance(part, LengthPart)), None)
+        """The length that decides where the frame ends, if there is one: the first."""
+        return self.lengths[0] if self.lengths else None
 
     @cached_property
     def checksums(self) -> tuple[ChecksumPart, ...]:

@@ -28,6 +28,7 @@ from protogen.model.frame_places import PlacedPart
 from protogen.model.messages import Message
 from protogen.model.part_plans import (
     ChecksumPlan,
+    FurtherLength,
     IdentityGroup,
     LengthPlan,
     StuffedRegion,
@@ -99,6 +100,9 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     end_literals: tuple[Part, ...]
     """The parts that make up the end."""
     length: LengthPlan | None
+    """The first length, which decides where a frame ends."""
+    further_lengths: tuple[FurtherLength, ...]
+    """The lengths behind it, each of which has to agree with it."""
     checksums: tuple[ChecksumPlan, ...]
     virtual: tuple[VirtualPlan, ...]
     """The parts that are not sent, in the order of the schema."""

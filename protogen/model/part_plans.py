@@ -93,6 +93,32 @@ class LengthPlan(msgspec.Struct, frozen=True, kw_only=True):
         return size if size > 0 else None
 
 
+class FurtherLength(msgspec.Struct, frozen=True, kw_only=True):
+    """A length behind the first one of the frame, with which it has to agree."""
+
+    part: LengthPart
+    placed: PlacedPart
+    first: LengthPlan
+    base: int
+    """Value for an empty payload."""
+    optional: int
+    """Bytes that it counts besides, where the payload is not empty."""
+
+    @property
+    def more(self) -> int:
+        """What it is more than the first length, where the payload is not empty."""
+        return self.base + self.optional - self.first.base - self.first.optional
+
+    @property
+    def more_if_empty(self) -> int:
+        """What it is more than the first length, where the payload is empty."""
+        return self.base - self.first.base
+
+    def counted(self, payload: int) -> int:
+        """Value for a payload of that size."""
+        return self.base + (payload + self.optional if payload else 0)
+
+
 class StuffedRegion(msgspec.Struct, frozen=True, kw_only=True):
     """The part of the content that is stuffed on the wire."""
 

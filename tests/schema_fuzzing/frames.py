@@ -113,7 +113,14 @@ class FramePlan:
 
     def with_least_payload(self, least: int, slack: int) -> FramePlan:
         """The frame whose length says at least what the smallest payload needs, less `slack`."""
-        return replace(self, parts=tuple(_with_least(part, least, slack) for part in self.parts))
+        parts = tuple(_with_least(part, least, slack) for part in self.parts)
+        lengths = [part for part in parts if part.role == "length"]
+        if len(lengths) > 1 and least > slack and any("range" in part.data for part in lengths):
+            parts = tuple(
+                _agreeing(part, least - slack, None) if part.role == "length" else part
+                for part in parts
+            )
+        return replace(self, parts=parts)
 
     def stretches(self, payload: frozenset[int], own: Sequence[int]) -> Iterator[Stretch]:
         """Bytes of the frame on the wire, where the payload holds such bytes."""
@@ -181,7 +188,16 @@ def _with_least(part: PartPlan, least: int, slack: int) -> PartPlan:
     counted, greatest = part.bounds
     low = max(0, counted + least - slack)
     values = part.type.bytes_between(low, greatest)
-    return replace(part.adding(range=[low, greatest]), values=values)
+    return replace(part.adding(range=[low, part.data["range"][1]]), values=values)
+
+
+def _agreeing(part: PartPlan, least: int, greatest: int | None) -> PartPlan:
+    """A length that others bound to payloads of such sizes; None: of any that it can say."""
+    assert part.type is not None
+    counted, most = part.bounds
+    most = most if greatest is None else counted + greatest
+    values = part.type.bytes_between(counted + least if least else 0, most)
+    return replace(part, values=values, bounds=(counted, most))
 
 
 def _stretches_of(
@@ -344,6 +360,10 @@ class _Drawing:
                   for _ in range(draw(st.sampled_from([0, 0, 0, 1, 1, 2])))]  # fmt: skip
         if self._has_length:
             others.append(PartPlan(maker.name(), "length"))
+            if draw(forms.one_in(4)):
+                draw(st.sampled_from([others, others, tail])).append(
+                    PartPlan(maker.name(), "length")
+                )
         sums = self._checksums()
         if sums and not self._anywhere and draw(forms.one_in(6)):
             others.append(maker.checksum(optional=False))
@@ -448,9 +468,12 @@ class _Drawing:
         self, parts: list[PartPlan], region: Region | None
     ) -> tuple[list[PartPlan], int | None]:
         """The length part with its type, now that it is known what it can count."""
-        place = next((i for i, part in enumerate(parts) if part.role == "length"), None)
-        if place is None:
+        places = [i for i, part in enumerate(parts) if part.role == "length"]
+        if not places:
             return parts, None
+        if len(places) > 1:
+            return self._with_lengths(parts, places)
+        place = places[0]
         itself = self._draw(st.booleans())
         counts_wire = self._may_count_wire(parts, place, region) and self._draw(st.booleans())
         stuffed = range(region.first, region.last + 1) if counts_wire and region else ()
@@ -485,6 +508,33 @@ class _Drawing:
             part = self._maker.length_in_bits(part) if self._draw(forms.one_in(2)) else part
             found, greatest = [part], part.bounds[1]
         return [*parts[:place], *found, *parts[place + 1 :]], greatest - counted
+
+    def _with_lengths(
+        self, parts: list[PartPlan], places: Sequence[int]
+    ) -> tuple[list[PartPlan], int]:
+        """Several lengths, which may count those that were drawn before them."""
+        found, every = list(parts), [part.name for part in parts]
+        for place in places:
+            others = [part for part in found if part.values and not part.optional]
+            counted = [part for part in others if self._draw(st.booleans())]
+            names = {part.name for part in counted} | {"payload"}
+            size = sum(part.size for part in counted)
+            type_, keys = self._maker.type(least_greatest=size + 18)
+            if self._draw(st.booleans()):
+                names.add(every[place])
+                size += type_.size
+            keys["counts"] = self._draw(forms.run([n for n in every if n in names], every))
+            greatest = type_.greatest
+            if greatest > 1000 or self._draw(st.booleans()):
+                greatest = min(greatest, size + self._draw(st.sampled_from([8, 20, 60, 300])))
+                keys["range"] = [0, greatest]
+            keys.update(self._draw(forms.about()))
+            values, bounds = type_.bytes_between(0, greatest), (size, greatest)
+            found[place] = PartPlan(every[place], "length", keys, values, type=type_, bounds=bounds)
+        room = min(greatest - counted for counted, greatest in (found[i].bounds for i in places))
+        for place in places:
+            found[place] = _agreeing(found[place], 0, room)
+        return found, room
 
     # -- the greatest size -------------------------------------------------------------------
 

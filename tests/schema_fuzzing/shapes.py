@@ -31,7 +31,7 @@ COMMON = (
     "bits as parts", "bits as parts: id", "bits as parts: const", "bits as parts: counter",
     "bits as parts: range", "bits as parts: default",
     "bits as parts: repeats", "bits as parts: complements", "part that repeats",
-    "part that complements", "part that follows from a length",
+    "part that complements", "part that follows from a length", "several lengths",
     "several identities", "overload by size", "overload by undecidable", "unspecified payload",
     "empty message",
     "separated fields", "separated fields, one in front", "virtual part",
@@ -112,9 +112,16 @@ def _frame(frame: FramePlan) -> Iterator[str]:
         yield "trailing zeros left out"
     if any("longer" in part.data for part in frame.parts):
         yield "longer payloads cut"
-    lengths = {part.name for part in frame.parts if part.role == "length"}
+    yield from _lengths(frame)
     for part in frame.parts:
         yield from _part(part.data)
+
+
+def _lengths(frame: FramePlan) -> Iterator[str]:
+    lengths = {part.name for part in frame.parts if part.role == "length"}
+    if len(lengths) > 1:
+        yield "several lengths"
+    for part in frame.parts:
         if lengths & {part.data.get("repeats"), part.data.get("complements")}:
             yield "part that follows from a length"
 

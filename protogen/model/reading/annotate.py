@@ -228,11 +228,22 @@ class _Frame:
         if part.type.is_text:
             meaning = quoted(str(part.shown(value)))
         if isinstance(part, LengthPart):
+            fault = self._disagrees(part, value) or fault
             where = " on the wire" if part.over_wire else ""
             meaning = f"bytes of {', '.join(part.counts)}{where}"
         elif isinstance(part, IdentityPart):
             meaning = " ".join(filter(None, (meaning, self._names_of(part))))
         return row.reads(value, meaning, fault)
+
+    def _disagrees(self, part: LengthPart, value: int) -> str:
+        """What is wrong with a length behind the first one, if there was that and it is another."""
+        for other in self._sender.plan.further_lengths:
+            first = self._numbers.get(other.first.part.name)
+            payload = None if first is None else other.first.payload(first)
+            if other.part.name == part.name and payload is not None:
+                due = other.counted(payload)
+                return "" if value == due else f"must be {due}, as {part.agrees_with} is {first}"
+        return ""
 
     def _names_of(self, part: IdentityPart) -> str:
         """The messages of the identity, beside its last part."""

@@ -84,10 +84,17 @@ def _least_wire(frame: Frame, part: Part) -> int:
 
 
 def stated_range(frame: Frame) -> SizeSet | None:
-    """The payload sizes that the length part can state; None where it is missing or states none."""
-    length = frame.length
-    if length is None:
+    """The payload sizes that each length can state; None where there is no length, or no size."""
+    found = [range_of(frame, length) for length in frame.lengths]
+    sizes = [item for item in found if item is not None]
+    if not sizes or len(sizes) < len(found):
         return None
+    least, greatest = max(it.least for it in sizes), min(it.greatest for it in sizes)
+    return SizeSet.between(least, greatest) if least <= greatest else None
+
+
+def range_of(frame: Frame, length: LengthPart) -> SizeSet | None:
+    """The payload sizes that a length can state; None if there are none."""
     around = counted_size(frame, length, empty=False)
     least, greatest = max(length.least - around, 1), length.greatest - around
     if length.least <= counted_size(frame, length, empty=True) <= length.greatest:

@@ -30,6 +30,7 @@ from protogen.model.identities import Identities
 from protogen.model.messages import Message, Overload
 from protogen.model.part_plans import (
     ChecksumPlan,
+    FurtherLength,
     IdentityGroup,
     LengthPlan,
     StuffedRegion,
@@ -113,6 +114,7 @@ class _Planner:
         self, groups: tuple[IdentityGroup, ...], virtual: tuple[VirtualPlan, ...]
     ) -> FramePlan:
         framing = self._framing
+        length = self._length()
         return FramePlan(
             frame=self._frame,
             start=_START_RULES[type(self._start)],
@@ -125,7 +127,8 @@ class _Planner:
             head=self._head,
             tail=self._tail,
             end_literals=self._end_literals,
-            length=self._length(),
+            length=length,
+            further_lengths=tuple(self._further_lengths(length)),
             checksums=tuple(self._checksum(part) for part in self._frame.checksums),
             virtual=virtual,
             region=self._region,
@@ -180,6 +183,16 @@ class _Planner:
             region_end=sum(item.size for item in self._frame.parts[: last + 1]),
             most=min(part.greatest, self._framing.greatest - others),
         )
+
+    def _further_lengths(self, first: LengthPlan | None) -> Iterator[FurtherLength]:
+        """The lengths behind the first one."""
+        for part in self._frame.lengths[1:]:
+            assert first is not None
+            placed = self._placed(self._frame.holder(part.name).name)
+            assert placed is not None
+            base = counted_size(self._frame, part, empty=True)
+            optional = counted_size(self._frame, part, empty=False) - base
+            yield FurtherLength(part=part, placed=placed, first=first, base=base, optional=optional)
 
     # --- start and end ----------------------------------------------------------------------------
 

@@ -42,7 +42,7 @@ from protogen.passes.framing.capacity import (
     counted_size,
     least_size,
     payload_range,
-    stated_range,
+    range_of,
 )
 from protogen.passes.framing.covered import check_checksums
 from protogen.passes.framing.cutting import cut
@@ -148,7 +148,7 @@ class FrameBuilder:
             self._context.error_at_key("PG130", self._loc, text)
         transparency = transparency_of(self._context, self._written)
         silence = silence_of(self._context, self._written)
-        self._lengths.check_number(parts)
+        self._lengths.check_first(parts)
         before += self._replaced
         if self._context.tally.errors > before or self._loc in self._context.doubtful:
             return None
@@ -159,6 +159,10 @@ class FrameBuilder:
             limit=self._written.limit,
             silence=silence,
         )
+        agreed = self._lengths.agreed(frame)
+        if agreed is None:
+            return None
+        frame = agreed
         if self._syntax[PAYLOAD].trailing_zeros is not None:
             frame = trimmed(self._context, self._loc, frame)
         if self._syntax[PAYLOAD].longer is not None:
@@ -173,8 +177,8 @@ class FrameBuilder:
         check_wire_length(self._context, frame, self._loc)
         self._check_identity(frame)
         check_silence(self._context, self._written, frame)
-        length = frame.length
-        if length is not None and stated_range(frame) is None:
+        length = next((it for it in frame.lengths if range_of(frame, it) is None), None)
+        if length is not None:
             around = counted_size(frame, length, empty=True)
             besides = "1 byte" if around == 1 else f"{around} bytes"
             text = f"`{length.name}` counts {besides} besides the payload"

@@ -43,9 +43,10 @@ def finds_end(frame: Frame, start: Start, end: End | None, messages: list[Messag
     """Sentence on how a receiver finds where a frame ends."""
     if frame.silence is not None:
         told = f"; `{frame.length.name}` must give its size" if frame.length else ""
+        told = f"{told}{_agreeing(frame)}"
         return f"after {frame.silence.text} of silence, and nowhere else{told}"
     if frame.length is not None:
-        where = f"`{frame.length.name}` gives the size"
+        where = f"`{frame.length.name}` gives the size{_agreeing(frame)}"
         return where if end is None else f"{where}; {_hex(end.bytes)} must follow"
     if end is None:
         is_fixed = all(message.sizes.fixed is not None for message in messages)
@@ -61,6 +62,12 @@ def finds_end(frame: Frame, start: Start, end: End | None, messages: list[Messag
         f"the identity gives the size of messages of one size, and {_hex(end.bytes)} must follow; "
         f"other messages end at the first {_hex(end.bytes)}, also if it was meant as data"
     )
+
+
+def _agreeing(frame: Frame) -> str:
+    """What is said of lengths behind the one that tells where a frame ends."""
+    names = [f"`{part.name}`" for part in frame.lengths[1:]]
+    return f", and {' and '.join(names)} must agree with it" if names else ""
 
 
 def synchronisation(frame: Frame, start: Start, end: End | None) -> tuple[bool, str]:

@@ -248,7 +248,8 @@ class _Resolution:
         if greatest > most.greatest:
             self._too_long(endpoint, largest, greatest, most.greatest)
         elif least < fewest.least and smallest.length is not None:
-            text = f"the payload can have {amount(least)} bytes, but `{smallest.length.name}` says"
+            text = f"the payload can have {amount(least)} bytes, but {_lengths(smallest)}"
+            text = f"{text} {'says' if len(smallest.lengths) == 1 else 'say'}"
             text = f"{text} at least {fewest.least}"
             self._context.error_at_key("PG148", self._loc, text)
 
@@ -257,7 +258,7 @@ class _Resolution:
         text = f"the payload can have {amount(greatest)} bytes, "
         stated = stated_range(frame)
         if frame.length is not None and stated is not None and stated.greatest == most:
-            text = f"{text}but `{frame.length.name}` of {endpoint}'s frame can't say more than"
+            text = f"{text}but {_lengths(frame)} of {endpoint}'s frame can't say more than"
             hint = "make the length part wider, or bound the message"
             self._context.error_at_key("PG137", self._loc, f"{text} {most}", hint)
         else:
@@ -282,3 +283,8 @@ class _Resolution:
         hint = "order the parts alike, or write a message for each sender"
         self._context.error("PG151", (*self._loc, "id"), text, hint)
         return False
+
+
+def _lengths(frame: Frame) -> str:
+    """The lengths of a frame by name, which together bound its payload."""
+    return " and ".join(f"`{part.name}`" for part in frame.lengths)

@@ -45,11 +45,11 @@ def contents_of(
 ) -> Contents:
     """The bytes of frames with this payload and, as far as it is known, this identity."""
     size = sum(stretch.count for stretch in payload)
-    length = frame.length
-    stated = None if length is None or length.over_wire else _stated(frame, length, size)
     known = dict(identity)
-    if length is not None and stated is not None:
-        known[length.name] = stated
+    for length in frame.lengths:
+        stated = None if length.over_wire else _stated(frame, length, size)
+        if stated is not None:
+            known[length.name] = stated
     found: dict[str, tuple[Stretch, ...]] = {}
     for part in frame.parts:
         if size or not part.is_optional:

@@ -7,6 +7,7 @@ What is left is said in one sentence each.
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
 from itertools import combinations
 
 from protogen.model.checksums import ChecksumSpec
@@ -81,13 +82,21 @@ def _part(
 
 
 def _is_seen(frame: Frame, part: Part) -> bool:
-    """True if a wrong byte of a number is seen by bits of other bytes, which follow from it."""
+    """True if a wrong byte of a number is seen by bits of other bytes, which follow from it.
+
+    So is one of a length by another length that surely stands where it is looked for.
+    """
     if not isinstance(part, NumberPart):
         return False
     own = _bytes_of_bits(frame, part)
     mirrors = [mirror for mirror in frame.mirrors if mirror.of.name == part.name]
     copies = (_bytes_of_bits(frame, mirror) for mirror in mirrors)
-    return any(not any(map(tuple.__eq__, own, copy)) for copy in copies)
+    if any(not any(map(tuple.__eq__, own, copy)) for copy in copies):
+        return True
+    if not isinstance(part, LengthPart):
+        return False
+    others = (other for other in frame.lengths if frame.holder(other.name) in frame.head)
+    return any(set(own).isdisjoint(_bytes_of_bits(frame, other)) for other in others)
 
 
 def _bytes_of_bits(frame: Frame, part: TypedPart) -> list[tuple[str, int]]:
@@ -286,7 +295,7 @@ def _misread_absence(frame: Frame, messages: list[Message]) -> str:
     always = any(not part.when_payload for part in frame.checksums)
     if length is None or not optional or always or frame.silence is not None:
         return ""
-    if _is_seen(frame, length):
+    if _is_seen(frame, length) or _lengths_behind(frame):
         return ""
     if not any(0 in sizes and sizes.fixed is None for sizes in _acceptable(frame, messages)):
         return ""
@@ -298,8 +307,9 @@ def _wrong_length(frame: Frame, length: LengthPart, messages: list[Message]) -> 
         return ""  # Its message can't have that size.
     if _settled_early(frame, length):
         return ""
-    behind = [part for part in frame.checksums if part in frame.tail]
-    if not frame.checksums:
+    behind: list[ChecksumPart | LengthPart] = [*frame.checksums, *_lengths_behind(frame)]
+    behind = [part for part in behind if frame.holder(part.name) in frame.tail]
+    if not frame.checksums and not behind:
         return f"a wrong `{length.name}`: nothing checks it"
     if not behind:
         return f"a wrong `{length.name}`, where so many bytes happen to check"
@@ -334,6 +344,11 @@ def _acceptable(frame: Frame, messages: list[Message]) -> list[SizeSet]:
     return list(bounded)
 
 
+def _lengths_behind(frame: Frame) -> list[LengthPart]:
+    """The lengths behind the payload."""
+    return [part for part in frame.lengths if frame.holder(part.name) in frame.tail]
+
+
 def _settled_early(frame: Frame, length: LengthPart) -> bool:
     """True if a checksum of the header alone covers the length."""
     holder = frame.holder(length.name).name
@@ -346,5 +361,5 @@ def _settled_early(frame: Frame, length: LengthPart) -> bool:
     )
 
 
-def _names(parts: list[ChecksumPart]) -> str:
+def _names(parts: Sequence[ChecksumPart | LengthPart]) -> str:
     return " and ".join(f"`{part.name}`" for part in parts)

@@ -96,9 +96,9 @@ order. A length or checksum over other parts than the device uses fails on every
         "useless-length",
         "A length that a receiver can't use",
         """\
-A length tells a receiver how many bytes to wait for. So there is one, it stands in front of the
-payload, and it counts the payload; it may count other parts as well, itself included. A number
-that has another purpose is a part with a `type` alone.
+A length tells a receiver how many bytes to wait for. So it counts the payload; it may count other
+parts as well, itself included. The first of a frame stands in front of the payload. A number that
+has another purpose is a part with a `type` alone.
 """,
         with_frame("""
             id: {type: uint8, id: true}

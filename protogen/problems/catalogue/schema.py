@@ -12,6 +12,7 @@ from protogen.problems.catalogue.frames import FRAME_CODES
 from protogen.problems.catalogue.framing import FRAMING_CODES
 from protogen.problems.catalogue.keys_and_names import KEY_AND_NAME_CODES
 from protogen.problems.catalogue.last_elements import LAST_ELEMENT_CODES
+from protogen.problems.catalogue.lengths import LENGTH_CODES
 from protogen.problems.catalogue.messages import MESSAGE_CODES
 from protogen.problems.catalogue.mirrors import MIRROR_CODES
 from protogen.problems.catalogue.optional_fields import OPTIONAL_FIELD_CODES
@@ -51,4 +52,5 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *PART_BITS_CODES,
     *MIRROR_CODES,
     *WIRE_COUNT_CODES,
+    *LENGTH_CODES,
 )

@@ -201,11 +201,9 @@ class _Assembly:
 
     @cached_property
     def _known(self) -> Mapping[str, int]:
-        """The numbers from which bits follow: those that are given, and a length."""
-        length = self._layout.length
-        if length is None or length.over_wire:
-            return self._numbers
-        return {**self._numbers, length.name: self._length(length)}
+        """The numbers from which bits follow: those that are given, and lengths."""
+        lengths = [part for part in self._layout.lengths if not part.over_wire]
+        return {**self._numbers, **{part.name: self._length(part) for part in lengths}}
 
     def _value(self, part: NumberPart) -> int:
         if isinstance(part, ChecksumPart):

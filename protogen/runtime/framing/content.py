@@ -144,6 +144,9 @@ class Content:
             self._read_length(self._layout.length)
         if self._layout.early_identity and self._layout.identity[-1] in numbers:
             self._identify()
+        for length in self._layout.lengths[1:]:
+            if length in numbers:
+                self._agree(length)
 
     def _read_bits(self, part: BitsPart, data: bytes) -> None:
         try:
@@ -184,6 +187,13 @@ class Content:
             raise Rejected("length", f"{part.name} is {value}")
         self._set_payload(size)
         self._compare()
+
+    def _agree(self, part: LengthPart) -> None:
+        """Hold another length against the size that the first one told."""
+        assert self.payload_size is not None
+        value, due = self.numbers[part.name], self._layout.counted(part, self.payload_size)
+        if value != due:
+            raise Rejected("length", f"{part.name} is {value}, and has to be {due}")
 
     def _identify(self) -> None:
         """Find the messages of the identity, and what they say about the size."""

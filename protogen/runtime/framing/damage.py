@@ -95,7 +95,7 @@ class Judge:
             layout.spec.rescans and (layout.early_identity or not layout.identity)
         )
         asked = layout.identity if self._asks_identity else ()
-        checked: tuple[Part | None, ...] = (*asked, layout.length, *layout.bounded)
+        checked: tuple[Part, ...] = (*asked, *layout.lengths, *layout.bounded)
         head = [item for item in layout.slices(1) if item.part in layout.head]
         self._literals = [
             (item.part.value, slice(item.start, item.end))
@@ -167,7 +167,10 @@ class Judge:
         value = numbers[part.name]
         size = layout.counted_payload(part, value)
         if size is not None:
-            return size if self._fits(size, numbers) else None
+            is_agreed = all(
+                numbers[other.name] == layout.counted(other, size) for other in layout.lengths[1:]
+            )
+            return size if is_agreed and self._fits(size, numbers) else None
         end = next(place.stop for checked, place in self._checked if checked is part)
         return self._of_length(head[:end], f"{part.name} is {value}")
 

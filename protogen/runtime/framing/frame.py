@@ -48,7 +48,8 @@ class LengthPart(NamedTuple):
     """The number of bytes of the parts that it `counts`, before any stuffing or on the wire.
 
     The payload is one of them; the length itself may be. `least` and `greatest` bound its value.
-    On the wire, it counts all parts that are stuffed, and stands in front of them.
+    On the wire, it counts all parts that are stuffed, and stands in front of them. Of several in
+    one frame, the first tells where it ends; the others are for the same payload.
     """
 
     name: str

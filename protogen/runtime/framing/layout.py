@@ -62,11 +62,10 @@ class Layout:
         self.tail = self.parts[self.payload_index + 1 :]
         self.head_size = sum(part.size for part in self.head)
         early = written_apart(self.head)
-        self.length = next((part for part in early if isinstance(part, LengthPart)), None)
+        self.length = self.lengths[0] if self.lengths else None
         self._counted_around = {
             (part.name, has_payload): _counted_around(spec.parts, part, has_payload)
-            for part in early
-            if isinstance(part, LengthPart)
+            for part in self.lengths
             for has_payload in (False, True)
         }
         apart = written_apart(self.parts)
@@ -100,6 +99,12 @@ class Layout:
         self.stuffed = tuple(
             index for index, part in enumerate(self.parts) if part.name in spec.stuffed
         )
+
+    @cached_property
+    def lengths(self) -> tuple[LengthPart, ...]:
+        """The first tells where the frame ends, and the others have to agree with it."""
+        apart = written_apart(self.parts)
+        return tuple(part for part in apart if isinstance(part, LengthPart))
 
     @cached_property
     def early_identity(self) -> bool:

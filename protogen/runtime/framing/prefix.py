@@ -112,7 +112,7 @@ class Prefix:
         layout = self._sender.layout
         told: tuple[Part, ...] = layout.identity
         if layout.length is not None:
-            told = (layout.length, *(told if layout.spec.rescans else ()))
+            told = (*layout.lengths, *(told if layout.spec.rescans else ()))
         parts = (
             part.size * BYTES[255 * (_tells(part, told) or _is_checked(part, layout))]
             for part in layout.head

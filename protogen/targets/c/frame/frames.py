@@ -7,6 +7,7 @@ second buffer is needed.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 
 import msgspec
@@ -28,6 +29,7 @@ from protogen.model.frame import (
 from protogen.model.frame_places import PlacedPart, Side
 from protogen.model.frame_plan import FramePlan
 from protogen.model.identities import Runs
+from protogen.model.part_plans import FurtherLength
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.groups import in_run
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
@@ -84,8 +86,8 @@ class Half(msgspec.Struct, frozen=True):
     flags: int | None = None
     """Flags of the writer for the payload's bytes, where they change."""
 
-    tells_length: bool = False
-    """True if the length part is among them."""
+    lengths: tuple[tuple[str, str, str], ...] = ()
+    """The lengths among them, as variables: type, name and value."""
 
 
 class FrameView(msgspec.Struct, frozen=True, dict=True):
@@ -158,17 +160,23 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
     def length(self) -> str:
         """The length part's value; empty where there is none."""
         view = self.decoder.length
-        if view is None:
-            return ""
-        if not view.optional:
-            return f"{view.base}U + payload" if view.base else "payload"
-        return f"(payload == 0U ? {view.base}U : {view.base + view.optional}U + payload)"
+        return "" if view is None else _counted(view.base, view.optional)
 
     @property
     def length_type(self) -> str:
         """Type of the length part's value."""
         length = self.plan.length
-        return "" if length is None else unsigned_type(max(16, length.part.type.bits))
+        return "" if length is None else _length_type(length.part)
+
+    @cached_property
+    def lengths(self) -> tuple[tuple[str, str, str], ...]:
+        """The lengths as variables: type, name and value."""
+        first = [(self.length_type, "length", self.length)] if self.length else []
+        return (*first, *map(self._further, self.plan.further_lengths))
+
+    def _further(self, item: FurtherLength) -> tuple[str, str, str]:
+        name = argument_name(item.part.name, self._names)
+        return _length_type(item.part), name, _counted(item.base, item.optional)
 
     # --- the stuffed region -----------------------------------------------------------------------
 
@@ -300,7 +308,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
 
     def _value(self, part: NumberPart) -> str:
         """The value of a number that is not worked out of other bytes."""
-        is_length = isinstance(part, LengthPart)
+        is_length = self.plan.length is not None and part.name == self.plan.length.part.name
         return "length" if is_length else argument_name(part.name, self._names)
 
     # --- byte by byte -----------------------------------------------------------------------------
@@ -334,13 +342,16 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
             before = flags
         in_head = tuple(s for s in steps if s.in_head)
         in_tail = tuple(s for s in steps if not s.in_head)
-        head = Half("head", in_head, flags=payload_flags, tells_length=self._has_length(Side.HEAD))
-        tail = Half("tail", in_tail, self.plan.end_bytes, tells_length=self._has_length(Side.TAIL))
+        in_front, behind = (tuple(self._lengths_on(side)) for side in Side)
+        head = Half("head", in_head, flags=payload_flags, lengths=in_front)
+        tail = Half("tail", in_tail, self.plan.end_bytes, lengths=behind)
         return (head, tail) if self.sends_tail else (head,)
 
-    def _has_length(self, side: Side) -> bool:
-        length = self.plan.length
-        return length is not None and self.plan.part(length.part.name).place.side is side
+    def _lengths_on(self, side: Side) -> Iterator[tuple[str, str, str]]:
+        """The lengths on one side of the payload, as variables."""
+        for part, variable in zip(self.plan.frame.lengths, self.lengths, strict=True):
+            if self.plan.part(part.name).place.side is side:
+                yield variable
 
     def _flags(self, name: str) -> int:
         """Flags of a part: the checksums that cover it, and whether it is stuffed."""
@@ -348,6 +359,17 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         covering = sum(1 << index for index, part in checksums if name in part.covers)
         region = self.plan.region
         return covering | (_STUFFED if region is not None and name in region.parts else 0)
+
+
+def _counted(base: int, optional: int) -> str:
+    """The value of a length, by what it counts besides the payload."""
+    if not optional:
+        return f"{base}U + payload" if base else "payload"
+    return f"(payload == 0U ? {base}U : {base + optional}U + payload)"
+
+
+def _length_type(part: LengthPart) -> str:
+    return unsigned_type(max(16, part.type.bits))
 
 
 def _covered(item: PlacedPart) -> set[str]:

@@ -10,7 +10,6 @@ from protogen.model.frame import (
     BitsPart,
     ChoicePart,
     IdentityPart,
-    LengthPart,
     LiteralPart,
     MirrorBits,
     NumberPart,
@@ -22,6 +21,9 @@ from protogen.targets.c.frame.expressions import byte, less_absent
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
+
+_WIDE = 16
+"""Bits of the smallest type in which C adds numbers."""
 
 
 class NumberView(msgspec.Struct, frozen=True):
@@ -37,7 +39,10 @@ class NumberView(msgspec.Struct, frozen=True):
     """The condition that its bytes are no number; empty where each are one."""
     bounds: str
     """The condition that it is out of bounds; empty where nothing bounds it."""
+    contradicts: str
+    """The condition that another length does not agree with the first; empty where it is none."""
     is_length: bool
+    """True if it is the length that tells the payload's size."""
     identifies: bool
     """True if it is the identity's last part, and the identity tells the payload's size."""
     tells_sizes: bool
@@ -46,7 +51,7 @@ class NumberView(msgspec.Struct, frozen=True):
     @property
     def is_of_use(self) -> bool:
         """True if anything is checked or known when it is there."""
-        checks = self.seven_bit or self.fault or self.bounds
+        checks = self.seven_bit or self.fault or self.bounds or self.contradicts
         return bool(checks or self.is_length or self.identifies or self.tells_sizes)
 
     @property
@@ -128,6 +133,7 @@ def _bits(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberView
         seven_bit=tuple(range(item.offset, item.end)) if part.type.byte_bits == 7 else (),
         fault="",
         bounds="" if is_start else " || ".join(bounds),
+        contradicts=" || ".join(view.contradicts for view in members if view.contradicts),
         is_length=length is not None,
         identifies=any(view.identifies for view in members),
         tells_sizes=any(view.tells_sizes for view in members),
@@ -164,10 +170,38 @@ def _number(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberVi
         seven_bit=tuple(range(item.offset, item.end)) if type_.byte_bits == 7 else (),
         fault=numbers.fault(type_, "content", item.offset, less),
         bounds=_out_of_bounds(item, value, less) if item in plan.bounded and not starts else "",
-        is_length=isinstance(part, LengthPart),
+        contradicts=_contradicts(plan, part, value, numbers),
+        is_length=plan.length is not None and part.name == plan.length.part.name,
         identifies=is_last and plan.identity_is_early and plan.length is None,
         tells_sizes=item.in_head and item.end == plan.sizes_told_at,
     )
+
+
+def _contradicts(plan: FramePlan, part: NumberPart, value: str, numbers: PartNumbers) -> str:
+    """The condition that a length does not agree with the first; empty for any other number.
+
+    Both are numbers of the head. Behind the payload, its size stands for the first.
+    """
+    length = next((item for item in plan.further_lengths if item.part.name == part.name), None)
+    if length is None:
+        return ""
+    first = length.first
+    if not length.placed.in_head:
+        size, empty = "decoder->payload", 0
+        due = _more(size, size, empty, length.base, length.base + length.optional)
+        return f"{value} != {due}"
+    number = numbers.value(first.part.type, "content", plan.part(first.part.name).offset)
+    is_wide = part.type.bits > _WIDE >= first.part.type.bits
+    wide = f"({unsigned_type(part.type.bits)}){number}" if is_wide else number
+    return f"{value} != {_more(wide, number, first.base, length.more_if_empty, length.more)}"
+
+
+def _more(number: str, tells: str, base: int, empty: int, more: int) -> str:
+    """A number and so much more, which depends on whether `tells` is `base`."""
+    if empty == more:
+        return f"{number} {'+' if more > 0 else '-'} {abs(more)}U" if more else number
+    sums = [_more(number, tells, base, item, item) for item in (empty, more)]
+    return f"({tells} == {base}U ? {' : '.join(sums)})"
 
 
 def _out_of_bounds(item: PlacedPart, value: str, less: str) -> str:

@@ -244,7 +244,9 @@ def _jobs(part: NumberPart) -> tuple[str, ...]:
     match part:
         case LengthPart():
             over = ", as they are on the wire" if part.over_wire else ""
-            return (f"Number of bytes of {part_names(part.counts)}{over}.",)
+            first = part.agrees_with
+            agrees = "" if first is None else f"It has to agree with {code(first)}."
+            return (f"Number of bytes of {part_names(part.counts)}{over}.", agrees)
         case CounterPart():
             return ("Counts frames and wraps.", _default(part))
         case ChoicePart():

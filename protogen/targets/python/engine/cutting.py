@@ -418,6 +418,7 @@ class _Cutter(ChecksumFunction):
                 number = self.number_at(self.content, part, place)
                 self.stop_if(f"{number} & 0x{part.mask:02X} != 0x{part.fixed:02X}")
         self._mirrors()
+        self._further_lengths()
         for item in self.plan.bounded:
             part = item.part
             assert isinstance(part, NumberPart)
@@ -437,6 +438,17 @@ class _Cutter(ChecksumFunction):
             of = self.number(self.content, mirror.of)
             differs = f"{bracketed(bits)} ^ {bracketed(of)} != 0x{mirror.flips:02X}"
             self.stop_if(differs if mirror.inverted else f"{bits} != {of}")
+
+    def _further_lengths(self) -> None:
+        """Hold other lengths against the first, which the size of the payload agrees with."""
+        for length in self.plan.further_lengths:
+            first = bracketed(self.number(self.content, length.first.part))
+            sign = "+" if length.more > 0 else "-"
+            due = f"{first} {sign} {abs(length.more)}" if length.more else first
+            absent = length.more - length.more_if_empty
+            if absent:
+                due += f" - {absent} * ({first} == {length.first.base})"
+            self.stop_if(f"{bracketed(self.number(self.content, length.part))} != {due}")
 
     # --- the event --------------------------------------------------------------------------------
 

@@ -328,8 +328,9 @@ class _Framer(FrameFunction):
     def _value(self, part: NumberPart | BitsPart, bare: bool) -> str:
         if isinstance(part, BitsPart):
             return self._joined_bits(part, bare)
-        length = self.plan.length
-        if length is not None and part is length.part:
+        lengths = (self.plan.length, *self.plan.further_lengths)
+        length = next((item for item in lengths if item and part.name == item.part.name), None)
+        if length is not None:
             counted = length.base + (0 if bare else length.optional)
             if self._fixed is not None:
                 return str(self._fixed + counted)
