@@ -96,7 +96,9 @@ def test_a_decoder_in_memory_of_zeros_is_like_one_that_was_initialised(
     dice = Random(f"{path.stem} {endpoint}")
     starts = [bytes((value,)) for value in range(256)]
     starts += [bytes(dice.choices(material.marks, k=2)) for _ in range(200)]
-    starts += [frame[cut:] + frame for frame in dice.choices(material.frames, k=20) for cut in (0, 1)]
+    starts += [
+        frame[cut:] + frame for frame in dice.choices(material.frames, k=20) for cut in (0, 1)
+    ]
     steps: list[Step] = []
     for start in starts:
         steps += [("clear",), ("feed" if dice.random() < 0.5 else "push", start), ("flush",)]

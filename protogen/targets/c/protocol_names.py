@@ -176,9 +176,7 @@ def _claim_forms(names: Names, name: str, forms: Iterable[Sender]) -> None:
         table.add(taken, thing)
 
 
-def _of_forms(
-    names: Names, forms: Iterable[Sender], start: str
-) -> Iterator[tuple[NameTable, str]]:
+def _of_forms(names: Names, forms: Iterable[Sender], start: str) -> Iterator[tuple[NameTable, str]]:
     types = _TYPES_OF_A_SENDER.split()
     for word in (*_TAGS_OF_FORMS.split(), *types):
         yield names.tags, f"{start}_{word}"
