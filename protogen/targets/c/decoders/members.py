@@ -47,7 +47,7 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
     plan, push, stuffing = view.plan, view.push, view.stuffing
     kind = None if stuffing is None else stuffing.kind
     is_push = view.flat is None
-    has_limit = not view.simple if is_push else view.only_size is None
+    has_limit = not view.simple if view.flat is None else view.flat.only_size is None
     fails = view.keeps_wire or push.decides_later
     holds = is_push and push.searches and push.holds_delimiter
     begins_next = is_push and push.keeps_behind
