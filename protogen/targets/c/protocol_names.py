@@ -65,9 +65,8 @@ def _all_names(protocol: Protocol) -> Names:
     claim_texts(names, protocol)
     for sender in protocol.senders:
         _claim_sender(names, sender)
-    for name in protocol.sending:
-        if len(protocol.forms(name)) > 1:
-            _claim_forms(names, name, protocol.forms(name))
+    for name in dict.fromkeys(item.endpoint for item in protocol.senders if not item.is_only_form):
+        _claim_forms(names, name, protocol.forms(name))
     for enum in protocol.enums:
         enum_view(enum, names)
     for flags in protocol.flags:
@@ -159,9 +158,14 @@ def _of_sender(names: Names, sender: Sender, start: str) -> Iterator[tuple[NameT
         for word in ("begun", "begun_byte"):
             yield names.others, f"{start}_{word}"
     if not sender.is_only_form:
-        yield names.tags, f"{start}_candidate"
-        for word in (*functions, *_FUNCTIONS_OF_A_CANDIDATE.split()):
-            yield names.others, f"{start}_candidate_{word}"
+        yield from _of_candidate(names, start)
+
+
+def _of_candidate(names: Names, start: str) -> Iterator[tuple[NameTable, str]]:
+    """The names of what is tried among the other forms of an endpoint's frames."""
+    yield names.tags, f"{start}_candidate"
+    for word in (*_FUNCTIONS_OF_A_SENDER.split(), *_FUNCTIONS_OF_A_CANDIDATE.split()):
+        yield names.others, f"{start}_candidate_{word}"
 
 
 def _claim_forms(names: Names, name: str, forms: Iterable[Sender]) -> None:

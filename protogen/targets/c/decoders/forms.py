@@ -1,7 +1,7 @@
 """A decoder for all forms of an endpoint's frames, which tries them at each place.
 
 The C code follows the runtime's `framing/forms.py`. Each form has a candidate: the machine of its
-own decoder, which reads bytes that are kept for all of them, and whose verdict waits for the others.
+own decoder, which reads bytes that are kept for all forms, and whose verdict waits for the others.
 """
 
 from __future__ import annotations
