@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from protogen.model.frame import members_of
+from protogen.model.frame_plan import FramePlan
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import Struct, Switch
@@ -151,14 +152,18 @@ def _of_sender(names: Names, sender: Sender, start: str) -> Iterator[tuple[NameT
         yield names.others, function_of(start, item)
     if any(group.identities is not None for group in sender.plan.groups):
         yield names.others, f"{start}_told"
-    if sender.plan.is_trimmed:
-        for word in ("fill_up", "trim"):
-            yield names.others, f"{start}_{word}"
-    if sender.plan.mark_size and len(sender.plan.start_words) > 1:
-        for word in ("begun", "begun_byte"):
-            yield names.others, f"{start}_{word}"
+    for word in _sometimes(sender.plan):
+        yield names.others, f"{start}_{word}"
     if not sender.is_only_form:
         yield from _of_candidate(names, start)
+
+
+def _sometimes(plan: FramePlan) -> Iterator[str]:
+    """Functions that only some frames have."""
+    if plan.is_trimmed:
+        yield from ("fill_up", "trim")
+    if plan.mark_size and len(plan.start_words) > 1:
+        yield from ("begun", "begun_byte")
 
 
 def _of_candidate(names: Names, start: str) -> Iterator[tuple[NameTable, str]]:
