@@ -10,7 +10,7 @@ from typing import Any
 import handwritten_streams
 import pytest
 from c_engine import check_events, process_of
-from compiled import ROOT, module_at, name_of, protocol_of
+from compiled import FRAMINGS, ROOT, module_at, name_of, protocol_of
 from corpus import Material, joined, marks_of, material_of, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -21,9 +21,11 @@ from test_recovery import drawn_pieces
 
 from protogen.fuzzing.c_calls import Step
 
+KINDS = sorted((ROOT / "tests" / "form_schemas").glob("*.yaml"))
+"""Forms whose starts are found in each of the ways that there are."""
 FORMS = [
     (path, endpoint)
-    for path in sorted((ROOT / "tests" / "framings").glob("*.yaml"))
+    for path in (*FRAMINGS, *KINDS)
     for endpoint in protocol_of(path).sending
     if len(protocol_of(path).forms(endpoint)) > 1
 ]

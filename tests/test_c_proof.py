@@ -37,6 +37,8 @@ BITS = ROOT / "tests" / "c_schemas" / "part_bits.yaml"
 """Parts of frames whose bits are parts, which a decoder reads and compares."""
 MIRRORS = ROOT / "tests" / "c_schemas" / "mirrors.yaml"
 """Parts of frames that follow from others, with which a decoder compares them."""
+FORMS = ROOT / "tests" / "framings" / "forms.yaml"
+"""Several forms of frame, for which there is one decoder beside those of each form."""
 DECODES = [
     (path, machine)
     for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS)
@@ -52,6 +54,8 @@ PUSHES: list[tuple[Path, Events, str]] = (
         (TRIMMED, "messages", WIDE),
         (BITS, "all", WIDE),
         (MIRRORS, "all", WIDE),
+        (FORMS, "all", WIDE),
+        (FORMS, "messages", NARROW),
         (BITS, "messages", NARROW),
     ]
 )
@@ -89,7 +93,8 @@ def test_no_input_harms_a_decoder(path: Path, events: Events, machine: str, tmp_
     protocol = protocol_of(path)
     made = generate(protocol, tmp_path, COptions(events=events))
     driver = push_driver(protocol, made.header.read_text(encoding="utf-8"))
-    assert len(driver.proves) == len(protocol.senders)
+    together = [name for name in protocol.sending if len(protocol.forms(name)) > 1]
+    assert len(driver.proves) == len(protocol.senders) + len(together)
     report = prove(made, driver, machine)
     assert (report.alarms, report.found) == (0, ())
 

@@ -136,6 +136,7 @@ def _messages(unit: Unit) -> list[_Owner]:
 
 
 def _decoders(unit: Unit) -> list[_Owner]:
+    """Those of single forms of frame, and those of all forms of an endpoint's."""
     roles = ("init", "push", "feed", "flush")
     return [
         _Owner(
@@ -143,14 +144,15 @@ def _decoders(unit: Unit) -> list[_Owner]:
             tuple((role, f"{decoder.prefix}_decoder_{role}") for role in roles),
             f"struct {decoder.prefix}_decoder",
         )
-        for decoder in unit.framing.decoders
+        for decoder in (*unit.framing.decoders, *unit.framing.together)
     ]
 
 
 def _handlers(unit: Unit) -> list[str]:
     """The generated `dispatch` functions and the empty handlers."""
     dispatches = unit.framing.dispatches
-    functions = [f"{dispatch.decoder.prefix}_dispatch" for dispatch in dispatches]
+    decoders = (*(dispatch.decoder for dispatch in dispatches), *unit.framing.together)
+    functions = [f"{decoder.prefix}_dispatch" for decoder in decoders]
     return functions + [item.function for dispatch in dispatches for item in dispatch.handlers]
 
 

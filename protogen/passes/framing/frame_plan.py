@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 
-from protogen.copying import replace
 from protogen.model.frame import (
     Base16,
     ChecksumPart,
@@ -55,15 +54,7 @@ def plan_frame(
 ) -> FramePlan:
     """The plan of a sender's frame."""
     virtual = tuple(_virtual(part, messages) for part in frame.virtual)
-    groups = identity_groups(frame, messages, overloads)
-    groups = tuple(_as_carried(group, framing.payload.greatest) for group in groups)
-    return _Planner(frame, framing).plan(groups, virtual)
-
-
-def _as_carried(group: IdentityGroup, greatest: int) -> IdentityGroup:
-    """The group with the sizes that fit this frame: in another form, messages may be longer."""
-    each = (sizes.within(0, greatest) or sizes for sizes in group.sizes)
-    return replace(group, sizes=tuple(each))
+    return _Planner(frame, framing).plan(identity_groups(frame, messages, overloads), virtual)
 
 
 def _virtual(part: VirtualPart, messages: Sequence[Message]) -> VirtualPlan:

@@ -41,7 +41,7 @@ release reopen reset resume room run search seek seek_on send_head send_tail set
 stuff surplus take take_head take_tail take_whole unstuff unstuff_to wire_end wrap write
 """
 _MACROS_OF_A_SENDER = "frame_max idle_us"
-_FUNCTIONS_OF_A_CANDIDATE = "begun begun_byte end fill_up mark step"
+_FUNCTIONS_OF_A_CANDIDATE = "begun begun_byte end fill_up mark read step"
 _TAGS_OF_FORMS = "decoder event form"
 _FUNCTIONS_OF_FORMS = """
 add_noise choose decoder_feed decoder_flush decoder_idle decoder_init decoder_push dispatch drop

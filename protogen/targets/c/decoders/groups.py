@@ -168,6 +168,8 @@ def _message(
 ) -> ReceivedMessage:
     checks = view.check if _needs_check(plan, view) else ""
     own = message.sizes.fixed
+    # In another form of frame it may be longer, than what counts bytes of this one can say.
+    sizes = sizes.within(0, plan.payload.greatest) or sizes
     return ReceivedMessage(
         message.name,
         view.constant,
