@@ -38,8 +38,11 @@ BITS = ROOT / "tests" / "c_schemas" / "part_bits.yaml"
 MIRRORS = ROOT / "tests" / "c_schemas" / "mirrors.yaml"
 """Parts of frames that follow from others, with which a decoder compares them."""
 FORMS = ROOT / "tests" / "framings" / "trimmed_forms.yaml"
-"""Two forms of frame, for which there is one decoder beside those of each form. Of payloads that are
-filled up in room of their own, EVA does not see that they are as long as their events say."""
+"""Two forms of frame, for which there is one decoder beside those of each form.
+
+Of payloads that are filled up in room of their own, EVA does not see that they are as long as their
+events say.
+"""
 DECODES = [
     (path, machine)
     for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS)

@@ -164,7 +164,8 @@ def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
 def push_driver(protocol: Protocol, header: str, *, reads_ends: bool = True) -> Driver:
     """Any number of bytes and ends of input, for each sender's decoder.
 
-    The handler reads payloads: both ends, or the first byte alone. The decoder's memory holds anything before it is initialised.
+    The handler reads payloads: both ends, or the first byte alone. The decoder's memory holds
+    anything before it is initialised.
     """
     prefixes, polled = _PUSH.findall(header), set(_POLLS.findall(header))
     limited = polled & set(_LIMIT.findall(header))
