@@ -150,21 +150,24 @@ def _process_or_error(path: Path, options: COptions) -> Process | AssertionError
 def python_events(module: Any, sender: str, steps: Iterable[Step]) -> list[list[CEvent]]:
     """The events of each step, as C should have them."""
     decoder = module.Decoder(sender)
+    has_forms = len(module.PROTOCOL.forms(sender)) > 1
     found = []
     for step in steps:
         if step[0] == "clear":
             decoder = module.Decoder(sender)
         events = decoder.feed(step[1]) if len(step) == 2 else decoder.flush()
-        found.append([_event(event) for event in events])
+        found.append([_event(event, has_forms=has_forms) for event in events])
     return found
 
 
-def _event(event: Any) -> CEvent:
+def _event(event: Any, *, has_forms: bool = False) -> CEvent:
     if event.kind == "invalid":
         return CEvent(event.kind, event.offset, event.size, event.reason)
     plain = CEvent(
         event.kind, event.offset, event.size, parts=as_dict(event.parts), payload=event.payload
     )
+    if has_forms:
+        plain = replace(plain, form=event.form)
     if event.kind == "unknown":
         return plain
     return replace(plain, message=event.message.NAME, values=event.message.to_dict())

@@ -20,6 +20,7 @@ FOLDERS = (
     "tests/framings",
     "tests/c_schemas",
     "tests/stuffed_schemas",
+    "tests/form_schemas",
 )
 KEPT = {"matty", "rn1", "cobs", "sync_length_crc"}
 """Schemas that stand for the others: stuffed, of 7-bit bytes, encoded, with a start in the data."""

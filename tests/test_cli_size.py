@@ -22,6 +22,7 @@ from protogen.targets.c.options import COptions
 
 RN1 = str(ROOT / "schemas" / "rn1.yaml")
 MATTY = str(ROOT / "schemas" / "matty.yaml")
+FORMS = str(ROOT / "tests" / "framings" / "forms.yaml")
 TOOLS = {"atmega328p": "avr-", "cortex-m0": "arm-none-eabi-", "host": ""}
 machines = pytest.mark.parametrize("mcu", sorted(MACHINES))
 
@@ -107,6 +108,16 @@ def test_a_decoder_takes_as_much_stack_as_its_deepest_chain() -> None:
         stack = {item["role"]: item["stack"] for item in decoder["functions"]}
         assert stack["feed"] > stack["push"] > stack["init"] > 0
         assert decoder["stack"] == stack["feed"]
+
+
+def test_the_decoder_of_all_forms_is_one_of_the_decoders() -> None:
+    require_tool("avr-gcc")
+    *alone, together = measured(FORMS)["decoders"]
+    assert [item["name"] for item in alone] == ["station_brief", "station_wide", "station_counted"]
+    # Bytes are kept once, those of the greatest frame; each form has some numbers of its own.
+    assert together["name"] == "station"
+    assert max(item["struct"] for item in alone) < together["struct"]
+    assert together["struct"] < sum(item["struct"] for item in alone)
 
 
 def test_the_table_has_a_row_for_everything() -> None:

@@ -19,6 +19,23 @@ from protogen.runtime.errors import DecodeError, EncodeError
 TRIO = ROOT / "tests" / "framings" / "forms.yaml"
 MATTY = ROOT / "schemas" / "matty.yaml"
 
+BEGUN = """
+protocol: demo
+endpoints: {one: One}
+forms:
+  short:
+    frame: {start: {literal: 2, unprotected: any},
+            length: {type: uint8, counts: payload, range: [0, 9]}, payload: {},
+            sum: {type: uint8, algorithm: sum-8, covers: payload}}
+  long:
+    frame: {start: {literal: {hex: 02 7E 7E}, unprotected: any},
+            length: {type: uint8, counts: payload}, payload: {}}
+messages:
+  note: {from: one, fields: {text: {type: ascii, size: {fill: true, max: 9}}}}
+decisions:
+  any: {question: What of data?, document: No., choice: Look on., because: Rare.}
+"""
+
 # --- an oracle: the frames of `trio`, read by hand ------------------------------------------------
 
 KNOWN = {"brief": {0x00, 0x7E, 0xC0, 0x7D, 0xB5}, "wide": {0x7E, 0xC0, 0x7D, 0xDB, 0xB5}}
@@ -236,6 +253,22 @@ def test_a_decoder_without_a_sender_hears_both_ends(engine: Any) -> None:
         portions = [data[at : at + size] for at in range(0, len(data), size)]
         events = events_of(matty.Decoder(engine=engine), portions)
         assert [(event.sender, event.message.NAME) for event in events] == told
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("sizes", [(3,), (1, 1, 1), (1, 2), (2, 1)])
+def test_a_start_that_came_in_pieces_begins_a_frame_that_the_end_cuts_off(
+    sizes: tuple[int, ...], engine: str, tmp_path: Path
+) -> None:
+    schema = tmp_path / "demo.yaml"
+    schema.write_text(BEGUN, encoding="utf-8")
+    decoder, rest, found = module_at(schema).Decoder("one", engine=engine), b"\x02\x7e\x7e", []
+    for size in sizes:
+        found += decoder.feed(rest[:size])
+        rest = rest[size:]
+    found += decoder.flush()
+    # 7E is no length of a short frame, which has two bytes then; a long one has its start.
+    assert [(event.size, event.reason) for event in found] == [(3, "truncated")]
 
 
 def test_bytes_of_nobody_have_no_sender() -> None:

@@ -15,6 +15,8 @@ from protogen.footprint.elf import Section
 from protogen.footprint.graph import Graph
 from protogen.footprint.machines import Machine
 from protogen.model.protocol import Protocol
+from protogen.targets.c.decoders.decoder import DecoderView
+from protogen.targets.c.decoders.forms import FormsDecoder
 from protogen.targets.c.emit import Unit, unit_of
 from protogen.targets.c.options import COptions
 
@@ -76,7 +78,7 @@ class Report(msgspec.Struct, frozen=True):
 
     @property
     def ram(self) -> int:
-        """RAM of one decoder of each sender, and static data."""
+        """RAM of all decoders, and static data."""
         return self.static + sum(decoder.struct for decoder in self.decoders)
 
 
@@ -136,14 +138,16 @@ def _messages(unit: Unit) -> list[_Owner]:
 
 
 def _decoders(unit: Unit) -> list[_Owner]:
+    """Those of single forms of frame, and those of all forms of an endpoint's."""
     roles = ("init", "push", "feed", "flush")
+    decoders: list[DecoderView | FormsDecoder] = [*unit.framing.decoders, *unit.framing.together]
     return [
         _Owner(
             decoder.name,
             tuple((role, f"{decoder.prefix}_decoder_{role}") for role in roles),
             f"struct {decoder.prefix}_decoder",
         )
-        for decoder in unit.framing.decoders
+        for decoder in decoders
     ]
 
 
@@ -151,6 +155,7 @@ def _handlers(unit: Unit) -> list[str]:
     """The generated `dispatch` functions and the empty handlers."""
     dispatches = unit.framing.dispatches
     functions = [f"{dispatch.decoder.prefix}_dispatch" for dispatch in dispatches]
+    functions += [f"{decoder.prefix}_dispatch" for decoder in unit.framing.together]
     return functions + [item.function for dispatch in dispatches for item in dispatch.handlers]
 
 

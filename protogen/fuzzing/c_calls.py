@@ -73,6 +73,8 @@ class CEvent(msgspec.Struct, frozen=True):
     payload: bytes | None = None
     values: Values | None = None
     """Values that the message's handler was given."""
+    form: str = ""
+    """The form of the frame, where the decoder finds several."""
 
 
 Step = tuple[Literal["feed", "push"], bytes] | tuple[Literal["flush", "clear"]]
@@ -189,6 +191,10 @@ class Calls:
         index = answers.number(2)
         if kind == "invalid":
             return CEvent(kind, offset, size, reason)
+        form = ""
+        if decoder.forms:
+            found = decoder.forms[answers.number(1)]
+            form, decoder = found.name, self._driver.decoders[found.decoder]
         parts = _parts(answers, decoder)
         payload = answers.data()
         message, values = "", None
@@ -197,7 +203,7 @@ class Calls:
         if answers.take(1) == b"H":
             values = self._handled(answers, decoder, index, parts)
             assert answers.take(1) == b"."
-        return CEvent(kind, offset, size, reason, message, parts, payload, values)
+        return CEvent(kind, offset, size, reason, message, parts, payload, values, form)
 
     def _handled(
         self, answers: Answers, decoder: DrivenDecoder, index: int, parts: Values

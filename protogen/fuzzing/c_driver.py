@@ -66,6 +66,17 @@ class DrivenHandler(msgspec.Struct, frozen=True):
     message: int
 
 
+class DrivenForm(msgspec.Struct, frozen=True):
+    """One of several forms that a decoder finds."""
+
+    name: str
+    member: str
+    """The member of the union of parts."""
+    constant: str
+    decoder: int
+    """Index of the decoder of that form alone, whose parts it has."""
+
+
 class DrivenDecoder(msgspec.Struct, frozen=True):
     """The decoder of what one endpoint sends."""
 
@@ -77,6 +88,9 @@ class DrivenDecoder(msgspec.Struct, frozen=True):
     """True if `push` returns which message is complete, instead of calling a handler."""
     parts: tuple[DrivenPart, ...]
     handlers: tuple[DrivenHandler, ...]
+    forms: tuple[DrivenForm, ...] = ()
+    """The forms of the frames, where it finds several; their parts and handlers are those of the
+    decoders for each of them."""
 
 
 class Driver(msgspec.Struct, frozen=True):

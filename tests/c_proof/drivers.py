@@ -67,6 +67,10 @@ _ENDS = """    if (event->payload_size > 0) {
         sink = event->payload[event->payload_size - 1];
     }
 """
+_FIRST_BYTE = """    if (event->payload_size > 0) {
+        sink = event->payload[0];
+    }
+"""
 _EACH = """    for (size_t i = 0; i < event->payload_size; i++) {
         sink = event->payload[i]; /* EVA has to show that it was received. */
     }
@@ -157,14 +161,15 @@ def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
     return replace(_driver(parts, proofs), options=options)
 
 
-def push_driver(protocol: Protocol, header: str) -> Driver:
+def push_driver(protocol: Protocol, header: str, *, reads_ends: bool = True) -> Driver:
     """Any number of bytes and ends of input, for each sender's decoder.
 
-    The handler reads payloads. The decoder's memory holds anything before it is initialised.
+    The handler reads payloads: both ends, or the first byte alone. The decoder's memory holds
+    anything before it is initialised.
     """
     prefixes, polled = _PUSH.findall(header), set(_POLLS.findall(header))
     limited = polled & set(_LIMIT.findall(header))
-    given = {"bounds": _bounds(header), "reads": _ENDS}
+    given = {"bounds": _bounds(header), "reads": _ENDS if reads_ends else _FIRST_BYTE}
     upper = protocol.name.upper()
     parts = [
         _decoder(

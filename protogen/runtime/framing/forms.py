@@ -58,7 +58,7 @@ class FormsCandidate:
         self._candidates = [Candidate(item, shares_start=shares_start) for item in senders]
         self._verdicts: list[Cut | Failure | None] = [None] * len(senders)
         self._is_known = [False] * len(senders)
-        self._size = 0
+        self._wire = bytearray()
         self._chosen = 0
 
     @classmethod
@@ -76,7 +76,7 @@ class FormsCandidate:
 
     def push(self, byte: int) -> Cut | Failure | None:
         """Take the next byte. None: the candidate needs more."""
-        self._size += 1
+        self._wire.append(byte)
         for index, candidate in enumerate(self._candidates):
             if self._verdicts[index] is None:
                 self._judge(index, candidate.push(byte))
@@ -104,7 +104,7 @@ class FormsCandidate:
         self._verdicts[index] = verdict
 
     def _is_begun_by_now(self, index: int) -> bool:
-        return self._begun[index] or self._size > self._senders[index].layout.start_size
+        return self._begun[index] or self._wire.startswith(self._senders[index].layout.start_words)
 
     def _verdict(self) -> Cut | Failure | None:
         """The verdict, as soon as no form can change it."""

@@ -13,7 +13,7 @@ from protogen.model.frame_plan import StartRule
 from protogen.model.protocol import Protocol
 from protogen.passes.selection import select
 from protogen.targets.banner import C, banner
-from protogen.targets.c.decoders.members import members_of, memory_of
+from protogen.targets.c.decoders.members import candidate_members, members_of, memory_of
 from protogen.targets.c.frame import expressions
 from protogen.targets.c.frame.fill import EVENTS, Fill
 from protogen.targets.c.frame.framing import FramingView, framing_view
@@ -121,6 +121,7 @@ def c_environment() -> Environment:
     found = environment("protogen.targets.c")
     found.globals["prototype"] = prototype
     found.globals["members"] = members_of
+    found.globals["candidate_members"] = candidate_members
     found.globals["memory"] = memory_of
     found.globals["Start"] = StartRule
     found.globals["Kind"] = StuffingKind

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from protogen.model.frame import members_of
+from protogen.model.frame_plan import FramePlan
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import Struct, Switch
@@ -40,6 +41,13 @@ release reopen reset resume room run search seek seek_on send_head send_tail set
 stuff surplus take take_head take_tail take_whole unstuff unstuff_to wire_end wrap write
 """
 _MACROS_OF_A_SENDER = "frame_max idle_us"
+_FUNCTIONS_OF_A_CANDIDATE = "begun begun_byte end fill_up mark read step"
+_TAGS_OF_FORMS = "decoder event form"
+_FUNCTIONS_OF_FORMS = """
+add_noise choose decoder_feed decoder_flush decoder_idle decoder_init decoder_push dispatch drop
+end_noise fail follow_end give invalid judge mark open reset resume run seek seek_on take
+"""
+_MACROS_OF_FORMS = "frame_max no_form no_start may_start is_start"
 
 
 def names_of(protocol: Protocol) -> Names:
@@ -58,6 +66,8 @@ def _all_names(protocol: Protocol) -> Names:
     claim_texts(names, protocol)
     for sender in protocol.senders:
         _claim_sender(names, sender)
+    for name in dict.fromkeys(item.endpoint for item in protocol.senders if not item.is_only_form):
+        _claim_forms(names, name, protocol.forms(name))
     for enum in protocol.enums:
         enum_view(enum, names)
     for flags in protocol.flags:
@@ -88,6 +98,8 @@ def _members(protocol: Protocol) -> Iterator[tuple[str, Thing]]:
                     what = inside(record.name, "case", field.name, "cases", case.name)
                     yield case.name, what
     for sender in protocol.senders:
+        if not sender.is_only_form:
+            yield sender.form, endpoint(sender.endpoint)
         for item in sender.frame.declared:
             yield item.name, part(sender.name, item.name)
             for own in members_of(item):
@@ -140,12 +152,47 @@ def _of_sender(names: Names, sender: Sender, start: str) -> Iterator[tuple[NameT
         yield names.others, function_of(start, item)
     if any(group.identities is not None for group in sender.plan.groups):
         yield names.others, f"{start}_told"
-    if sender.plan.is_trimmed:
-        for word in ("fill_up", "trim"):
-            yield names.others, f"{start}_{word}"
-    if sender.plan.mark_size and len(sender.plan.start_words) > 1:
-        for word in ("begun", "begun_byte"):
-            yield names.others, f"{start}_{word}"
+    for word in _sometimes(sender.plan):
+        yield names.others, f"{start}_{word}"
+    if not sender.is_only_form:
+        yield from _of_candidate(names, start)
+
+
+def _sometimes(plan: FramePlan) -> Iterator[str]:
+    """Functions that only some frames have."""
+    if plan.is_trimmed:
+        yield from ("fill_up", "trim")
+    if plan.mark_size and len(plan.start_words) > 1:
+        yield from ("begun", "begun_byte")
+
+
+def _of_candidate(names: Names, start: str) -> Iterator[tuple[NameTable, str]]:
+    """The names of what is tried among the other forms of an endpoint's frames."""
+    yield names.tags, f"{start}_candidate"
+    for word in (*_FUNCTIONS_OF_A_SENDER.split(), *_FUNCTIONS_OF_A_CANDIDATE.split()):
+        yield names.others, f"{start}_candidate_{word}"
+
+
+def _claim_forms(names: Names, name: str, forms: Iterable[Sender]) -> None:
+    """All names of the decoder for several forms, which begin with that of their endpoint."""
+    thing, start = endpoint(name), f"{names.prefix}_{name}"
+    while any(name in table.things for table, name in _of_forms(names, forms, start)):
+        start += "_"
+    if not start.endswith(name):
+        names.others.note(thing, f"{start}_decoder")
+    names.senders[name] = start
+    for table, taken in _of_forms(names, forms, start):
+        table.add(taken, thing)
+
+
+def _of_forms(names: Names, forms: Iterable[Sender], start: str) -> Iterator[tuple[NameTable, str]]:
+    types = _TYPES_OF_A_SENDER.split()
+    for word in (*_TAGS_OF_FORMS.split(), *types):
+        yield names.tags, f"{start}_{word}"
+    for word in (*types, *_FUNCTIONS_OF_FORMS.split()):
+        yield names.others, f"{start}_{word}"
+    for word in (*_MACROS_OF_FORMS.split(), *(f"form_{form.form}" for form in forms)):
+        yield names.others, f"{start}_{word}".upper()
 
 
 def is_stateless(protocol: Protocol) -> bool:

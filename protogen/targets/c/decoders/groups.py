@@ -173,6 +173,8 @@ def _message(
     plan: FramePlan, message: Message, sizes: SizeSet, view: MessageView
 ) -> ReceivedMessage:
     checks = view.check if _needs_check(plan, view) else ""
+    # In another form of frame it may be longer, than what counts bytes of this one can say.
+    sizes = sizes.within(0, plan.payload.greatest) or sizes
     own, varies = message.cut_size, message.sizes.fixed is None
     # Where nothing can be longer, there is nothing to cut.
     is_cut = plan.is_cut and own is not None and (not varies or own < sizes.greatest)

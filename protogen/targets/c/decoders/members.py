@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import msgspec
 
+from protogen.targets.c.decoders.candidate import Candidate
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.stuffing import StuffingKind
 
-_POINTERS = 2
+POINTERS = 2
 """The handler and what it is given."""
-_SMALL_POINTER = 2
+SMALL_POINTER = 2
 """Bytes of a pointer on a small target, which aligns nothing."""
 _SIZES = {"uint8_t": 1, "uint16_t": 2, "uint32_t": 4}
 
@@ -37,16 +38,16 @@ class Member(msgspec.Struct, frozen=True):
 
 def memory_of(view: DecoderView) -> int:
     """Bytes that the decoder takes on an 8-bit controller."""
-    pointers = 0 if view.flat else _POINTERS
-    return pointers * _SMALL_POINTER + sum(member.size for member in members_of(view))
+    pointers = 0 if view.flat else POINTERS
+    return pointers * SMALL_POINTER + sum(member.size for member in members_of(view))
 
 
-def members_of(view: DecoderView) -> tuple[Member, ...]:
+def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
     """The members, behind the handler and its `user` where there is one; the buffers last."""
     plan, push, stuffing = view.plan, view.push, view.stuffing
     kind = None if stuffing is None else stuffing.kind
     is_push = view.flat is None
-    has_limit = not view.simple if is_push else view.only_size is None
+    has_limit = not view.simple if view.flat is None else view.flat.only_size is None
     fails = view.keeps_wire or push.decides_later
     holds = is_push and push.searches and push.holds_delimiter
     begins_next = is_push and push.keeps_behind
@@ -103,3 +104,14 @@ def members_of(view: DecoderView) -> tuple[Member, ...]:
         about = "Where each byte of content ends on the wire."
         found.append(Member(view.counter, "ends", about, plan.greatest))
     return tuple(found)
+
+
+def candidate_members(view: Candidate) -> tuple[Member, ...]:
+    """The members of a candidate of one of several forms, behind the pointer to its bytes."""
+    verdict = "Why it is no frame, if it is none; 0: not known yet."
+    message = "The message of a frame."
+    return (
+        *(member for member in members_of(view) if view.keeps(member.name)),
+        Member("uint8_t", "verdict", verdict),
+        Member("uint8_t", "message", message),
+    )

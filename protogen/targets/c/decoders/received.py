@@ -56,6 +56,11 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
         return self.names.senders[self.name]
 
     @property
+    def types(self) -> str:
+        """Prefix of the structs of its events and their parts."""
+        return self.names.senders[self.name]
+
+    @property
     def upper(self) -> str:
         """Prefix of its macros."""
         return self.prefix.upper()

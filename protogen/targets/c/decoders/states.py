@@ -95,6 +95,11 @@ class PushStates(ReceivedFrame, frozen=True, dict=True):
         return _beginnings(self.marks) if len(self.marks) > 1 else []
 
     @property
+    def counts_beginnings(self) -> bool:
+        """True if it matters how many bytes of one of several starts the input ends with."""
+        return bool(self.beginnings)
+
+    @property
     def begun_from(self) -> list[tuple[int, int]]:
         """The first number of those that stand for so many bytes, the longest first."""
         sizes = [len(item) for item in self.beginnings]

@@ -8,6 +8,7 @@ import msgspec
 
 from protogen.model.protocol import Protocol, Sender
 from protogen.targets.c.decoders.decoder import DecoderView, decoder_view
+from protogen.targets.c.decoders.forms import FormsDecoder, forms_decoders
 from protogen.targets.c.frame.algorithms import Algorithm
 from protogen.targets.c.frame.frames import FrameView
 from protogen.targets.c.frame.handlers import Dispatch, dispatches
@@ -26,6 +27,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """Everything that the templates print of frames and decoders."""
 
     decoders: tuple[DecoderView, ...]
+    together: tuple[FormsDecoder, ...]
+    """A decoder for each endpoint that has several forms of frame."""
     frames: tuple[FrameView, ...]
     """One of each kind: senders with the same frame share what builds it."""
     messages: tuple[MessageFrame, ...]
@@ -109,6 +112,7 @@ def framing_view(
     used = _used(sinks, list(puts))
     return FramingView(
         decoders=decoders,
+        together=forms_decoders(names, senders, decoders, options.events),
         frames=distinct,
         messages=message_frames,
         checksums=tuple({item.function: item for item in algorithms}.values()),

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from protogen.fuzzing.c_driver import (
     DrivenDecoder,
+    DrivenForm,
     DrivenFrame,
     DrivenHandler,
     DrivenMessage,
@@ -15,6 +16,7 @@ from protogen.fuzzing.c_driver import (
 from protogen.model.messages import given_parts
 from protogen.model.protocol import Protocol
 from protogen.targets.c.decoders.decoder import DecoderView
+from protogen.targets.c.decoders.forms import FormsDecoder
 from protogen.targets.c.emit import Unit, emit, unit_of
 from protogen.targets.c.frame.handlers import Dispatch
 from protogen.targets.c.fuzz_driver.exchange import exchange_function
@@ -35,6 +37,8 @@ def driver_of(whole: Protocol, options: COptions = COptions()) -> Driver:  # noq
             zip(unit.framing.decoders, unit.framing.dispatches, strict=True)
         )
     )
+    for item in unit.framing.together:
+        decoders = (*decoders, _forms_decoder(len(decoders), item, decoders))
     files = {
         file.path.name: file.bytes
         for file in emit([whole], options)
@@ -140,3 +144,14 @@ def _decoder(
             for item in dispatch.handlers
         ),
     )
+
+
+def _forms_decoder(
+    index: int, item: FormsDecoder, decoders: tuple[DrivenDecoder, ...]
+) -> DrivenDecoder:
+    indices = {decoder.name: decoder.index for decoder in decoders}
+    forms = tuple(
+        DrivenForm(form.name, form.member, form.constant, indices[form.sender])
+        for form in item.forms
+    )
+    return DrivenDecoder(index, item.name, item.prefix, item.all_events, False, (), (), forms)

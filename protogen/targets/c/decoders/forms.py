@@ -1,0 +1,200 @@
+"""A decoder for all forms of an endpoint's frames, which tries them at each place.
+
+The C code follows the runtime's `framing/forms.py`. Each form has a candidate: the machine of its
+own decoder, which reads bytes that are kept for all forms, and whose verdict waits for the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import groupby
+
+import msgspec
+from msgspec.structs import astuple
+
+from protogen.model.frame_plan import StartRule
+from protogen.model.protocol import Sender
+from protogen.targets.c.decoders.candidate import Candidate
+from protogen.targets.c.decoders.decoder import DecoderView
+from protogen.targets.c.decoders.members import POINTERS, SMALL_POINTER, Member, candidate_members
+from protogen.targets.c.decoders.push import PushDecoder
+from protogen.targets.c.options import Events
+from protogen.targets.c.spelling import Names
+
+_COUNTERS = ("uint8_t", "uint16_t", "uint32_t")
+
+
+class Form(msgspec.Struct, frozen=True):
+    """One of the forms that a decoder finds."""
+
+    name: str
+    sender: str
+    """The form as a sender."""
+    member: str
+    """Member of the parts of events."""
+    constant: str
+    candidate: Candidate
+
+    @property
+    def field(self) -> str:
+        """Member of the decoder."""
+        return f"form_{self.name}"
+
+
+class _Search(PushDecoder, frozen=True, dict=True):
+    """What all forms have in common of how the next start is found."""
+
+    @property
+    def prefix(self) -> str:
+        """Prefix of the decoder's functions, not of those for one form."""
+        return self.names.senders[self.name]
+
+    @property
+    def literals(self) -> dict[str, list[dict[str, int]]]:
+        """States of an end that frames begin behind."""
+        is_end = self.plan.start is StartRule.AFTER_END
+        return {name: states for name, states in super().literals.items() if is_end}
+
+    @property
+    def counts_beginnings(self) -> bool:
+        """False: starts are compared with what is kept."""
+        return False
+
+    @property
+    def reads_beginnings(self) -> bool:
+        """False, too."""
+        return False
+
+
+class FormsDecoder(msgspec.Struct, frozen=True, dict=True):
+    """Everything that the templates print of a decoder for all forms."""
+
+    names: Names
+    name: str
+    """The endpoint."""
+    forms: tuple[Form, ...]
+    events: Events
+
+    @property
+    def prefix(self) -> str:
+        """Prefix of its functions and types."""
+        return self.names.senders[self.name]
+
+    @property
+    def upper(self) -> str:
+        """Prefix of its macros."""
+        return self.prefix.upper()
+
+    @property
+    def protocol(self) -> str:
+        """Prefix of the protocol's functions and types."""
+        return self.names.prefix
+
+    @property
+    def protocol_upper(self) -> str:
+        """Prefix of the protocol's macros."""
+        return self.protocol.upper()
+
+    @property
+    def all_events(self) -> bool:
+        """True if invalid bytes and unknown frames are delivered, too."""
+        return self.events == "all"
+
+    # --- sizes ------------------------------------------------------------------------------------
+
+    @property
+    def _each(self) -> list[Candidate]:
+        return [form.candidate for form in self.forms]
+
+    @property
+    def counter(self) -> str:
+        """The type of what counts bytes."""
+        return max((item.counter for item in self._each), key=_COUNTERS.index)
+
+    @property
+    def greatest(self) -> int:
+        """Bytes of the greatest frame on the wire."""
+        return max(item.plan.greatest for item in self._each)
+
+    @property
+    def buffer_size(self) -> int:
+        """Bytes of the buffer."""
+        return max(item.buffer_size for item in self._each)
+
+    # --- the search -------------------------------------------------------------------------------
+
+    @cached_property
+    def search(self) -> _Search:
+        """What all forms have in common: each is found in the same way."""
+        _, _, *others = astuple(self.forms[0].candidate)
+        return _Search(self.names, self.name, *others)
+
+    @property
+    def marks(self) -> bool:
+        """True if something has to stand at the start of a frame of each form."""
+        return all(item.begins for item in self._each)
+
+    @property
+    def waits(self) -> bool:
+        """True if a start has several bytes, so that the first ones do not tell."""
+        return any(item.begins and not item.begins_with_byte for item in self._each)
+
+    @property
+    def is_anywhere(self) -> bool:
+        """True if nothing marks a start."""
+        return self.search.plan.start is StartRule.ANYWHERE
+
+    @property
+    def is_after_end(self) -> bool:
+        """True if the end of a frame is the only mark of the next."""
+        return self.search.plan.start is StartRule.AFTER_END
+
+    @property
+    def members(self) -> tuple[Member, ...]:
+        """The members behind the handler, its `user`, and those of the forms."""
+        counters = (
+            (self.all_events, "noise", "Bytes of noise that are in no event yet."),
+            (True, "count", "Bytes in the buffer."),
+            (True, "next", "Place in the buffer of the byte to read next."),
+            (True, "failed", "Bytes of the candidate that failed."),
+        )
+        shared = "Bytes of the candidate that ended the frame before."
+        states = (
+            (True, "state", "Seeking, taking, failed or lost."),
+            (self.all_events, "reason", "Why the candidate failed."),
+            (self.is_after_end, "match", "Bytes of an end that the input ends with."),
+            (self.search.plan.shares_delimiter, "shared", shared),
+        )
+        offset = "Offset of the first byte that is in no event yet."
+        return (
+            *([Member("uint32_t", "offset", offset)] if self.all_events else []),
+            *(Member(self.counter, name, about) for is_there, name, about in counters if is_there),
+            *(Member("uint8_t", name, about) for is_there, name, about in states if is_there),
+        )
+
+    @property
+    def memory(self) -> int:
+        """Bytes that it takes on an 8-bit controller."""
+        kept = [member for item in self._each for member in candidate_members(item)]
+        sizes = sum(member.size for member in (*self.members, *kept))
+        return (POINTERS + len(self.forms)) * SMALL_POINTER + sizes + self.buffer_size
+
+
+def forms_decoders(
+    names: Names, senders: Sequence[Sender], decoders: Sequence[DecoderView], events: Events
+) -> tuple[FormsDecoder, ...]:
+    """A decoder for each endpoint of which several forms were chosen."""
+    views = dict(zip((sender.name for sender in senders), decoders, strict=True))
+    found = []
+    for endpoint, own in groupby(senders, key=lambda sender: sender.endpoint):
+        forms = tuple(_form(names, item, views[item.name]) for item in own)
+        if len(forms) > 1:
+            found.append(FormsDecoder(names, endpoint, forms, events))
+    return tuple(found)
+
+
+def _form(names: Names, sender: Sender, view: DecoderView) -> Form:
+    constant = f"{names.senders[sender.endpoint]}_form_{sender.form}".upper()
+    candidate = Candidate(*astuple(view))
+    return Form(sender.form, sender.name, names.member(sender.form), constant, candidate)
