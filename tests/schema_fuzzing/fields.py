@@ -141,7 +141,9 @@ class _Scope:
             for name, size in self._setting.operands.items()
             if "." in name and size.least >= 0 and size.greatest <= _USUAL_BYTES
         }
-        return {**bits, **self._setting.counters}
+        wide = self._setting.operands.keys() - expressions.usable(self._setting).keys()
+        counters = {n: size for n, size in self._setting.counters.items() if n not in wide}
+        return {**bits, **counters}
 
     def _add_counted_by_room(self, element: Built) -> None:
         """A count that may say more than there is room for; what is there bounds the array."""
