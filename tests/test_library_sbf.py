@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from io import BytesIO
+from itertools import accumulate
 from math import isfinite
 from typing import Any
 
@@ -15,6 +16,8 @@ from protogen.copying import replace
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
 from protogen.library import FOLDER
+from protogen.model.numbers import Integer
+from protogen.model.types import Array, Field, Struct
 
 PEER = "pysbf2"
 BLOCKS = {
@@ -240,6 +243,36 @@ def test_the_blocks_are_those_of_the_schema() -> None:
 @pytest.fixture(scope="module")
 def drawn() -> list[Case]:
     return list(map(as_made, cases_of("sbf")))
+
+
+def test_each_bit_is_where_it_has_it(pysbf2: PySbf2) -> None:
+    for message in protocol_of(FOLDER / "sbf.yaml").messages:
+        if message.name != "receiver_time":  # of which it names no bits
+            theirs = pysbf2._blocks[BLOCKS[message.name]]
+            assert list(bits_of(message.fields)) == list(its_bits(theirs)), message.name
+
+
+def bits_of(fields: Iterable[Field]) -> Iterator[list[tuple[int, int]]]:
+    """Yield the lowest and the highest bit of each run that has a name, of each number."""
+    for field in fields:
+        kind = field.type.element if isinstance(field.type, Array) else field.type
+        if isinstance(kind, Struct):
+            yield from bits_of(kind.fields)
+        elif isinstance(kind, Integer) and (kind.bit_fields or kind.flags):
+            flags = [(each.bit, each.bit) for each in kind.flags.bits] if kind.flags else []
+            yield sorted([*flags, *((each.low, each.high) for each in kind.bit_fields)])
+
+
+def its_bits(block: dict[str, Any]) -> Iterator[list[tuple[int, int]]]:
+    for name, kind in block.items():
+        if name.endswith("_grp"):
+            yield from its_bits(kind[1])
+        elif name.endswith("_bit"):
+            kinds = [each[0] if isinstance(each, tuple) else each for each in kind[1].values()]
+            sizes = [int(each[1:]) for each in kinds]
+            runs = zip(kind[1], accumulate(sizes), sizes, strict=True)
+            named = (run for run in runs if not run[0].lower().startswith("reserved"))
+            yield [(end - size, end - 1) for _, end, size in named]
 
 
 def test_both_make_and_read_the_same_blocks(pysbf2: PySbf2, drawn: list[Case]) -> None:
