@@ -9,8 +9,9 @@ from typing import Any
 
 import pytest
 from compiled import protocol_of
-from library_support import cases_of, compare_frames, compare_recovery, peer_module
+from library_support import FRAMES, cases_of, compare_frames, compare_recovery, peer_module
 
+from protogen.copying import replace
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
 from protogen.library import FOLDER
@@ -173,6 +174,10 @@ def is_ascii(case: Case) -> bool:
     return all(str(value).isascii() for value in case.values.values())
 
 
+def shortened(case: Case) -> Case:
+    return replace(case, values={"text": case.values["text"][:64]})
+
+
 @pytest.fixture(scope="module")
 def nextion() -> Iterator[Nextion]:
     peer = Nextion()
@@ -191,7 +196,11 @@ def test_the_messages_are_those_of_the_schema() -> None:
 
 
 def test_both_make_the_same_instructions(nextion: Nextion) -> None:
-    compare_frames("nextion", nextion, filter(is_ascii, cases_of("nextion", ["instruction"])))
+    drawn = list(filter(is_ascii, cases_of("nextion", ["instruction"])))
+    assert len(drawn) >= FRAMES
+    few = {id(case) for case in drawn[::20]}  # Long ones are slow.
+    short = [case if id(case) in few else shortened(case) for case in drawn]
+    compare_frames("nextion", nextion, short)
 
 
 def test_it_reads_the_messages_that_we_make(nextion: Nextion, drawn: list[Case]) -> None:
