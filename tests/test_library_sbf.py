@@ -79,6 +79,7 @@ class PySbf2:
         self._reader: Any = peer_module("pysbf2.sbfreader").SBFReader
         self._helpers: Any = peer_module("pysbf2.sbfhelpers")
         self._blocks: dict[str, Any] = peer_module("pysbf2.sbftypes_blocks").SBF_BLOCKS
+        self._blocks["ReceiverSetup"] = dict(mended(self._blocks["ReceiverSetup"]))
 
     def frame(self, case: Case) -> bytes:
         name = BLOCKS[case.message]
@@ -140,6 +141,15 @@ class PySbf2:
             yield raw
 
 
+def mended(setup: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield its fields of ReceiverSetup, with the one that it leaves out."""
+    for name, kind in setup.items():
+        if name == "RxName":
+            yield "RxSerialNumber", kind
+        if name not in ("RxSerialNumber", "Reserved1"):
+            yield name, kind
+
+
 def leaves(values: Any) -> Iterator[Any]:
     """Yield the numbers, texts and bytes in order, without padding."""
     if isinstance(values, list):
@@ -164,11 +174,11 @@ def as_its(value: Any, layout: str, ours: Iterator[Any]) -> Any:
         return float(value)
     if kind == "V":
         return bytes.fromhex(value)
-    if kind == "C" and size != 21:
+    if kind == "C":
         return value.encode("latin-1").ljust(size, b"\0")
     if isinstance(value, str):
         data = bytes.fromhex(value)
-        return data if kind == "C" else int.from_bytes(data, "little")
+        return int.from_bytes(data, "little")
     return value.to_bytes(size, "little") if kind == "X" else value
 
 
