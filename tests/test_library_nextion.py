@@ -1,0 +1,211 @@
+"""Nextion displays, beside nextion."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from struct import pack, unpack
+from typing import Any
+
+import pytest
+from compiled import protocol_of
+from library_support import FRAMES, cases_of, compare_frames, compare_recovery, peer_module
+
+from protogen.copying import replace
+from protogen.fuzzing.samples import Values
+from protogen.fuzzing.trips import Case
+from protogen.library import FOLDER
+
+PEER = "nextion"
+RESULTS = {
+    "success": 0x01,
+    "invalid_component": 0x02,
+    "invalid_page": 0x03,
+    "invalid_picture": 0x04,
+    "invalid_font": 0x05,
+    "invalid_file_operation": 0x06,
+    "invalid_crc": 0x09,
+    "invalid_baud": 0x11,
+    "invalid_waveform": 0x12,
+    "invalid_variable": 0x1A,
+    "invalid_operation": 0x1B,
+    "assignment_failed": 0x1C,
+    "eeprom_failed": 0x1D,
+    "invalid_parameters": 0x1E,
+    "io_failed": 0x1F,
+    "invalid_escape": 0x20,
+    "name_too_long": 0x23,
+    "buffer_overflow": 0x24,
+}
+EVENTS = {
+    "sleeps": 0x86,
+    "woke_up": 0x87,
+    "ready": 0x88,
+    "upgrade": 0x89,
+    "data_received": 0xFD,
+    "ready_for_data": 0xFE,
+}
+LAYOUTS = {
+    "invalid_instruction": (0x00, ""),
+    "started": (0x00, ">2x"),
+    "page": (0x66, "B"),
+    "text": (0x70, "text"),
+    "number": (0x71, "<i"),
+    "connected": (0x63, "text"),
+    "touched": (0x65, "BBB"),
+    "touched_at": (0x67, ">HHB"),
+    "touched_asleep": (0x68, ">HHB"),
+    **{name: (code, "") for name, code in (RESULTS | EVENTS).items()},
+}
+"""Codes, and the data behind them: it makes none."""
+MARK = b"omok "
+
+
+class Transport:
+    """What a serial port writes."""
+
+    written = b""
+
+    def write(self, data: bytes) -> None:
+        self.written += data
+
+
+class Nextion:
+    """Its protocol, and the messages and events that it found."""
+
+    def __init__(self) -> None:
+        self._client: Any = peer_module("nextion.client")
+        self._protocol: Any = peer_module("nextion.protocol").NextionProtocol
+        self._failed: Any = peer_module("nextion.exceptions").CommandFailed
+        self._loop = asyncio.new_event_loop()
+
+    def close(self) -> None:
+        self._loop.close()
+
+    async def _begun(self, found: list[bytes]) -> Any:
+        protocol = self._protocol(found.append)
+        protocol.connection_made(Transport())
+        protocol.queue.put_nowait = found.append
+        return protocol
+
+    def _protocol_into(self, found: list[bytes]) -> Any:
+        return self._loop.run_until_complete(self._begun(found))
+
+    def frame(self, case: Case) -> bytes:
+        if case.message == "instruction":
+            protocol = self._protocol_into([])
+            client = self._client.Nextion("")
+            client._connection = protocol
+            client._write_command_raw(case.values["text"].encode())
+            return bytes(protocol.transport.written)
+        code, layout = LAYOUTS[case.message]
+        values = list(case.values.values())
+        data = MARK * ("mark" in case.values) + values[-1].encode() if layout == "text" else b""
+        if layout not in ("", "text"):
+            data = pack(layout, *(values if "x" not in layout else ()))
+        return bytes((code,)) + data + bytes(self._protocol.EOL)
+
+    def values(self, case: Case, frame: bytes) -> Values:
+        if case.message in ("instruction", "invalid_instruction"):
+            return case.values  # it reads none
+        (message,) = self._messages(frame)
+        code, layout = LAYOUTS[case.message]
+        assert message[0] == code
+        if case.message in RESULTS:
+            assert self._result("page 0", message) == code
+        elif case.message in ("page", "text", "number"):
+            ((name, value),) = case.values.items()
+            result = self._result("sendme" if name == "page" else "get x", message)
+            return {name: value if value == "" and result == code else result}
+        elif case.message == "connected":
+            assert message[1:].decode() == MARK.decode() + case.values["values"]
+        elif layout:
+            return self._event(case, message)
+        return case.values
+
+    def _messages(self, data: bytes) -> list[bytes]:
+        found: list[bytes] = []
+        self._protocol_into(found).data_received(data)
+        return found
+
+    def _result(self, command: str, message: bytes) -> Any:
+        """What comes of a command that is answered so."""
+        client = self._client.Nextion("")
+
+        async def answer(timeout: float) -> bytes:
+            return message
+
+        client._write_command_raw = client._flush_read_buffer = lambda *given: None
+        client._read_packet = answer
+        try:
+            result = self._loop.run_until_complete(client._command(command))
+        except self._failed as error:
+            return error.code
+        return int(result) if result is True else result
+
+    def _event(self, case: Case, message: bytes) -> Values:
+        client, found = self._client.Nextion(""), []
+        client._schedule_event_message_handler = lambda kind, data: found.append(data)
+        if case.message == "started":
+            client._on_ready = lambda: asyncio.sleep(0)
+        self._loop.run_until_complete(self._handled(client, message))
+        (event,) = found
+        if event is None:
+            return case.values
+        if case.message == "touched":
+            return dict(zip(case.values, event, strict=True))
+        x, y, touch = event  # it reads the lower byte of a coordinate first
+        return {"x": swapped(x), "y": swapped(y), "event": touch}
+
+    async def _handled(self, client: Any, message: bytes) -> None:
+        client._handle_event(message)
+
+    def found(self, endpoint: str, data: bytes) -> Iterator[bytes]:
+        for message in self._messages(data):
+            yield message + self._protocol.EOL
+
+
+def swapped(value: int) -> int:
+    return int(unpack("<H", pack(">H", value))[0])
+
+
+def is_ascii(case: Case) -> bool:
+    """False where a text has characters that it does not read."""
+    return all(str(value).isascii() for value in case.values.values())
+
+
+def shortened(case: Case) -> Case:
+    return replace(case, values={"text": case.values["text"][:64]})
+
+
+@pytest.fixture(scope="module")
+def nextion() -> Iterator[Nextion]:
+    peer = Nextion()
+    yield peer
+    peer.close()
+
+
+@pytest.fixture(scope="module")
+def drawn() -> list[Case]:
+    return list(filter(is_ascii, cases_of("nextion", LAYOUTS)))
+
+
+def test_the_messages_are_those_of_the_schema() -> None:
+    messages = {message.name for message in protocol_of(FOLDER / "nextion.yaml").messages}
+    assert messages == {"instruction", *LAYOUTS}
+
+
+def test_both_make_the_same_instructions(nextion: Nextion) -> None:
+    drawn = list(filter(is_ascii, cases_of("nextion", ["instruction"])))
+    assert len(drawn) >= FRAMES
+    few = {id(case) for case in drawn[::20]}  # Long ones are slow.
+    short = [case if id(case) in few else shortened(case) for case in drawn]
+    compare_frames("nextion", nextion, short)
+
+
+def test_it_reads_the_messages_that_we_make(nextion: Nextion, drawn: list[Case]) -> None:
+    compare_frames("nextion", nextion, drawn)
+
+
+def test_no_frame_is_lost_that_it_finds(nextion: Nextion, drawn: list[Case]) -> None:
+    compare_recovery("nextion", "display", nextion, drawn)
