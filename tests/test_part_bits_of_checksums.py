@@ -61,7 +61,7 @@ def undetected(protocol: Protocol) -> str:
         ("takes: 4..7", "takes: 3..6", "frame-checksum-algorithm", "WIRE"),
         ("sum-8, covers: payload, takes: 4", "xor-8, covers: payload, takes: 4",
          "frame-checksum-algorithm", "WIRE"),
-        ("high: {bits: 0..3", "high: {bits: 4..7", "frame-checksum-algorithm", "WIRE"),
+        ("high: {bits: 0..3", "high: {bits: 3..6", "frame-checksum-algorithm", "WIRE"),
         ("covers: payload, takes: 4", "covers: head..payload, takes: 4",
          "frame-checksum-coverage", "WIRE"),
         ("high: {", "top: {", "frame-part-renamed", "SOURCE"),
@@ -83,10 +83,12 @@ def test_changes_of_a_checksum_in_bits(
 def test_halves_are_worked_out_explained_and_verified(path: Path) -> None:
     made = run("encode", str(path), "text", "text=AB", "@gate=1")
     assert made.stdout.strip() == "C0 3B 41 42 08 C0"  # 41 + 42 = 83; 3 << 4 | 1 << 3 | 3
-    result = run("explain", str(path), "--hex", "C0 3B 41 42 09 C0")
+    result = run("explain", str(path), "--hex", made.stdout)
     rows = [" ".join(line.split()) for line in result.stdout.splitlines()]
     assert "1 0011 low uint4 3 bits 0..3 of sum-8 of payload" in rows
-    assert "4 1001 high uint4 9 bits 4..7 of sum-8 of payload ! high is 9, not 8" in rows
+    assert "4 1000 high uint4 8 bits 4..7 of sum-8 of payload" in rows
+    wrong = run("explain", str(path), "--hex", "C0 3B 41 42 09 C0")
+    assert "no frame: checksum, high is 9, not 8" in wrong.stdout
     lines = run("decode", str(path), "--hex", made.stdout, "--format", "jsonl")
     assert '"parts": {"kind": 3, "gate": 1, "flag": 0}' in lines.stdout
     assert run("encode", str(path), input=lines.stdout).stdout == made.stdout

@@ -113,7 +113,10 @@ def _mirrors(
     sources = [
         (name, run)
         for name, run in zip(written, runs, strict=True)
-        if run.of is None and not run.is_constant and name not in sums and run.bits <= min(end - low, _FEW)
+        if run.of is None
+        and not run.is_constant
+        and name not in sums
+        and run.bits <= min(end - low, _FEW)
     ]
     if not sources or not draw(forms.one_in(3)):
         return None
