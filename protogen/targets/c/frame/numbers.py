@@ -42,6 +42,8 @@ class NumberView(msgspec.Struct, frozen=True):
     """True if it is the identity's last part, and the identity tells the payload's size."""
     tells_sizes: bool
     """True if with it both identity and length are there, and are held against each other."""
+    less: str = ""
+    """C behind each index: what is taken off where parts in front of it are absent."""
 
     @property
     def is_of_use(self) -> bool:
@@ -52,7 +54,7 @@ class NumberView(msgspec.Struct, frozen=True):
     @property
     def high_bits(self) -> str:
         """All of its bytes in one, for a look at their most significant bits."""
-        return f"({' | '.join(f'content[{offset}]' for offset in self.seven_bit)})"
+        return f"({' | '.join(f'content[{offset}{self.less}]' for offset in self.seven_bit)})"
 
 
 class LiteralView(msgspec.Struct, frozen=True):
@@ -131,6 +133,7 @@ def _bits(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberView
         is_length=length is not None,
         identifies=any(view.identifies for view in members),
         tells_sizes=any(view.tells_sizes for view in members),
+        less=less,
     )
 
 
@@ -167,6 +170,7 @@ def _number(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberVi
         is_length=isinstance(part, LengthPart),
         identifies=is_last and plan.identity_is_early and plan.length is None,
         tells_sizes=item.in_head and item.end == plan.sizes_told_at,
+        less=less,
     )
 
 
