@@ -338,7 +338,8 @@ class _Planner:
     def _streams(self) -> bool:
         """What follows is told by checksums in front of it, by COBS, and by lengths over the wire.
 
-        So is what is put in behind several bytes, of which a sender would have to remember some.
+        So is what is put in behind several bytes, of which a sender would have to remember some. A
+        checksum in bits of a part is put in when the other bits are there.
         """
         transparency = self._frame.transparency
         if transparency is not None:
