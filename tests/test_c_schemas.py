@@ -215,6 +215,20 @@ messages:
   text: {from: station, fields: {text: {type: ascii, size: {fill: true, max: 40}}}}
 """
 
+BITS_BEHIND_A_CHECKSUM_THAT_MAY_BE_ABSENT = """
+frame:
+  length: {type: uint8, counts: payload}
+  payload: {}
+  sum: {type: uint8, algorithm: sum-8, covers: payload, when: payload}
+  tail:
+    type: uint8
+    bits:
+      mark: {bits: 5..7, const: 5}
+      low: {bits: 0..3, algorithm: xor-8, covers: length..sum, takes: 0..3}
+messages:
+  text: {from: station, fields: {text: {type: ascii, size: {fill: true, max: 40}}}}
+"""
+
 
 def protocol_of(text: str, folder: Path) -> Protocol:
     path = folder / "drawn.yaml"
@@ -261,6 +275,22 @@ def test_a_part_that_needs_a_payload_may_never_be_there(tmp_path: Path) -> None:
         check_events(process, module, "station", [("feed", data), ("flush",)])
     process.close()
     assert frame == bytes.fromhex("7E 0A")
+
+
+def test_bits_are_checked_behind_a_checksum_that_may_be_absent(tmp_path: Path) -> None:
+    protocol = protocol_of(BITS_BEHIND_A_CHECKSUM_THAT_MAY_BE_ABSENT, tmp_path)
+    process = Process(protocol, COptions())
+    sender = protocol.sender("station")
+    with imported(protocol) as module:
+        made = [
+            check_frame(process, module, sender, sender.messages[0], {"text": text}, {})
+            for text in ("", "A")
+        ]
+        data = bytes.fromhex("00 80 00 A1 01 41 41 61 01 41 41 A0 00 A0 01 41 41 A1")
+        check_events(process, module, "station", [("feed", data), ("flush",)])
+    process.close()
+    # Nothing but the length; 1 ^ 41 ^ 41.
+    assert made == [bytes.fromhex("00 A0"), bytes.fromhex("01 41 41 A1")]
 
 
 @pytest.mark.parametrize("portion", [1, 3, 40])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import reduce
+from operator import xor
 from typing import Any
 
 import pytest
@@ -41,7 +43,7 @@ ANNOUNCEMENTS = [
     "dense_capsules_follow",
     "ultra_dense_capsules_follow",
 ]
-MEASUREMENTS = ["node"]
+MEASUREMENTS = ["node", "capsule", "dense_capsule", "ultra_capsule"]
 
 
 class Line:
@@ -89,8 +91,10 @@ class Lidar:
     def values(self, case: Case, frame: bytes) -> Values:
         if case.message in REQUESTS:
             return case.values  # it reads none
-        if case.message in MEASUREMENTS:
+        if case.message == "node":
             return self._measured(case, frame)
+        if case.message in MEASUREMENTS:
+            return self._capsule(case, frame)
         data = self._content(frame)
         if case.message in ANNOUNCEMENTS:
             assert data is None
@@ -123,6 +127,22 @@ class Lidar:
         direction = {"check": frame[1] & 1, "angle": found.angle * 64}
         return {"direction": direction, "distance": found.distance * 4}
 
+    def _capsule(self, case: Case, frame: bytes) -> Values:
+        """What it reads in a capsule, of which it leaves the checksum to its callers."""
+        kinds = {"capsule": "ScanCapsule", "dense_capsule": "ScanDenseCapsule"}
+        kind = kinds.get(case.message, "ScanUltraCapsule")
+        found = getattr(self._protocol, f"PyRPlidar{kind}")(frame)
+        assert (found.sync_byte1, found.sync_byte2) == (0xA, 5)
+        assert found.checksum == reduce(xor, frame[2:])
+        direction = {"angle": found.start_angle_q6, "first": int(found.start_flag)}
+        if case.message == "dense_capsule":
+            swapped = (cabin.distance.to_bytes(2, "little") for cabin in found.cabins)
+            distances = [int.from_bytes(item, "big") for item in swapped]  # highest byte first
+            return {"direction": direction, "distances": distances}
+        if case.message == "capsule":
+            return {"direction": direction, "cabins": list(map(_cabin, found.cabins))}
+        return {"direction": direction, "cabins": list(map(_ultra_cabin, found.ultra_cabins))}
+
     def _content(self, data: bytes) -> bytes | None:
         """Data of an answer, or None for what announces measurements. Raises what it raises."""
         self._driver.lidar_serial = Line(data)
@@ -148,6 +168,25 @@ class Lidar:
             at += size
 
 
+def _cabin(cabin: Any) -> Values:
+    return {
+        "angle_1_high": cabin.d_theta1 >> 4,
+        "distance_1": cabin.distance1,
+        "angle_2_high": cabin.d_theta2 >> 4,
+        "distance_2": cabin.distance2,
+        "angle_1": cabin.d_theta1 & 15,
+        "angle_2": cabin.d_theta2 & 15,
+    }
+
+
+def _ultra_cabin(cabin: Any) -> Values:
+    """Differences are 32 bits with the sign in all above the tenth."""
+    one, two = (
+        item - (1 << 32) if item >> 31 else item for item in (cabin.predict1, cabin.predict2)
+    )
+    return {"distance": cabin.major, "difference_1": one, "difference_2": two}
+
+
 @pytest.fixture(scope="module")
 def lidar() -> Lidar:
     return Lidar()
@@ -171,6 +210,20 @@ def test_measurements_are_told_by_three_bits(name: str, wrong: str) -> None:
     assert (event.raw, event.parts.start, event.parts.quality) == (right, 1, 47)
     assert event.message.direction.angle == 0x2345
     assert event.message.distance == 0x1034
+
+
+def test_a_capsule_is_found_behind_others_that_are_damaged() -> None:
+    module: Any = module_at(FOLDER / "rplidar.yaml")
+    # Each begins with A in its high bits, and so do two bytes of the distances.
+    data = bytes.fromhex("34 12 A7 00 AF 05") + bytes(76)  # 34 ^ 12 ^ A7 ^ AF ^ 05 = 2B
+    right = bytes.fromhex("AB 52") + data
+    wrong = [bytes.fromhex("AA 52") + data, bytes.fromhex("AB 51") + data, right[:50]]
+    decoder = module.Decoder("dense_capsules")
+    events = [*decoder.feed(b"".join([*wrong, right, right])), *decoder.flush()]
+    assert [event.raw for event in events if event.kind == "message"] == [right, right]
+    reasons = {event.reason for event in events if event.kind == "invalid"}
+    assert "checksum" in reasons
+    assert events[-1].message.distances[:2] == [0xA7, 0x5AF]
 
 
 def test_no_answer_is_lost_that_it_finds(lidar: Lidar) -> None:

@@ -101,6 +101,9 @@ forms:
           length: {bits: 6..7, counts: flags..payload}
       payload: {}
       sum: {type: uint8, algorithm: sum-8, covers: number..payload}
+      low:
+        type: uint8
+        bits: {half: {bits: 0..3, algorithm: xor-8, covers: again..sum, takes: 4..7}}
     transparency: {covers: payload, preset: slip}
 messages:
   report:

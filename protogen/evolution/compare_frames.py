@@ -132,7 +132,8 @@ class _Frames:
             if other is not None and _origin(mirror, renamed) != _origin(other, {}):
                 words = named(mirror.meaning, other.meaning)
                 yield self._change("frame-mirror", mirror.name, words)
-        yield from self._members(old.members, new.members, renamed)
+        was, now = ((*part.members, *part.sums) for part in (old, new))
+        yield from self._members(was, now, renamed)
 
     def _members(
         self, old: Sequence[Part], new: Sequence[Part], renamed: dict[str, str]
@@ -190,10 +191,9 @@ class _Frames:
     def _checksum(
         self, old: ChecksumPart, new: ChecksumPart, renamed: dict[str, str]
     ) -> Iterator[Change]:
-        if (_sum(old.algorithm), _layout(old.type)) != (_sum(new.algorithm), _layout(new.type)):
-            before = f"{old.algorithm.name} in {old.type.label}"
-            after = f"{new.algorithm.name} in {new.type.label}"
-            yield self._change("frame-checksum-algorithm", old.name, named(before, after))
+        if _result(old) != _result(new):
+            words = named(_placed_result(old), _placed_result(new))
+            yield self._change("frame-checksum-algorithm", old.name, words)
         covers = [renamed.get(name, name) for name in old.covers]
         if (covers, old.over_wire, old.when_payload) != (
             list(new.covers),
@@ -244,7 +244,9 @@ def renamed_parts(old: Frame, new: Frame) -> dict[str, str]:
 
 def _renamed_bits(old: BitsPart, new: BitsPart) -> dict[str, str]:
     """Parts that are the same bits of one, under another name."""
-    before, after = ({part.type: part.name for part in it.members} for it in (old, new))
+    before, after = (
+        {part.type: part.name for part in (*it.members, *it.sums)} for it in (old, new)
+    )
     names = {name: after[type_] for type_, name in before.items() if type_ in after}
     return {
         name: other
@@ -288,6 +290,16 @@ def _layout(type: PartType) -> tuple[object, ...]:
 def _sum(algorithm: ChecksumSpec) -> object:
     """The algorithm by its parameters; its name does not count."""
     return replace(algorithm, name=""), algorithm.modulus
+
+
+def _result(part: ChecksumPart) -> object:
+    """The bits of a result, and where they stand."""
+    return _sum(part.algorithm), part.lowest, _layout(part.type)
+
+
+def _placed_result(part: ChecksumPart) -> str:
+    taken = f"{part.taken} of " if part.taken else ""
+    return f"{taken}{part.algorithm.name} in {part.type.label}"
 
 
 def _kind(part: Part) -> str:

@@ -78,7 +78,7 @@ def _part(protocol: Protocol, change: Change) -> Span | None:
     if sender is None:
         return None
     frame = sender.frame
-    every = (*frame.parts, *frame.numbers, *frame.mirrors)
+    every = (*frame.parts, *frame.numbers, *frame.mirrors, *frame.checksums)
     parts = [item.about for item in every if item.name == change.part]
     if change.part == "transparency" and sender.frame.transparency is not None:
         parts.append(sender.frame.transparency.about)

@@ -192,6 +192,40 @@ class MirrorBits(TypedPart, frozen=True, kw_only=True):
         return number ^ self.flips
 
 
+class ChecksumPart(TypedPart, frozen=True, kw_only=True):
+    """A checksum over other parts."""
+
+    algorithm: ChecksumSpec
+    covers: tuple[str, ...]
+    over_wire: bool = False
+    when_payload: bool = False
+    """True if the part is absent where the payload is empty."""
+    lowest: int = 0
+    """The lowest bit of the result that it has, where it is some bits of a part."""
+
+    @property
+    def takes_all(self) -> bool:
+        """True if it has all bits of the result."""
+        return self.algorithm.width <= self.type.bits
+
+    @property
+    def taken(self) -> str:
+        """The bits of the result that it has, in words; empty where it has all."""
+        if self.takes_all:
+            return ""
+        highest = self.lowest + self.type.bits - 1
+        return f"bit {highest}" if self.type.bits == 1 else f"bits {self.lowest}..{highest}"
+
+    def due(self, result: int) -> int:
+        """Its value, where the algorithm has this result."""
+        return result if self.type.within is None else result >> self.lowest & self.type.greatest
+
+    @property
+    def is_optional(self) -> bool:
+        """True if the part is absent where the payload is empty."""
+        return self.when_payload
+
+
 class BitsPart(TypedPart, frozen=True, kw_only=True):
     """A number whose bits are parts, or follow from others; all else is the same in each frame.
 
@@ -206,13 +240,14 @@ class BitsPart(TypedPart, frozen=True, kw_only=True):
     """Those of them that have names, for readers."""
     mirrors: tuple[MirrorBits, ...] = ()
     """The bits that follow from others."""
+    sums: tuple[ChecksumPart, ...] = ()
+    """The bits that are a checksum, or some bits of one."""
 
     @property
     def mask(self) -> int:
         """The bits that are the same in each frame."""
         every = (1 << self.type.byte_bits * self.type.size) - 1
-        varying = (*self.members, *self.mirrors)
-        return every & ~sum(place_mask(part.type) for part in varying)
+        return every & ~sum(place_mask(part.type) for part in varying_bits(self))
 
     @property
     def whole(self) -> MirrorBits | None:
@@ -273,21 +308,6 @@ class PayloadPart(Part, frozen=True, kw_only=True):
         if self.kept is None:
             return sizes
         return SizeSet.between(min(self.kept, sizes.greatest), sizes.greatest)
-
-
-class ChecksumPart(TypedPart, frozen=True, kw_only=True):
-    """A checksum over other parts."""
-
-    algorithm: ChecksumSpec
-    covers: tuple[str, ...]
-    over_wire: bool = False
-    when_payload: bool = False
-    """True if the part is absent where the payload is empty."""
-
-    @property
-    def is_optional(self) -> bool:
-        """True if the part is absent where the payload is empty."""
-        return self.when_payload
 
 
 class VirtualPart(TypedPart, frozen=True, kw_only=True):
@@ -498,7 +518,7 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     @cached_property
     def checksums(self) -> tuple[ChecksumPart, ...]:
         """The checksum parts in wire order."""
-        return tuple(part for part in self.parts if isinstance(part, ChecksumPart))
+        return tuple(item for part in self.parts for item in checksums_of(part))
 
     @property
     def shown_parts(self) -> tuple[IdentityPart | CounterPart | ValuePart, ...]:
@@ -522,9 +542,16 @@ def mirrors_of(part: Part) -> tuple[MirrorBits, ...]:
     return part.mirrors if isinstance(part, BitsPart) else ()
 
 
+def checksums_of(part: Part) -> tuple[ChecksumPart, ...]:
+    """The checksums that this part is, or that are bits of it."""
+    if isinstance(part, BitsPart):
+        return part.sums
+    return (part,) if isinstance(part, ChecksumPart) else ()
+
+
 def varying_bits(part: Part) -> tuple[TypedPart, ...]:
     """The bits of this part that vary."""
-    return (*members_of(part), *mirrors_of(part))
+    return (*part.members, *part.mirrors, *part.sums) if isinstance(part, BitsPart) else ()
 
 
 def written_apart(parts: Iterable[Part]) -> tuple[Part, ...]:

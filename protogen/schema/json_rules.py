@@ -238,6 +238,8 @@ _PART_RULES = (
     _together("These are for a checksum.", {key: ["algorithm"] for key in ("covers", "when")}),
 )
 
+_OF_SUMS = ("algorithm", "covers", "takes")
+"""Keys of bits that are a checksum."""
 _OF_MEMBERS = ("id", "counts", "counter", "range", "default")
 """Keys of bits that are a part of their own."""
 
@@ -245,14 +247,21 @@ _PART_BITS_RULES = (
     _where(
         _with("const"),
         "Bits that are the same in each frame are no part.",
-        _none_of((*_MIRRORS, *_OF_MEMBERS)),
+        _none_of((*_MIRRORS, *_OF_SUMS, *_OF_MEMBERS)),
     ),
     _at_most_one_of("Bits follow from one number.", _MIRRORS),
     _where(
         _any_of(_MIRRORS),
         "Bits that follow from another number are no part.",
+        _none_of((*_OF_SUMS, *_OF_MEMBERS)),
+    ),
+    _where(
+        _with("algorithm"),
+        "A checksum's value follows from what it covers.",
         _none_of(_OF_MEMBERS),
     ),
+    _where(_with("algorithm"), "A checksum says what it covers.", _with("covers")),
+    _together("These are for a checksum.", {key: ["algorithm"] for key in ("covers", "takes")}),
     _at_most_one_of("Bits have one purpose.", ("id", "counts", "counter")),
     _where(
         _any_of(("id", "counts")),

@@ -565,13 +565,16 @@ class _Drawing:
             allowed = [p.name for p in parts if p.role != "checksum" or p.name in seen]
             covered = self._covered(allowed, every, index)
             keys = {"covers": self._draw(forms.run(covered, every))}
+            seen.append(part.name)
+            if part.sum_bits:
+                found[index] = part.adding_to_bits(part.sum_bits, **keys)
+                continue
             places = {every.index(name) for name in covered}
             if self._may_be_over_wire(places, region) and self._draw(forms.one_in(4)):
                 keys["over"] = "wire"
             elif self._draw(forms.one_in(4)):
                 keys["over"] = "content"
             found[index] = found[index].adding(**keys)
-            seen.append(part.name)
         return found
 
     def _covered(self, allowed: list[str], every: list[str], index: int) -> list[str]:

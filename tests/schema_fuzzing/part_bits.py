@@ -66,9 +66,17 @@ def bytes_of(runs: Sequence[Run], size: int, byte_bits: int) -> list[frozenset[i
 
 
 def fill(
-    draw: st.DrawFn, bits: int, new_name: Callable[[], str], given: tuple[str, Data, Run] | None
+    draw: st.DrawFn,
+    bits: int,
+    new_name: Callable[[], str],
+    given: tuple[str, Data, Run] | None,
+    *,
+    is_sum: bool = False,
 ) -> tuple[Data, list[Run]]:
-    """The named bits of a number of so many, those that are `given` among them."""
+    """The named bits of a number of so many, those that are `given` among them.
+
+    Nothing follows from them if they are a sum.
+    """
     written: Data = {}
     runs: list[Run] = []
     low = 0
@@ -83,7 +91,8 @@ def fill(
                 low += size  # These are 0 in each frame.
                 continue
             kinds = ["value"] if is_needed else ["value", "const", "counter"]
-            mirrored = draw(_mirrors(written, runs, low, end)) if runs else None
+            sums = {given[0]} if given is not None and is_sum else set()
+            mirrored = draw(_mirrors(written, runs, low, end, sums)) if runs else None
             if mirrored is not None:
                 keys, run = mirrored
             else:
@@ -98,13 +107,16 @@ def fill(
 
 @st.composite
 def _mirrors(
-    draw: st.DrawFn, written: Data, runs: Sequence[Run], low: int, end: int
+    draw: st.DrawFn, written: Data, runs: Sequence[Run], low: int, end: int, sums: set[str]
 ) -> tuple[Data, Run] | None:
     """Bits from `low` on that follow from some that are there, if they have room; sometimes."""
     sources = [
         (name, run)
         for name, run in zip(written, runs, strict=True)
-        if run.of is None and not run.is_constant and run.bits <= min(end - low, _FEW)
+        if run.of is None
+        and not run.is_constant
+        and name not in sums
+        and run.bits <= min(end - low, _FEW)
     ]
     if not sources or not draw(forms.one_in(3)):
         return None

@@ -77,6 +77,8 @@ class PartPlan:
     """The literals of a choice."""
     identity: str = ""
     """The name of the bits of it that are an identity, whose type and bounds these are."""
+    sum_bits: str = ""
+    """The name of the bits of it that are a checksum, or some bits of one."""
 
     @property
     def size(self) -> int:
@@ -96,6 +98,11 @@ class PartPlan:
     def adding(self, **more: Any) -> PartPlan:
         """The part with further keys."""
         return replace(self, data={**self.data, **more})
+
+    def adding_to_bits(self, name: str, **more: Any) -> PartPlan:
+        """The part, of which these bits have further keys."""
+        bits = self.data["bits"]
+        return self.adding(bits={**bits, name: {**bits[name], **more}})
 
 
 class Maker:
@@ -321,6 +328,8 @@ class Maker:
         algorithm, width = self._draw(st.sampled_from(ALGORITHMS))
         if self._draw(forms.one_in(6)):
             algorithm, width = self._parameters()
+        if not optional and self._draw(forms.one_in(4)):
+            return self._checksum_in_bits(algorithm, width)
         type_, keys = self.type(width)
         keys["algorithm"] = algorithm
         needs_order = type_.digits is not None and _adds_words(algorithm)
@@ -330,6 +339,28 @@ class Maker:
             keys["when"] = "payload"
         values = type_.bytes_between(*_sum_bounds(algorithm, width, type_.greatest))
         return PartPlan(self.name(), "checksum", keys, values, optional=optional, type=type_)
+
+    def _checksum_in_bits(self, algorithm: Any, width: int) -> PartPlan:
+        """A part of which some bits are a checksum, or some bits of one."""
+        size, byte_bits = self._draw(st.sampled_from([1, 1, 2, 3])), self._byte_bits
+        bits, order = size * byte_bits, self._order or "little"
+        keys: dict[str, Any] = {"type": f"uint{bits}"}
+        needs_order = size > 1 or _adds_words(algorithm)
+        if needs_order and (self._order is None or self._draw(forms.one_in(4))):
+            order = keys["byte_order"] = self._draw(ORDERS)
+        taken = self._draw(st.integers(1, min(width, bits)))
+        lowest = self._draw(st.integers(0, width - taken))
+        low = self._draw(st.integers(0, bits - taken))
+        run = Run(low, taken, 0, (1 << taken) - 1)
+        own: dict[str, Any] = {"algorithm": algorithm}
+        if taken < width or self._draw(st.booleans()):
+            own["takes"] = Run(lowest, taken, 0, 0).written
+        name = self.name()
+        keys["bits"], runs = fill(self._draw, bits, self.name, (name, own, run), is_sum=True)
+        values = bytes_of(runs, size, byte_bits)
+        values = values if order == "little" else values[::-1]
+        keys.update(self._draw(forms.about()))
+        return PartPlan(self.name(), "checksum", keys, tuple(values), sum_bits=name)
 
     def _folded(self) -> tuple[Any, int]:
         """A sum or an exclusive or with parameters."""

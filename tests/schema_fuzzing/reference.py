@@ -263,6 +263,10 @@ class _Assembly:
             value = self._number(mirror.of)
             value = 2**mirror.type.bits - 1 - value if mirror.inverted else value
             total += value * 2**mirror.type.within.low
+        for part_sum in part.sums:
+            assert part_sum.type.within is not None
+            taken = self._checksum(part_sum) // 2**part_sum.lowest % 2**part_sum.type.bits
+            total += taken * 2**part_sum.type.within.low
         return total
 
     def _number(self, part: NumberPart) -> int:

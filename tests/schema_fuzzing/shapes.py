@@ -30,6 +30,7 @@ COMMON = (
     "text as a part: id", "text as a part: literal", "text as a part: value",
     "bits as parts", "bits as parts: id", "bits as parts: const", "bits as parts: counter",
     "bits as parts: range", "bits as parts: default",
+    "bits as parts: algorithm", "bits as parts: takes",
     "bits as parts: repeats", "bits as parts: complements", "part that repeats",
     "part that complements", "part that follows from a length", "several lengths",
     "several identities", "overload by size", "overload by undecidable", "unspecified payload",

@@ -195,9 +195,10 @@ class _Frame:
     def _bits(self, part: BitsPart, row: Row) -> Iterator[Row]:
         """The parts that are bits of one that was read, which have no bytes of their own.
 
-        Behind them are the bits that follow from others.
+        Behind them are the bits that follow from others, and those that are checksums.
         """
-        bits = (*part.members, *(item for item in part.mirrors if item != part.whole))
+        mirrors = (item for item in part.mirrors if item != part.whole)
+        bits = (*part.members, *mirrors, *part.sums)
         for member in bits if isinstance(row.value, int) else ():
             own = replace(
                 self._cursor.take(0, member.name, member.type.name, subject=member),
@@ -207,6 +208,8 @@ class _Frame:
             own = replace(own, offset=row.offset, bits=f"{value:0{member.type.bits}b}")
             if isinstance(member, MirrorBits):
                 yield self._mirror(member, value, own)
+            elif isinstance(member, ChecksumPart):
+                yield self._checksum(member, own.reads(value, ""))
             else:
                 yield self._number(member, value, own)
 
@@ -253,7 +256,9 @@ class _Frame:
         return " or ".join(names) or "no message has this identity"
 
     def _checksum(self, part: ChecksumPart, row: Row) -> Row:
-        row = replace(row, meaning=f"{part.algorithm.name} of {', '.join(part.covers)}")
+        taken = f"{part.taken} of " if part.taken else ""
+        meaning = f"{taken}{part.algorithm.name} of {', '.join(part.covers)}"
+        row = replace(row, meaning=meaning)
         unknown = [item.name for item in self._sender.frame.virtual if item.name in part.covers]
         unknown = [name for name in unknown if name not in self._found]
         if unknown and self.identity is not None:
@@ -263,7 +268,11 @@ class _Frame:
             return row
         pieces = [self._found[name] for name in part.covers]
         covered = b"".join(piece.wire if part.over_wire else piece.content for piece in pieces)
-        due = part.encode(checksum_of(part.algorithm).compute(covered))
+        number = part.due(checksum_of(part.algorithm).compute(covered))
+        if part.type.within is not None:
+            fault = f"{part.name} is {row.value}, not {number}"
+            return row if row.value == number else replace(row, fault=fault)
+        due = part.encode(number)
         if row.bytes == due:
             return row
         # In the words of a decoder: bytes in wire order, which are not always the number's digits.

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import ChecksumPart, Cobs, Frame
+from collections.abc import Iterable
+
+from protogen.model.frame import ChecksumPart, Cobs, Frame, checksums_of
 from protogen.passes.context import Context, Loc
+from protogen.passes.framing.bit_names import place_of_number
 from protogen.passes.framing.wire_counts import check_wire_sum
 
 
@@ -11,14 +14,15 @@ def check_checksums(context: Context, frame: Frame, loc: Loc) -> None:
     """Report checksums that cover each other, or bytes that are those of no part."""
     in_circles: set[str] = set()
     for part in frame.checksums:
+        place = place_of_number(loc, frame, part.name)
         circle = [] if part.name in in_circles else _circle(frame, part.name)
         in_circles.update(circle)
         if circle:
             text = f"the checksums cover each other: {' -> '.join((*circle, part.name))}"
-            context.error("PG136", (*loc, part.name, "covers"), text)
+            context.error("PG136", (*place, "covers"), text)
         if part.over_wire and _holds_cobs(frame, part):
             text = "bytes that COBS makes belong to no single part, so none can be summed up"
-            context.error("PG131", (*loc, part.name, "over"), text)
+            context.error("PG131", (*place, "over"), text)
         check_wire_sum(context, frame, part, loc)
 
 
@@ -28,13 +32,19 @@ def _circle(frame: Frame, name: str) -> list[str]:
     paths = [[name]]
     seen = {name}
     for path in paths:
-        for covered in covers[path[-1]]:
+        for covered in _checksums_in(frame, covers[path[-1]]):
             if covered == name:
                 return path
-            if covered in covers and covered not in seen:
+            if covered not in seen:
                 seen.add(covered)
                 paths.append([*path, covered])
     return []
+
+
+def _checksums_in(frame: Frame, covers: Iterable[str]) -> list[str]:
+    """The checksums that have bytes among those of these parts."""
+    found = (part for part in frame.parts if part.name in covers)
+    return [checksum.name for part in found for checksum in checksums_of(part)]
 
 
 def _holds_cobs(frame: Frame, part: ChecksumPart) -> bool:

@@ -261,10 +261,11 @@ class _Planner:
     # --- checksums --------------------------------------------------------------------------------
 
     def _checksum(self, part: ChecksumPart) -> ChecksumPlan:
-        placed = self._placed(part.name)
+        holder = self._frame.holder(part.name)
+        placed = self._placed(holder.name)
         assert placed is not None
         declared = [item.name for item in self._frame.declared]
-        own = declared.index(part.name)
+        own = declared.index(holder.name)
         return ChecksumPlan(
             part=part,
             placed=placed,
@@ -319,7 +320,7 @@ class _Planner:
 
     def _takes_whole(self) -> bool:
         region = self._region
-        checksums = [self._placed(part.name) for part in self._frame.checksums]
+        checksums = [self._checksum(part).placed for part in self._frame.checksums]
         optional = any(part.when_payload for part in self._frame.checksums)
         early = {part.name for part in written_apart([item.part for item in self._head])}
         told = [*self._frame.identity, *filter(None, [self._frame.length])]
@@ -334,7 +335,7 @@ class _Planner:
             and not isinstance(self._start, Anywhere)
             and all(part.name in early for part in told)
             and not (region is not None and any(p.over_wire for p in self._frame.checksums))
-            and not (optional and any(item is not None and item.in_head for item in checksums))
+            and not (optional and any(item.in_head for item in checksums))
             and not (optional and cuts_region)
             and (not self._shares or self._shares_plainly)
         )
@@ -350,7 +351,8 @@ class _Planner:
     def _streams(self) -> bool:
         """What follows is told by checksums in front of it, by COBS, and by lengths over the wire.
 
-        So is what is put in behind several bytes, of which a sender would have to remember some.
+        So is what is put in behind several bytes, of which a sender would have to remember some. A
+        checksum in bits of a part is put in when the other bits are there.
         """
         transparency = self._frame.transparency
         if transparency is not None:
@@ -359,7 +361,9 @@ class _Planner:
                 return False
             if self._frame.length_over_wire:
                 return False
-        return all(self._checksum(part).is_behind for part in self._frame.checksums)
+        checksums = self._frame.checksums
+        are_whole = all(part.type.within is None for part in checksums)
+        return are_whole and all(self._checksum(part).is_behind for part in checksums)
 
 
 def _codes(encoding: Encoding) -> tuple[tuple[int, bytes], ...]:

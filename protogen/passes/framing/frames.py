@@ -2,21 +2,9 @@
 
 from __future__ import annotations
 
-import re
-
-from protogen.copying import field_names, replace
-from protogen.model.checksums import (
-    SIMPLE_ALGORITHMS,
-    ChecksumKind,
-    ChecksumSpec,
-    algorithm_names,
-    crc_catalogue,
-    find_algorithm,
-    variants,
-)
+from protogen.copying import field_names
 from protogen.model.frame import (
     BitsPart,
-    ChecksumPart,
     CounterPart,
     Frame,
     IdentityPart,
@@ -29,35 +17,23 @@ from protogen.model.frame import (
     VirtualPart,
 )
 from protogen.model.origin import About
-from protogen.model.types import ByteOrder
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
-from protogen.passes.framing.bit_names import (
-    are_whole,
-    check_names,
-    holders_of,
-    place_of_number,
-)
+from protogen.passes.framing.bit_names import check_names, place_of_number
 from protogen.passes.framing.capacity import (
     counted_size,
     least_size,
     payload_range,
     range_of,
 )
+from protogen.passes.framing.checksums import ORDER_HINT, Checksums
 from protogen.passes.framing.covered import check_checksums
 from protogen.passes.framing.cutting import cut
 from protogen.passes.framing.lengths import Lengths
 from protogen.passes.framing.literals import literal_of
 from protogen.passes.framing.mirrors import MIRRORS, Mirrors, whole_type
 from protogen.passes.framing.part_bits import Others, bits_part
-from protogen.passes.framing.part_digits import (
-    digits_type,
-    is_written,
-    no_byte_order,
-    part_type_hint,
-    too_few_digits,
-)
-from protogen.passes.framing.part_runs import written_out
+from protogen.passes.framing.part_digits import digits_type, is_written, part_type_hint
 from protogen.passes.framing.part_values import number_of, text_bounds, text_type
 from protogen.passes.framing.silences import check_silence, silence_of
 from protogen.passes.framing.transparencies import transparency_of
@@ -66,8 +42,6 @@ from protogen.passes.framing.virtual_parts import check_virtual_parts
 from protogen.passes.framing.wire_counts import check_wire_length
 from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.passes.types.type_names import Layout, has_width, integer, integer_width
-from protogen.problems import hint_for
-from protogen.schema.syntax.parts import CrcParameters, SumParameters, XorParameters
 from protogen.schema.syntax.parts import Part as PartSyntax
 
 PAYLOAD = "payload"
@@ -86,7 +60,6 @@ _ROLES: dict[str, frozenset[str]] = {
     "type": _NUMBER | {"size", "default"},
     PAYLOAD: frozenset({"unprotected", "trailing_zeros", "longer"}),
 }
-_ORDER_HINT = "set `byte_order: little` or `big` on the part or the protocol"
 _IDENTITY_BITS = 64
 _COMMON_KEYS = frozenset({"doc", "source"})
 
@@ -131,8 +104,7 @@ class FrameBuilder:
         self._layout = Layout(context.syntax.byte_bits, context.byte_order(written.endpoint))
         self._mirrors = Mirrors(context, self._loc, self._syntax)
         self._lengths = Lengths(context, self._loc, self._syntax)
-        self._replaced = 0
-        """Errors of checksums that another one stands for."""
+        self._checksums = Checksums(context, self._loc, self._syntax, self._layout.byte_order)
 
     def frame(self) -> Frame | None:
         """The frame, or None where something about it is wrong."""
@@ -149,7 +121,7 @@ class FrameBuilder:
         transparency = transparency_of(self._context, self._written)
         silence = silence_of(self._context, self._written)
         self._lengths.check_first(parts)
-        before += self._replaced
+        before += self._checksums.replaced
         if self._context.tally.errors > before or self._loc in self._context.doubtful:
             return None
         frame = Frame(
@@ -214,12 +186,12 @@ class FrameBuilder:
         if type_ is None:
             return None
         if role == "bits":
-            others = Others(self._mirrors, self._lengths)
+            others = Others(self._mirrors, self._lengths, self._checksums)
             return bits_part(self._context, (*self._loc, name), item, type_, text, others)
         if role in MIRRORS:
             return self._mirror(name, item, type_, text)
         if role == "algorithm":
-            return self._checksum(name, item, type_)
+            return self._checksums.whole(name, item, type_)
         least, greatest = self._range(name, item, type_)
         part = NumberPart(
             name=name,
@@ -241,16 +213,6 @@ class FrameBuilder:
         if found is None:
             return None
         return BitsPart(name=name, about=text, type=type_, members=(), fixed=0, mirrors=(found,))
-
-    def _checksum(self, name: str, item: PartSyntax, type_: PartType) -> Part:
-        """The checksum; any other of its size serves where the rest of the frame is asked about."""
-        before = self._context.tally.errors
-        part = self._read_checksum(name, item, type_)
-        if part is not None and self._context.tally.errors == before:
-            return part
-        self._replaced += self._context.tally.errors - before
-        plain = SIMPLE_ALGORITHMS[0]
-        return ChecksumPart(name=name, type=type_, algorithm=plain, covers=(PAYLOAD,))
 
     def _number(self, role: str, item: PartSyntax, part: NumberPart) -> Part:
         """The part as what its role makes of it."""
@@ -336,7 +298,7 @@ class FrameBuilder:
             self._context.error("PG105", loc, text, hint)
         if found.size > 1 and order is None:
             text = "nothing says in which order the bytes of this number are sent"
-            self._context.error("PG109", loc, text, _ORDER_HINT)
+            self._context.error("PG109", loc, text, ORDER_HINT)
         return found
 
     def _range(self, name: str, item: PartSyntax, type_: PartType) -> tuple[int, int]:
@@ -352,128 +314,3 @@ class FrameBuilder:
         elif not (type_.holds(least) and type_.holds(greatest)):
             self._context.error("PG114", loc, f"{least} to {greatest} does not fit {item.type}")
         return least, greatest
-
-    # -- checksums ----------------------------------------------------------------------------
-
-    def _read_checksum(self, name: str, item: PartSyntax, type_: PartType) -> ChecksumPart | None:
-        algorithm = self._algorithm(name, item)
-        covers = self._covers(name, item)
-        if algorithm is None or covers is None:
-            return None
-        if algorithm.words is None:
-            no_byte_order(self._context, (*self._loc, name), item, type_)
-        else:
-            algorithm = replace(algorithm, words=self._word_order(name, item, type_))
-        if algorithm.width != type_.bits:
-            text = f"{algorithm.name} has {algorithm.width} bits, {item.type} has {type_.bits}"
-            self._error("PG135", name, "type", text)
-        elif algorithm.bounds[1] > type_.greatest:
-            loc = (*self._loc, name)
-            too_few_digits(self._context, loc, item, algorithm.name, algorithm.bounds[1])
-        if item.when is not None and self._is_in_front(name):
-            text = "in front of the payload, a receiver can't know yet whether it is empty"
-            self._error("PG131", name, "when", text, "put the checksum behind the payload")
-        return ChecksumPart(
-            name=name,
-            type=type_,
-            algorithm=algorithm,
-            covers=covers,
-            over_wire=item.over == "wire",
-            when_payload=item.when is not None,
-            about=about(item.doc, item.source, self._context.find_key((*self._loc, name))),
-        )
-
-    def _word_order(self, name: str, item: PartSyntax, type_: PartType) -> ByteOrder:
-        """The order of the bytes in the words of a sum: that of the part, unless it is digits."""
-        if type_.text is None:
-            return type_.byte_order
-        order = item.byte_order or self._layout.byte_order
-        if order is None:
-            text = "nothing says in which order the bytes of the words are that are added"
-            self._error("PG109", name, "algorithm", text, _ORDER_HINT)
-        return order or "little"
-
-    def _error(self, code: str, name: str, key: str, text: str, hint: str | None = None) -> None:
-        self._context.error(code, (*self._loc, name, key), text, hint)
-
-    def _is_in_front(self, name: str) -> bool:
-        names = self._names
-        return PAYLOAD in names and names.index(name) < names.index(PAYLOAD)
-
-    def _algorithm(self, name: str, item: PartSyntax) -> ChecksumSpec | None:
-        if item.algorithm is not None and not isinstance(item.algorithm, str):
-            return self._parameters(name, item.algorithm)
-        found = find_algorithm(item.algorithm or "")
-        if found is None:
-            hint = _close_algorithm(item.algorithm or "") or _algorithms(item)
-            text = f"there is no checksum algorithm `{item.algorithm}`"
-            self._error("PG134", name, "algorithm", text, hint)
-        elif others := variants(item.algorithm or ""):
-            text = f"`{item.algorithm}` is taken for {found.name}, and others are called so, too"
-            hint = f"write the whole name of the one that is meant: {', '.join(others)}"
-            self._context.warning("PG126", (*self._loc, name, "algorithm"), text, hint)
-        return found
-
-    def _parameters(
-        self, name: str, given: CrcParameters | SumParameters | XorParameters
-    ) -> ChecksumSpec | None:
-        found = _spec_of(given)
-        loc = (*self._loc, name, "algorithm")
-        for key in ("poly", "init", "xorout", "mask", "add"):
-            if (getattr(given, key, None) or 0) >> found.width:
-                self._context.error(
-                    "PG135", (*loc, key), f"`{key}` has more than {found.width} bits"
-                )
-                return None
-        if found.words is not None and found.width not in (16, 32):
-            key = "words" if isinstance(given, SumParameters) else "xor"
-            text = f"words have 16 or 32 bits, and {found.kind} has {found.width}"
-            self._context.error("PG135", (*loc, key), text)
-            return None
-        return found
-
-    def _covers(self, name: str, item: PartSyntax) -> tuple[str, ...] | None:
-        if item.covers is None:
-            text = f"`{name}` does not say what it covers"
-            loc = (*self._loc, name)
-            self._context.error_at_key("PG131", loc, text, "add `covers: FIRST..LAST`")
-            return None
-        place = (*self._loc, name, "covers")
-        if not are_whole(self._context, holders_of(self._syntax), item.covers, place):
-            return None
-        covers = written_out(self._context, self._names, item.covers, place)
-        if name in covers:
-            self._error("PG136", name, "covers", f"the checksum `{name}` covers itself")
-        return covers
-
-
-def _spec_of(given: CrcParameters | SumParameters | XorParameters) -> ChecksumSpec:
-    """The algorithm of these parameters; the order of bytes in its words is the part's."""
-    if isinstance(given, CrcParameters):
-        return ChecksumSpec(name="CRC", kind="crc", **given.model_dump())
-    kind: ChecksumKind = "sum" if isinstance(given, SumParameters) else "xor"
-    parameters = given.model_dump()
-    width = parameters.pop(kind)
-    in_words = parameters.pop("words", width > 8)
-    return ChecksumSpec(
-        name=kind, kind=kind, width=width, words="little" if in_words else None, **parameters
-    )
-
-
-def _close_algorithm(name: str) -> str | None:
-    """One name that was probably meant; where it may be several, all of them are listed."""
-    if re.fullmatch(r"crc\W*\d*", name.casefold()):
-        return None
-    return hint_for(name, [known for known in algorithm_names() if not variants(known)])
-
-
-def _algorithms(item: PartSyntax) -> str:
-    """The algorithms that there are, by name; of CRCs those of the width that is asked for."""
-    width = re.search(r"crc\D*(\d+)", str(item.algorithm).casefold())
-    folded = [spec.name for spec in SIMPLE_ALGORITHMS if spec.is_folded_byte]
-    others = [spec.name for spec in SIMPLE_ALGORITHMS if spec.kind == "fletcher"]
-    names = [*folded, "each of these with 16 or 32 bits", *others]
-    family = "" if width is None else f"CRC-{width[1]}/"
-    names += [spec.name for spec in crc_catalogue() if family and spec.name.startswith(family)]
-    crcs = "each CRC by its name in the catalogue, such as CRC-16/KERMIT, or by parameters"
-    return f"there are {', '.join(names)}, and {crcs}"

@@ -16,6 +16,7 @@ from protogen.schema.syntax.parts import PartBits
 MIRRORS = ("repeats", "complements")
 """Keys that name what a part, or some bits, follow from."""
 _PAYLOAD = "payload"
+_LATE = "is a checksum, which is worked out when all else is known"
 
 
 def mirror_key(item: PartSyntax | PartBits) -> str | None:
@@ -123,14 +124,14 @@ def _no_number(name: str, item: PartSyntax | PartBits) -> tuple[str, str | None]
         of = getattr(item, key)
         return "itself follows from another number", f"name `{of}`" if of != name else None
     if isinstance(item, PartBits):
-        return "", None
+        return "" if item.algorithm is None else _LATE, None
     if name == _PAYLOAD:
         return "is no number", None
     if item.bits is not None:
         return "has bits that are parts, and is none itself", "name some of its bits"
     whats = {
         "literal": "is a literal",
-        "algorithm": "is a checksum, which is worked out when all else is known",
+        "algorithm": _LATE,
         "virtual": "is not sent",
     }
     found = (text for key, text in whats.items() if getattr(item, key) is not None)

@@ -8,6 +8,7 @@ from protogen.copying import field_names, replace
 from protogen.model.frame import (
     BitsMember,
     BitsPart,
+    ChecksumPart,
     CounterPart,
     FixedBits,
     IdentityPart,
@@ -20,14 +21,21 @@ from protogen.model.numbers import BitPlace
 from protogen.model.origin import About
 from protogen.model.types import Integer
 from protogen.passes.context import Context, Loc, about
+from protogen.passes.framing.checksums import Checksums
 from protogen.passes.framing.lengths import Lengths
 from protogen.passes.framing.mirrors import MIRRORS, Mirrors, mirror_key
 from protogen.passes.framing.part_values import number_of
 from protogen.schema.syntax.parts import Part, PartBits
 
-_NO_MEMBER = ("id", "counts", "counter", "range", "default")
+_OF_SUMS = ("algorithm", "covers", "takes")
+"""Keys that only bits have that are a checksum."""
+_OF_MEMBERS = ("id", "counts", "counter", "range", "default")
 """Keys that only bits have that are a part of their own."""
-_ROLES = {"id": ("counts", "counter", "default"), "counts": ("counter", "default")}
+_ROLES = {
+    "algorithm": _OF_MEMBERS,
+    "id": ("counts", "counter", "default"),
+    "counts": ("counter", "default"),
+}
 """Keys that say what bits are that are a part, and keys that do not go together with them."""
 
 
@@ -36,6 +44,7 @@ class Others(NamedTuple):
 
     mirrors: Mirrors
     lengths: Lengths
+    checksums: Checksums
 
 
 def bits_part(
@@ -48,12 +57,13 @@ def bits_part(
         hint = "give the part a type such as `uint8`"
         context.error_at_key("PG256", loc, "the bits of a text are those of its characters", hint)
         return None
-    reader = _Reader(context, loc, type_, others.lengths)
+    reader = _Reader(context, loc, type_, others)
     for name, bits in (item.bits or {}).items():
         reader.read(name, bits)
     others.mirrors.add(*reader.members)
     mirrored = [others.mirrors.read(*given) for given in reader.mirrors]
-    if not (reader.members or mirrored) and context.tally.errors == before:
+    varies = reader.members or mirrored or reader.sums
+    if not varies and context.tally.errors == before:
         hint = "leave out `bits` and `type`, and write the bytes as a `literal`"
         context.error_at_key("PG260", loc, "no bit of the part varies", hint)
     if context.tally.errors > before:
@@ -67,23 +77,26 @@ def bits_part(
         fixed=reader.fixed,
         constants=tuple(reader.constants),
         mirrors=tuple(filter(None, mirrored)),
+        sums=tuple(reader.sums),
     )
 
 
 class _Reader:
     """The named bits of one part, read one after another."""
 
-    def __init__(self, context: Context, loc: Loc, type_: Integer, lengths: Lengths) -> None:
+    def __init__(self, context: Context, loc: Loc, type_: Integer, others: Others) -> None:
         self._context = context
         self._loc = loc
         self._type = type_
-        self._lengths = lengths
+        self._lengths = others.lengths
+        self._checksums = others.checksums
         self._taken: dict[str, int] = {}
         self.members: list[BitsMember] = []
         self.fixed = 0
         self.constants: list[FixedBits] = []
         self.mirrors: list[tuple[Loc, PartBits, Integer, About]] = []
         """Bits that follow from others, which may stand behind them in the schema."""
+        self.sums: list[ChecksumPart] = []
 
     def read(self, name: str, item: PartBits) -> None:
         """Take some bits."""
@@ -136,7 +149,7 @@ class _Reader:
 
     def _check_alone(self, loc: Loc, item: PartBits, own: str, code: str) -> None:
         """Report other keys that say what the bits are."""
-        for key in (*MIRRORS, *_NO_MEMBER):
+        for key in (*MIRRORS, *_OF_SUMS, *_OF_MEMBERS):
             if key != own and getattr(item, key) is not None:
                 text = f"`{key}` does not go together with `{own}`"
                 self._context.error(code, (*loc, key), text, f"remove `{key}`")
@@ -149,6 +162,14 @@ class _Reader:
         if strange is not None:
             text = f"`{strange}` does not go together with `{role}`"
             self._context.error("PG131", (*loc, strange), text)
+            return
+        if role == "algorithm":
+            self._sum(loc, item, type_)
+            return
+        alone = next((key for key in _OF_SUMS if getattr(item, key) is not None), None)
+        if alone is not None:
+            text = f"`{alone}` is for bits that are a checksum"
+            self._context.error("PG131", (*loc, alone), text, "add the checksum's `algorithm`")
             return
         least, greatest = item.range or (type_.least, type_.greatest)
         if least > greatest:
@@ -174,6 +195,12 @@ class _Reader:
             return
         kind = ValuePart if item.counter is None else CounterPart
         self.members.append(kind(**given, default=self._default(loc, item, part)))
+
+    def _sum(self, loc: Loc, item: PartBits, type_: Integer) -> None:
+        """Bits that are a checksum, or some bits of one."""
+        found = self._checksums.bits(loc, item, type_)
+        if found is not None:
+            self.sums.append(found)
 
     def _default(self, loc: Loc, item: PartBits, part: NumberPart) -> int | None:
         if item.default is None:

@@ -39,7 +39,7 @@ def _obstacles(frame: Frame, length: LengthPart) -> Iterator[tuple[str, str]]:
     if frame.payload.name not in frame.stuffed:
         yield "the payload is not stuffed, so its size has to be counted itself", "stuff it, too"
     for part in frame.checksums:
-        if part.name in frame.stuffed:
+        if frame.holder(part.name).name in frame.stuffed:
             text = f"the checksum `{part.name}` is stuffed, so the length would depend on its value"
             yield text, "send the checksum unstuffed"
         if part.is_optional:

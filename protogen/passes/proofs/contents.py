@@ -138,9 +138,28 @@ def checksum_bytes(frame: Frame, part: ChecksumPart, plain: Mapping[str, bytes])
     return number_bytes(part, checksum_of(part.algorithm).compute(covered))
 
 
+def put_checksum(frame: Frame, part: ChecksumPart, plain: dict[str, bytes]) -> None:
+    """Let these contents of parts have the right checksum."""
+    due = checksum_bytes(frame, part, plain)
+    if part.type.within is None:
+        plain[part.name] = due
+        return
+    holder = frame.holder(part.name).name
+    own = part.encode(part.type.greatest)
+    bits = zip(plain[holder], own, due, strict=True)
+    plain[holder] = bytes(byte & ~mask | value for byte, mask, value in bits)
+
+
+def has_checksum(frame: Frame, part: ChecksumPart, plain: Mapping[str, bytes]) -> bool:
+    """True if these contents of parts have the right checksum."""
+    right = dict(plain)
+    put_checksum(frame, part, right)
+    return right == plain
+
+
 def number_bytes(part: ChecksumPart, value: int) -> bytes:
     """The unstuffed bytes of a checksum; one that stands in for another may be too wide."""
-    return part.encode(value & part.type.greatest)
+    return part.encode(part.due(value) & part.type.greatest)
 
 
 def _on_wire(frame: Frame, plain: bytes, *, stuffed: bool) -> bytes:

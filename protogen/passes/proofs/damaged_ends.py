@@ -17,7 +17,7 @@ from protogen.model.frame import Base16, ChoicePart, Cobs, Frame, LiteralPart, P
 from protogen.model.framing import End, Start, StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.passes.framing.capacity import tail_literals
-from protogen.passes.proofs.contents import checksum_bytes
+from protogen.passes.proofs.contents import has_checksum, put_checksum
 from protogen.passes.proofs.wire_code import ByteSet, code_of
 
 _PAIRS = 6
@@ -106,7 +106,7 @@ def _frame(
     for virtual in frame.virtual:
         parts[virtual.name] = virtual.encode(dice.choice(messages).virtual_value(virtual) or 0)
     for checksum in frame.checksums:
-        parts[checksum.name] = checksum_bytes(frame, checksum, parts)
+        put_checksum(frame, checksum, parts)
     return parts
 
 
@@ -117,7 +117,4 @@ def _checks(frame: Frame, one: dict[str, bytes], between: bytes, other: dict[str
     head = b"".join(other[part.name] for part in frame.head)
     joined = one | {part.name: other[part.name] for part in frame.tail}
     joined[payload] = one[payload] + tail + between + head + other[payload]
-    return all(
-        joined[checksum.name] == checksum_bytes(frame, checksum, joined)
-        for checksum in frame.checksums
-    )
+    return all(has_checksum(frame, checksum, joined) for checksum in frame.checksums)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 from protogen.model.checksums import ChecksumSpec
-from protogen.model.frame import ChecksumPart, Frame
+from protogen.model.frame import ChecksumPart, Frame, checksums_of
 from protogen.passes.proofs.contents import Contents, checksum_bytes, has_virtual, number_bytes
 from protogen.passes.proofs.correlation import Place, Sum, most_summed, most_tried
 from protogen.passes.proofs.wire_code import ByteSet
@@ -53,7 +53,7 @@ class Together:
     def _is_open(self, name: str, contents: Contents) -> bool:
         """True if a covered part is a checksum that follows from yet other bytes."""
         known = all(stretch.known for stretch in contents[name])
-        return isinstance(self._frame.part(name), ChecksumPart) and not known
+        return bool(checksums_of(self._frame.part(name))) and not known
 
     def _all_places(self, covered: Sequence[str], contents: Contents) -> list[Place]:
         found: list[Place] = []

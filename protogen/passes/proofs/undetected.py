@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from functools import reduce
 from itertools import combinations
+from operator import or_
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame import (
@@ -240,11 +242,32 @@ def _inside(frame: Frame, payload: ByteSet) -> str:
 
 
 def _weak_checksum(frame: Frame) -> str:
-    weak = [part for part in frame.checksums if _misses_single_bytes(part.algorithm)]
+    weak = [
+        part
+        for part in frame.checksums
+        if _misses_single_bytes(part.algorithm) or not _has_all_bits(frame, part)
+    ]
     if not weak:
         return ""
     names = ", ".join(f"`{part.name}`" for part in weak)
-    return f"some wrong bytes that {names} covers: {weak[0].algorithm.name} does not see them"
+    first = weak[0]
+    sees = f"{first.taken} of {first.algorithm.name} do not see them"
+    if first.takes_all or _misses_single_bytes(first.algorithm):
+        sees = f"{first.algorithm.name} does not see them"
+    return f"some wrong bytes that {names} covers: {sees}"
+
+
+def _has_all_bits(frame: Frame, part: ChecksumPart) -> bool:
+    """True if a checksum has all bits of its result, alone or with others that have the rest."""
+    if part.takes_all:
+        return True
+    same = [it for it in frame.checksums if (it.algorithm, it.covers) == _summed(part)]
+    found = reduce(or_, (it.type.greatest << it.lowest for it in same))
+    return found == part.algorithm.greatest
+
+
+def _summed(part: ChecksumPart) -> tuple[ChecksumSpec, tuple[str, ...]]:
+    return part.algorithm, part.covers
 
 
 def _misses_single_bytes(algorithm: ChecksumSpec) -> bool:
@@ -318,7 +341,7 @@ def _wrong_length(frame: Frame, length: LengthPart, messages: list[Message]) -> 
 
 def _wrong_field(frame: Frame, messages: list[Message]) -> str:
     """Identity and fields tell the size here, and a wrong one another size."""
-    behind = [part for part in frame.checksums if part in frame.tail]
+    behind = [part for part in frame.checksums if frame.holder(part.name) in frame.tail]
     sizes = {message.sizes for message in messages}
     one_size = len(sizes) < 2 and all(item.fixed is not None for item in sizes)
     if not behind or one_size:
@@ -355,7 +378,7 @@ def _settled_early(frame: Frame, length: LengthPart) -> bool:
     return any(
         holder in part.covers
         and not part.when_payload
-        and part in frame.head
+        and frame.holder(part.name) in frame.head
         and frame.payload.name not in part.covers
         for part in frame.checksums
     )

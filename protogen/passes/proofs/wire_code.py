@@ -28,7 +28,7 @@ from protogen.model.frame import (
     place_mask,
     place_of,
 )
-from protogen.model.numbers import Numeral
+from protogen.model.numbers import Integer, Numeral
 from protogen.passes.proofs.codewords import Inserted, Segment
 
 ByteSet = frozenset[int]
@@ -106,6 +106,9 @@ def bits_bytes(part: BitsPart, known: Mapping[str, int]) -> tuple[ByteSet, ...]:
         for item in numbers.values():
             own = _bits_in(part, item, known.get(item.name), low)
             values = {one | other for one in values for other in own}
+        for checksum in part.sums:
+            own = _any_bits_in(checksum.type, low, width)
+            values = {one | other for one in values for other in own}
         found.append(frozenset(values))
     return tuple(found if part.type.byte_order == "little" else reversed(found))
 
@@ -133,6 +136,12 @@ def _bits_in(part: BitsPart, item: NumberPart, value: int | None, low: int) -> B
     masks = (place_mask(type_) for type_ in (*own_type, *(mirror.type for mirror in mirrors)))
     own = reduce(or_, masks) >> low & every
     return frozenset(number & own for number in range(every + 1))
+
+
+def _any_bits_in(type_: Integer, low: int, width: int) -> ByteSet:
+    """What any value of some bits can make of the byte that has the bits from `low` on."""
+    own = place_mask(type_) >> low & (1 << width) - 1
+    return frozenset(number & own for number in range(1 << width))
 
 
 def _moved(number: int, shift: int) -> int:

@@ -2,8 +2,8 @@
 
 Stuffed byte by byte, a frame takes what each of its bytes takes at best or at worst. The greatest
 size is never too small and the least never too great, as a decoder relies on both. They are exact,
-but where several stuffed checksums, or one wider than a byte, depend on many bytes, and where a
-byte is put in behind several others.
+but where several stuffed checksums, or one wider than a byte, depend on many bytes, where one is
+bits of a part, and where a byte is put in behind several others.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from protogen.model.frame import (
     Insertion,
     LengthPart,
     Part,
+    checksums_of,
     members_of,
     mirrors_of,
 )
@@ -211,4 +212,4 @@ def _follows(part: Part) -> bool:
     """True if a part, or some bits of it, follow from the payload and its size."""
     of = (mirror.of for mirror in mirrors_of(part))
     numbers = (part, *members_of(part), *of)
-    return any(isinstance(item, LengthPart | ChecksumPart) for item in numbers)
+    return bool(checksums_of(part)) or any(isinstance(item, LengthPart) for item in numbers)

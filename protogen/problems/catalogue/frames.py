@@ -179,6 +179,7 @@ be the device's. Write the whole name.
         """\
 The part has more or fewer bits than the algorithm yields, or a parameter has more bits than the
 register. Which bits would be sent is not clear. Give the part the type of the checksum's width.
+Bits of a part that are only some bits of a checksum say which, with `takes: 0..3`.
 """,
         with_frame(
             """

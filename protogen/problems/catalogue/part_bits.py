@@ -75,10 +75,22 @@ that has the bytes, and none of the bits that it has.
         "Bits that are the same in each frame, and more",
         """\
 Bits with `const` are the same in each frame: receivers refuse any others, and nobody gives them. So
-they tell no message, are no length and count nothing, and have no `range` or `default`. Where all
-named bits of a part are so, it is a `literal`.
+they tell no message, are no length and no checksum, count nothing, and have no `range` or
+`default`. Where all named bits of a part are so, it is a `literal`.
 """,
         _marked("const: 2, default: 2"),
         _marked("const: 2"),
+    ),
+    Code(
+        "PG293",
+        "bits-of-a-checksum",
+        "Bits that a checksum does not have, or more or fewer than there is room for",
+        """\
+Bits of a part that are some bits of a checksum say with `takes` which of its result these are,
+counted from the least significant bit 0: as many as they are themselves. The highest bit of a
+CRC-8 is 7.
+""",
+        _marked("algorithm: CRC-8/SMBUS, covers: payload, takes: 4..8"),
+        _marked("algorithm: CRC-8/SMBUS, covers: payload, takes: 4..7"),
     ),
 )

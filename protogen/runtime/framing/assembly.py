@@ -196,7 +196,8 @@ class _Assembly:
         if isinstance(part, PayloadPart):
             return self._payload
         if isinstance(part, BitsPart):
-            return part.encode(self._known)
+            sums = {item.name: item.due(self._checksum(item)) for item in part.sums}
+            return part.encode({**self._known, **sums})
         return self._number(part, self._value(part))
 
     @cached_property

@@ -129,7 +129,7 @@ class Judge:
         places = self._places(size)
         virtual = self._virtual(content, places)
         for part in self._layout.checksums:
-            found = content[slice(*places[part.name])]
+            found = content[slice(*places[self._layout.holders[part.name]])]
             problem = wrong_sum(self._sender, part, (content, places, virtual), found)
             if problem is not None:
                 return Failure(own, "checksum", problem)

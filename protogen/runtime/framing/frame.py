@@ -12,7 +12,7 @@ from typing import NamedTuple
 from protogen.runtime.checksum import Checksum
 from protogen.runtime.errors import ByteError, EncodeError
 from protogen.runtime.identities import Identities, Identity
-from protogen.runtime.payload.number import Characters, Number
+from protogen.runtime.payload.number import BitsNumber, Characters, Number
 from protogen.runtime.payload.numerals import Numeral
 from protogen.runtime.transparency import Transparency
 from protogen.runtime.values import Frozen
@@ -134,11 +134,45 @@ class MirrorBits(NamedTuple):
             raise ByteError("value", f"{problem}, as {self.of} is {of}")
 
 
+class ChecksumPart(NamedTuple):
+    """A checksum of other parts: of their bytes before any stuffing, or as they are on the wire."""
+
+    name: str
+    number: Number | Numeral
+    algorithm: Checksum
+    covers: tuple[str, ...]
+    over_wire: bool = False
+    when_payload: bool = False
+    """Absent where the payload is empty."""
+    lowest: int = 0
+    """The lowest bit of the result that it has, where it is some bits of a part."""
+
+    def due(self, result: int) -> int:
+        """Its value, where the algorithm has this result."""
+        if isinstance(self.number, BitsNumber):
+            return result >> self.lowest & ((1 << self.number.bits) - 1)
+        return result
+
+    def fault(self, data: bytes, result: int) -> str | None:
+        """Description of bytes that are not those of this result; None if they are."""
+        due = self.due(result)
+        if isinstance(self.number, BitsNumber):
+            number = self.number.decode(data)
+            return None if number == due else f"{self.name} is {number}, not {due}"
+        right = self.number.encode(due)
+        return None if data == right else f"{self.name} is {data.hex(' ')}, not {right.hex(' ')}"
+
+    @property
+    def size(self) -> int:
+        """Bytes before any stuffing."""
+        return self.number.size
+
+
 class BitsPart(NamedTuple):
     """A number whose bits are parts, `members`; each of these has the bytes of all.
 
-    Some bits may follow from numbers in front, or from members: `mirrors`. The bits of `mask` are
-    neither: they are those of `fixed` in each frame.
+    Some bits may follow from numbers in front, or from members: `mirrors`. Some may be a checksum,
+    or some bits of one: `sums`. All others are those of `mask`, which are `fixed` in each frame.
     """
 
     name: str
@@ -147,6 +181,7 @@ class BitsPart(NamedTuple):
     mask: int
     fixed: int
     mirrors: tuple[MirrorBits, ...] = ()
+    sums: tuple[ChecksumPart, ...] = ()
 
     @property
     def size(self) -> int:
@@ -163,7 +198,7 @@ class BitsPart(NamedTuple):
     def encode(self, numbers: Mapping[str, int]) -> bytes:
         """The bytes for the values of parts. Raises EncodeError where one can't be."""
         joined = self.fixed
-        for part in self.members:
+        for part in (*self.members, *self.sums):
             try:
                 data = part.number.encode(numbers[part.name])
             except ValueError as error:
@@ -207,23 +242,6 @@ class PayloadPart(NamedTuple):
         return payload if self.kept is None else payload.ljust(size, b"\0")
 
 
-class ChecksumPart(NamedTuple):
-    """A checksum of other parts: of their bytes before any stuffing, or as they are on the wire."""
-
-    name: str
-    number: Number | Numeral
-    algorithm: Checksum
-    covers: tuple[str, ...]
-    over_wire: bool = False
-    when_payload: bool = False
-    """Absent where the payload is empty."""
-
-    @property
-    def size(self) -> int:
-        """Bytes before any stuffing."""
-        return self.number.size
-
-
 class VirtualPart(NamedTuple):
     """A number that goes into the checksums that cover it, and is not sent.
 
@@ -248,6 +266,13 @@ def members_of(part: Part) -> tuple[BitsMember, ...]:
 def mirrors_of(part: Part) -> tuple[MirrorBits, ...]:
     """The bits of this part that follow from other numbers."""
     return part.mirrors if isinstance(part, BitsPart) else ()
+
+
+def checksums_of(part: Part) -> tuple[ChecksumPart, ...]:
+    """The checksums that this part is, or that are bits of it."""
+    if isinstance(part, BitsPart):
+        return part.sums
+    return (part,) if isinstance(part, ChecksumPart) else ()
 
 
 def written_apart(parts: Iterable[Part]) -> tuple[Part, ...]:

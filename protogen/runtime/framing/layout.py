@@ -18,6 +18,7 @@ from protogen.runtime.framing.frame import (
     StartLiteral,
     StartMark,
     ValuePart,
+    checksums_of,
     mirrors_of,
     written_apart,
 )
@@ -78,7 +79,7 @@ class Layout:
             part.name for part in apart if isinstance(part, IdentityPart | ValuePart)
         )
         """The names of the parts that events show."""
-        self.checksums = tuple(part for part in self.parts if isinstance(part, ChecksumPart))
+        self.checksums = tuple(item for part in self.parts for item in checksums_of(part))
         self.has_wire_checksum = any(part.over_wire for part in self.checksums)
         self.start = spec.start.value if isinstance(spec.start, StartLiteral) else b""
         self.start_words = spec.start.words if isinstance(spec.start, StartMark) else ()
@@ -105,6 +106,11 @@ class Layout:
         """The first tells where the frame ends, and the others have to agree with it."""
         apart = written_apart(self.parts)
         return tuple(part for part in apart if isinstance(part, LengthPart))
+
+    @cached_property
+    def holders(self) -> Mapping[str, str]:
+        """The names of the parts that have the bytes of checksums, by the names of these."""
+        return {item.name: part.name for part in self.parts for item in checksums_of(part)}
 
     @cached_property
     def early_identity(self) -> bool:

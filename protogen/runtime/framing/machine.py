@@ -295,7 +295,7 @@ class Candidate:
         slices = {item.part.name: item for item in self._layout.slices(content.payload_size)}
         virtual = self.sender.virtual(content.numbers) if self._spec.virtual else {}
         for part in self._layout.checksums:
-            if part.name in slices:
+            if self._layout.holders[part.name] in slices:
                 self._check(part, slices, virtual)
         start = self._layout.head_size
         payload = bytes(content.bytes[start : start + content.payload_size])
@@ -306,7 +306,7 @@ class Candidate:
     ) -> None:
         data = bytes(self._wire if part.over_wire else self._content.bytes)
         places = {name: self._span(item, part.over_wire) for name, item in slices.items()}
-        item = slices[part.name]
+        item = slices[self._layout.holders[part.name]]
         found = bytes(self._content.bytes[item.start : item.end])
         problem = wrong_sum(self.sender, part, (data, places, virtual), found)
         if problem is not None:
@@ -336,8 +336,7 @@ def wrong_sum(
     if unknown:
         return f"the identity is unknown, and so is {unknown}, which {part.name} covers"
     covered = sender.layout.covered(part, places, data, virtual)
-    due = part.number.encode(part.algorithm.compute(covered))
-    return None if found == due else f"{part.name} is {found.hex(' ')}, not {due.hex(' ')}"
+    return part.fault(found, part.algorithm.compute(covered))
 
 
 def verdict_on(

@@ -174,7 +174,7 @@ _Cutting = Annotated[
 
 
 class PartBits(Syntax):
-    """Some bits of a part: a part of their own, the same in each frame, or those of a number."""
+    """Some bits of a part: a part of their own, a checksum, constant, or those of a number."""
 
     bits: BitRange = Field(description="Bit number, or LOW..HIGH counted from bit 0.")
     id: OnlyTrue | None = Field(None, description="The bits tell which message this is.")
@@ -183,6 +183,15 @@ class PartBits(Syntax):
     )
     counter: OnlyTrue | None = Field(
         None, description="The bits count frames; encoders advance them by one and wrap."
+    )
+    algorithm: Algorithm | None = Field(
+        None, description="The bits are a checksum, or some bits of one: its algorithm."
+    )
+    covers: PartRun | None = Field(None, description="The parts that the checksum covers.")
+    takes: BitRange | None = Field(
+        None,
+        description="The bits of the checksum that stand here: a bit number, or LOW..HIGH counted "
+        "from bit 0. Without it, all of them.",
     )
     const: Count | None = Field(None, description="What the bits are in each frame.")
     repeats: PartName | None = Field(

@@ -44,7 +44,9 @@ def part(item: Part) -> str:
             members = f"members={tuple_of(map(part, item.members))}"
             bits = {"mask": f"0x{item.mask:02X}", "fixed": f"0x{item.fixed:02X}"}
             mirrors = tuple_of(map(mirror, item.mirrors)) if item.mirrors else None
-            return call("_rt.BitsPart", name, number(item), members, **bits, mirrors=mirrors)
+            sums = tuple_of(map(part, item.sums)) if item.sums else None
+            given = {**bits, "mirrors": mirrors, "sums": sums}
+            return call("_rt.BitsPart", name, number(item), members, **given)
         case IdentityPart():
             return call("_rt.IdentityPart", name, number(item))
         case LengthPart():
@@ -127,6 +129,7 @@ def _checksum_part(item: ChecksumPart) -> str:
         f"covers={tuple_of(map(text, item.covers))}",
         over_wire="True" if item.over_wire else None,
         when_payload="True" if item.when_payload else None,
+        lowest=str(item.lowest) if item.lowest else None,
     )
 
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 import msgspec
 
 from protogen.model.checksums import ChecksumSpec, find_algorithm
-from protogen.model.frame import VirtualPart
+from protogen.model.frame import ChecksumPart, VirtualPart
 from protogen.model.frame_places import Run, Side
 from protogen.model.frame_plan import FramePlan
 from protogen.model.part_plans import ChecksumPlan
-from protogen.model.types import Integer
 from protogen.targets.c.frame.algorithms import Algorithm, algorithm_of
-from protogen.targets.c.frame.expressions import Index, differs
+from protogen.targets.c.frame.expressions import Index, differs, taken_bits
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.virtual import VirtualView
 
@@ -51,9 +50,8 @@ class CoveredVirtual(msgspec.Struct, frozen=True):
 class ChecksumView(msgspec.Struct, frozen=True):
     """A checksum part."""
 
-    name: str
+    part: ChecksumPart
     checksum: Algorithm
-    type: Integer
     numbers: PartNumbers
     covers: tuple[CoveredRun | CoveredLiteral | CoveredVirtual, ...]
     at: Index
@@ -64,6 +62,16 @@ class ChecksumView(msgspec.Struct, frozen=True):
     """True if some of what it covers is stuffed on the wire before it is summed."""
 
     @property
+    def name(self) -> str:
+        """The name in the schema."""
+        return self.part.name
+
+    @property
+    def is_bits(self) -> bool:
+        """True if it is bits of a part."""
+        return self.part.type.within is not None
+
+    @property
     def covered(self) -> tuple[str, ...]:
         """The names of the parts that it covers and that are not sent."""
         return tuple(item.virtual.name for item in self.covers if item.virtual is not None)
@@ -71,14 +79,17 @@ class ChecksumView(msgspec.Struct, frozen=True):
     @property
     def size(self) -> int:
         """Bytes of content."""
-        return self.type.size
+        return self.part.type.size
 
     def wire_bytes(self, value: str) -> tuple[str, ...]:
         """The bytes of a result in wire order."""
-        return self.numbers.bytes_of(self.type, value)
+        return self.numbers.bytes_of(self.part.type, value)
 
     def differs(self, payload: str) -> str:
-        """The condition that `content` has other bytes than those of `due`."""
+        """The condition that `content` has other bytes than those of `due`, or other bits."""
+        if self.is_bits:
+            found = self.numbers.bits(self.part.type, "content", self.at.of(payload))
+            return f"{found} != {taken_bits(self.part, 'due')}"
         place = self.at.place
         at = place.offset if place.side is Side.HEAD else self.at.of(payload)
         return differs(self.wire_bytes("due"), "content", at)
@@ -100,9 +111,8 @@ def _checksum(
 ) -> ChecksumView:
     part = item.part
     return ChecksumView(
-        name=part.name,
+        part=part,
         checksum=algorithm_of(part.algorithm, checksum_name(protocol, part.algorithm)),
-        type=part.type,
         numbers=numbers,
         covers=tuple(_covered(plan, cover, virtual) for cover in item.covers),
         at=Index(item.placed.place, plan.head_size),

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
 
-from protogen.model.frame import BitsPart, MirrorBits, place_of, varying_bits
+from protogen.model.frame import BitsPart, ChecksumPart, MirrorBits, place_of
 from protogen.model.frame_places import Place, Side
 from protogen.model.types import Integer, NumberType
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
@@ -140,9 +140,9 @@ def mirrored(item: MirrorBits, number: str) -> str:
 
 
 def bytes_of_bits(part: BitsPart, names: Mapping[str, str]) -> tuple[str, ...]:
-    """The bytes of a number whose bits are parts, in wire order.
+    """The bytes of a number whose bits are parts, in wire order; those of checksums are 0.
 
-    Each of these has its C, and so has each number from which bits follow.
+    Each of these parts has its C, and so has each number from which bits follow.
     """
     width = part.type.byte_bits
     items = [_byte_of_bits(part, names, low) for low in range(0, width * part.type.size, width)]
@@ -156,18 +156,45 @@ def _byte_of_bits(part: BitsPart, names: Mapping[str, str], low: int) -> str:
     fixed, terms = part.fixed >> low & own, []
     if fixed:
         terms.append(byte(fixed))
-    for item in varying_bits(part):
+    for item in (*part.members, *part.mirrors):
         name = (
             mirrored(item, names[item.of.name])
             if isinstance(item, MirrorBits)
             else names[item.name]
         )
-        shift = place_of(item.type) - low
-        if -item.type.bits < shift < width:
-            operator = "<<" if shift > 0 else ">>"
-            terms.append(f"(uint8_t)({name} {operator} {abs(shift)})" if shift else name)
+        terms += _bits_in_byte(item.type, name, low, width)
     joined = f"(uint8_t)({' | '.join(terms) or '0U'})"
     return f"(uint8_t)({joined} & {byte(own)})" if width == 7 else joined
+
+
+def _bits_in_byte(type_: Integer, number: str, low: int, width: int) -> list[str]:
+    """What bits of a part make of its byte with the bits from `low` on; nothing of some."""
+    shift = place_of(type_) - low
+    if not -type_.bits < shift < width:
+        return []
+    operator = "<<" if shift > 0 else ">>"
+    return [f"(uint8_t)({number} {operator} {abs(shift)})" if shift else number]
+
+
+def bits_put(type_: Integer, number: str) -> tuple[tuple[int, str], ...]:
+    """The bytes, by their places in the part, that hold its bits of a number; the others are 0."""
+    width = type_.byte_bits
+    places = range(type_.size) if type_.byte_order == "little" else range(type_.size - 1, -1, -1)
+    found = (
+        (place, item)
+        for index, place in enumerate(places)
+        for item in _bits_in_byte(type_, number, index * width, width)
+    )
+    own = byte((1 << width) - 1)
+    return tuple((place, f"({item} & {own})" if width == 7 else item) for place, item in found)
+
+
+def taken_bits(part: ChecksumPart, result: str) -> str:
+    """The bits of a checksum's result that stand in bits of a part."""
+    moved = f"({result} >> {part.lowest})" if part.lowest else result
+    is_top = part.lowest + part.type.bits == part.algorithm.width
+    masked = moved if is_top else f"({moved} & {hexadecimal(part.type.greatest)})"
+    return f"({unsigned_type(part.type.bits)}){masked}"
 
 
 def number_of(type_: NumberType, at: str, offset: int, less: str = "") -> str:

@@ -29,11 +29,19 @@ from protogen.model.frame import (
 from protogen.model.frame_places import PlacedPart, Side
 from protogen.model.frame_plan import FramePlan
 from protogen.model.identities import Runs
-from protogen.model.part_plans import FurtherLength
+from protogen.model.part_plans import ChecksumPlan, FurtherLength
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.groups import in_run
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
-from protogen.targets.c.frame.expressions import Index, byte, bytes_of_bits, less_absent, wire_bytes
+from protogen.targets.c.frame.expressions import (
+    Index,
+    bits_put,
+    byte,
+    bytes_of_bits,
+    less_absent,
+    taken_bits,
+    wire_bytes,
+)
 from protogen.targets.c.frame.numbers import has_others, none_of
 from protogen.targets.c.frame.stuffing import Stuffing
 from protogen.targets.c.frame.virtual import VirtualView
@@ -237,7 +245,8 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         if self._stuffing is None or self.is_cobs or len(self.decoder.checksums) != 1:
             return None
         checksum = self.decoder.checksums[0]
-        is_alone = len(self.plan.tail) == 1 and checksum.at.place.side is not Side.HEAD
+        is_alone = len(self.plan.tail) == 1 and not checksum.is_bits
+        is_alone = is_alone and checksum.at.place.side is not Side.HEAD
         plain = is_alone and not checksum.optional and not checksum.over_wire
         plain = plain and not self._stuffing.inserts
         fits = plain and self.decoder.region_to_end and self._covers_region(checksum)
@@ -269,14 +278,15 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         plain = [item for item in self.plan.placed if not isinstance(item.part, ChecksumPart)]
         if self.decoder.length_over_wire:
             plain.sort(key=lambda item: isinstance(item.part, LengthPart))
-        left = [item for item in self.plan.placed if isinstance(item.part, ChecksumPart)]
-        done: list[PlacedPart] = []
+        left = list(self.plan.checksums)
+        done: list[Step] = []
         while left:
-            names = {item.name for item in left}
+            names = {item.placed.name for item in left}
             ready = next(item for item in left if names.isdisjoint(_covered(item)))
             left.remove(ready)
-            done.append(ready)
-        return tuple(self._step(item) for item in (*plain, *done))
+            is_bits = ready.part.type.within is not None
+            done.append(self._put_bits(ready) if is_bits else self._step(ready.placed))
+        return (*map(self._step, plain), *done)
 
     @property
     def steps_ahead(self) -> tuple[Step, ...]:
@@ -305,6 +315,17 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         checksum = next((c for c in self.decoder.checksums if c.name == part.name), None)
         counts = isinstance(part, LengthPart) and self.decoder.length_over_wire
         return Step(item.in_head, stores, checksum, counts=counts)
+
+    def _put_bits(self, item: ChecksumPlan) -> Step:
+        """The step that puts a checksum in bits of a part whose other bits stand there."""
+        target = "content" if item.placed.in_head else "tail"
+        less = less_absent(item.placed.place, "payload")
+        stores = []
+        for place, value in bits_put(item.part.type, taken_bits(item.part, "due")):
+            index = f"{item.placed.offset + place}U{less}"
+            stores.append(ByteStore(index, f"(uint8_t)({target}[{index}] | {value})"))
+        checksum = next(c for c in self.decoder.checksums if c.name == item.part.name)
+        return Step(item.placed.in_head, tuple(stores), checksum)
 
     def _value(self, part: NumberPart) -> str:
         """The value of a number that is not worked out of other bytes."""
@@ -372,9 +393,8 @@ def _length_type(part: LengthPart) -> str:
     return unsigned_type(max(16, part.type.bits))
 
 
-def _covered(item: PlacedPart) -> set[str]:
-    part = item.part
-    return set(part.covers) - {part.name} if isinstance(part, ChecksumPart) else set()
+def _covered(item: ChecksumPlan) -> set[str]:
+    return set(item.part.covers) - {item.placed.name}
 
 
 _WORDS = (

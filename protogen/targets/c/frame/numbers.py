@@ -47,6 +47,8 @@ class NumberView(msgspec.Struct, frozen=True):
     """True if it is the identity's last part, and the identity tells the payload's size."""
     tells_sizes: bool
     """True if with it both identity and length are there, and are held against each other."""
+    less: str = ""
+    """C behind each index: what is taken off where parts in front of it are absent."""
 
     @property
     def is_of_use(self) -> bool:
@@ -57,7 +59,7 @@ class NumberView(msgspec.Struct, frozen=True):
     @property
     def high_bits(self) -> str:
         """All of its bytes in one, for a look at their most significant bits."""
-        return f"({' | '.join(f'content[{offset}]' for offset in self.seven_bit)})"
+        return f"({' | '.join(f'content[{offset}{self.less}]' for offset in self.seven_bit)})"
 
 
 class LiteralView(msgspec.Struct, frozen=True):
@@ -137,6 +139,7 @@ def _bits(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberView
         is_length=length is not None,
         identifies=any(view.identifies for view in members),
         tells_sizes=any(view.tells_sizes for view in members),
+        less=less,
     )
 
 
@@ -174,6 +177,7 @@ def _number(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberVi
         is_length=plan.length is not None and part.name == plan.length.part.name,
         identifies=is_last and plan.identity_is_early and plan.length is None,
         tells_sizes=item.in_head and item.end == plan.sizes_told_at,
+        less=less,
     )
 
 

@@ -28,15 +28,18 @@ class PartNumbers:
         if isinstance(type_.text, Numeral):
             return Digits.of(type_).value(self._helpers, _address(at, offset, less))
         if type_.within is not None:
-            number = self.whole(type_.whole, at, offset, less)
-            return expressions.bits_of(type_, number, storage_bits(type_.whole.bits))
+            return self.bits(type_, at, f"{offset}{less}")
         return expressions.number_of(type_, at, offset, less)
 
-    def whole(self, type_: Integer, at: str, offset: int, less: str = "") -> str:
+    def bits(self, type_: Integer, at: str, index: str) -> str:
+        """The value of bits of the bytes from `at[index]` on."""
+        number = self.whole(type_.whole, at, index)
+        return expressions.bits_of(type_, number, storage_bits(type_.whole.bits))
+
+    def whole(self, type_: Integer, at: str, offset: int | str, less: str = "") -> str:
         """The number of all bits of some bytes, whose bits are parts."""
-        if type_.size == 1:
-            return expressions.number_of(type_, at, offset, less)
-        return f"{self._helpers.load(type_)}({_address(at, offset, less)})"
+        place = f"{at}[{offset}{less}]"
+        return place if type_.size == 1 else f"{self._helpers.load(type_)}(&{place})"
 
     def shown(self, type_: Integer, at: str, offset: int, less: str) -> str:
         """The same value, in the type of a member that holds it."""

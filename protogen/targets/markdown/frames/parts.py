@@ -273,8 +273,9 @@ def _virtual_roles(part: VirtualPart) -> tuple[str, ...]:
 
 def _checksum_roles(part: ChecksumPart) -> tuple[str, ...]:
     over = ", as they are on the wire" if part.over_wire else ""
+    what = f"{part.taken.capitalize()} of the checksum" if part.taken else "Checksum"
     return (
-        f"Checksum over {part_names(part.covers)}{over}: {algorithm_text(part.algorithm)}.",
+        f"{what} over {part_names(part.covers)}{over}: {algorithm_text(part.algorithm)}.",
         "Absent where the payload is empty." if part.when_payload else "",
     )
 

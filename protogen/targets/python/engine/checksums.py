@@ -30,6 +30,8 @@ class ChecksumFunction(FrameFunction):
         is_raw = not frame.stuffed and not self.plan.shares_delimiter and not self.plan.end_bytes
         self.content = "raw" if is_raw else "content"
         """All parts before stuffing, but not the end, nor literals in front."""
+        self._in_due: tuple[ChecksumSpec, tuple[str, ...]] | None = None
+        """The algorithm, and what it covers, of which the function has the result in `due`."""
 
     def stop_if(self, condition: str) -> None:
         """Leave it to the caller where the condition holds."""
@@ -49,6 +51,9 @@ class ChecksumFunction(FrameFunction):
     def _compare(self) -> None:
         for part in self.frame.checksums:
             covered = self.covered(part)
+            if part.type.within is not None:
+                self._compare_bits(part, covered)
+                continue
             if self.sums_to_nothing(part, covered):
                 self.stop_if(f"_adler32({self.content}, 0) & 0xFF")
                 continue
@@ -66,6 +71,19 @@ class ChecksumFunction(FrameFunction):
                 continue
             found = self.frame.slice_of(self.content, first, first + part.type.size)
             self.stop_if(f"{found} != {self.lines.constants.number(part.type)}.encode({due})")
+
+    def _compare_bits(self, part: ChecksumPart, covered: str) -> None:
+        """Compare bits of a part with those of the result, which others may take bits of, too."""
+        rule = part.algorithm, part.covers
+        if rule != self._in_due:
+            due = checksum(part, covered, self.frame, self.lines.constants)
+            self.lines.add(f"due = {due}")
+            self._in_due = rule
+        found = self.number_at(self.content, part, Place("", self.frame.offset(part)))
+        moved = f"due >> {part.lowest}" if part.lowest else "due"
+        is_top = part.lowest + part.type.bits == part.algorithm.width
+        mask = "" if is_top else f" & 0x{part.type.greatest:02X}"
+        self.stop_if(f"{found} != {moved}{mask}")
 
     def covered(self, part: ChecksumPart) -> str:
         """Bytes that a checksum covers, as an expression."""

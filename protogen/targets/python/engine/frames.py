@@ -12,6 +12,7 @@ from protogen.model.frame import (
     NumberPart,
     Part,
     VirtualPart,
+    checksums_of,
 )
 from protogen.model.frame_places import Place, Run, Side
 from protogen.model.frame_plan import EndRule
@@ -107,7 +108,7 @@ class EngineFrame:
         first = min(map(self.offset, self.shown))
         last = max(self.offset(part) + part.size for part in self.shown)
         between = [part for part in self.head if first <= self.offset(part) < last]
-        plain = not any(isinstance(part, ChecksumPart) for part in between)
+        plain = not any(map(checksums_of, between))
         return (first, last) if plain else None
 
     @property
