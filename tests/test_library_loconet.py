@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from compiled import protocol_of
-from library_support import cases_of, compare_frames, compare_recovery, peer_module
+from library_support import FRAMES, cases_of, compare_frames, compare_recovery, peer_module
 
 from protogen.copying import replace
 from protogen.fuzzing.samples import Values
@@ -205,8 +205,10 @@ def as_known(case: Case) -> Case:
 
 
 def drawn() -> list[Case]:
-    cases = cases_of("loconet")
-    return [as_known(case) for case in cases if is_known(case)]
+    cases = [*cases_of("loconet"), *cases_of("loconet", ["slot_data"], seed=2)[:100]]
+    known = [as_known(case) for case in cases if is_known(case)]
+    assert len(known) >= FRAMES
+    return known
 
 
 def is_known(case: Case) -> bool:

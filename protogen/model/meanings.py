@@ -24,6 +24,11 @@ class Enum(msgspec.Struct, frozen=True, kw_only=True):
     closed: bool = False
     about: About = NOTHING
 
+    @property
+    def characters(self) -> frozenset[int]:
+        """Its values that are bytes: one that no character has may stand in a bad schema."""
+        return frozenset(item.value for item in self.values if 0 <= item.value <= 0xFF)
+
 
 class NamedBit(msgspec.Struct, frozen=True, kw_only=True):
     """A name for one bit, counted from the least significant bit 0."""

@@ -253,7 +253,7 @@ class Integer(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
             own = self.text.alphabet(signed=self.signed)
             if self.role == "char" and self.enum is not None and self.enum.closed:
                 absent = {self.text.absent} if self.text.empty else set[int]()
-                own = bytes({item.value for item in self.enum.values} - absent)
+                own = bytes(self.enum.characters - absent)
             return own + (bytes((self.text.separator,)) if self.text.separator is not None else b"")
         return b"" if self.text is None else self.text.alphabet
 

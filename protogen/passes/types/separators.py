@@ -112,7 +112,7 @@ def _check_separator(context: Context, found: Integer, form: FreeNumeral, item: 
     if form.base != 256:
         characters = form.alphabet(signed=found.signed)
     else:
-        characters = bytes(value.value for value in found.enum.values) if found.enum else b""
+        characters = bytes(found.enum.characters) if found.enum else b""
     byte = form.separator
     if byte is not None and byte in characters:
         shown = f"`{chr(byte)}`" if 0x20 < byte < 0x7F else f"{byte:02X}"
