@@ -254,7 +254,7 @@ def check_payload(case: Case, payload: bytes, parts: Mapping[str, int | str] | N
         return
     is_trimmed, is_fitted = case.sender.plan.is_trimmed, case.sender.plan.is_fitted
     size = case.message.sizes.greatest if is_trimmed else 0
-    is_cut = case.sender.plan.is_cut and case.message.sizes.fixed is not None
+    is_cut = case.sender.plan.is_cut and case.message.cut_size is not None
     known = payload[: case.message.sizes.greatest] if is_cut else payload
     assert event.payload == known.ljust(size, b"\0")
     chosen = given_parts(case.sender.frame, case.message)
