@@ -35,6 +35,14 @@ def protocol_of(text: str) -> Protocol:
     return compiled.protocol
 
 
+def written(path: Path, text: str) -> Protocol:
+    """The protocol of a schema that is put into a file, where tools find it."""
+    path.write_text(text, encoding="utf-8")
+    found = compile_file(path)
+    assert found.protocol is not None, [item.message for item in found.problems]
+    return found.protocol
+
+
 def repository_protocol(name: str) -> Protocol:
     """The protocol of one of the repository's schemas."""
     compiled = compile_file(SCHEMAS / f"{name}.yaml")

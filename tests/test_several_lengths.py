@@ -7,10 +7,9 @@ from pathlib import Path
 import pytest
 from cli_support import run
 from compiled import module_at
+from passes_support import written
 
-from protogen.compiler import compile_file
 from protogen.evolution.findings import findings
-from protogen.model.protocol import Protocol
 from protogen.model.sizes import SizeSet
 from protogen.runtime.errors import EncodeError
 
@@ -38,13 +37,6 @@ def path(tmp_path: Path) -> Path:
     found = tmp_path / "nested.yaml"
     found.write_text(SCHEMA, encoding="utf-8")
     return found
-
-
-def written(path: Path, text: str) -> Protocol:
-    path.write_text(text, encoding="utf-8")
-    found = compile_file(path)
-    assert found.protocol is not None, [item.message for item in found.problems]
-    return found.protocol
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.candidate import Candidate
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.members import POINTERS, SMALL_POINTER, Member, candidate_members
+from protogen.targets.c.decoders.named import NamedDecoder
 from protogen.targets.c.decoders.push import PushDecoder
 from protogen.targets.c.options import Events
 from protogen.targets.c.spelling import Names
@@ -67,34 +68,11 @@ class _Search(PushDecoder, frozen=True, dict=True):
         return False
 
 
-class FormsDecoder(msgspec.Struct, frozen=True, dict=True):
-    """Everything that the templates print of a decoder for all forms."""
+class FormsDecoder(NamedDecoder, frozen=True, dict=True):
+    """Everything that the templates print of a decoder for all forms, named as the endpoint."""
 
-    names: Names
-    name: str
-    """The endpoint."""
     forms: tuple[Form, ...]
     events: Events
-
-    @property
-    def prefix(self) -> str:
-        """Prefix of its functions and types."""
-        return self.names.senders[self.name]
-
-    @property
-    def upper(self) -> str:
-        """Prefix of its macros."""
-        return self.prefix.upper()
-
-    @property
-    def protocol(self) -> str:
-        """Prefix of the protocol's functions and types."""
-        return self.names.prefix
-
-    @property
-    def protocol_upper(self) -> str:
-        """Prefix of the protocol's macros."""
-        return self.protocol.upper()
 
     @property
     def all_events(self) -> bool:

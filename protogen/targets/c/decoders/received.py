@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from functools import cached_property
 
-import msgspec
-
 from protogen.model.frame import BitsPart, NumberPart
 from protogen.model.frame_places import PlacedPart
 from protogen.model.frame_plan import FramePlan, StartRule, Store
@@ -20,6 +18,7 @@ from protogen.targets.c.decoders.groups import (
     key_from,
     key_type,
 )
+from protogen.targets.c.decoders.named import NamedDecoder
 from protogen.targets.c.frame.checksums import ChecksumView, checksums_of
 from protogen.targets.c.frame.expressions import among, bits_of, byte
 from protogen.targets.c.frame.numbers import (
@@ -35,14 +34,11 @@ from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.stuffing import Node, Stuffing, StuffingKind, stuffing_of
 from protogen.targets.c.frame.virtual import VirtualView, virtual_of
 from protogen.targets.c.options import Events
-from protogen.targets.c.spelling import Names
 
 
-class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
+class ReceivedFrame(NamedDecoder, frozen=True, dict=True):
     """A sender's frame, as a decoder receives it."""
 
-    names: Names
-    name: str
     plan: FramePlan
     groups: tuple[GroupView, ...]
     events: Events
@@ -51,29 +47,9 @@ class ReceivedFrame(msgspec.Struct, frozen=True, dict=True):
     # --- names ------------------------------------------------------------------------------------
 
     @property
-    def prefix(self) -> str:
-        """Prefix of its functions and types."""
-        return self.names.senders[self.name]
-
-    @property
     def types(self) -> str:
         """Prefix of the structs of its events and their parts."""
         return self.names.senders[self.name]
-
-    @property
-    def upper(self) -> str:
-        """Prefix of its macros."""
-        return self.prefix.upper()
-
-    @property
-    def protocol(self) -> str:
-        """Prefix of the protocol's functions and types."""
-        return self.names.prefix
-
-    @property
-    def protocol_upper(self) -> str:
-        """Prefix of the protocol's macros."""
-        return self.protocol.upper()
 
     # --- styles -----------------------------------------------------------------------------------
 
