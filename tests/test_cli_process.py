@@ -69,7 +69,7 @@ def test_shells_can_complete() -> None:
     assert result.stdout.split() == [b"decode"]
 
 
-HEAVY = ("pydantic", "construct", "jinja2", "yaml", "rich")
+HEAVY = ("protogen.model.protocol", "pydantic", "construct", "jinja2", "yaml", "rich")
 
 
 @pytest.mark.parametrize("option", ["--help", "--version"])

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from protogen.cli.exits import UsageError
 from protogen.cli.wire.tagged import Piece
-from protogen.model.protocol import Protocol
+
+if TYPE_CHECKING:
+    from protogen.model.protocol import Protocol
 
 _SECOND = 10**9
 
