@@ -57,14 +57,23 @@ class VirtualPlan(msgspec.Struct, frozen=True, kw_only=True):
         return sum(identities.count for identities, _ in self.values)
 
 
-class LengthPlan(msgspec.Struct, frozen=True, kw_only=True):
-    """The length part: its value for a payload, and the payload's size for a value."""
+class CountedLength(msgspec.Struct, frozen=True, kw_only=True):
+    """A length, and its value for a payload."""
 
     part: LengthPart
     base: int
     """Value for an empty payload."""
     optional: int
     """Bytes that it counts besides, where the payload is not empty."""
+
+    def counted(self, payload: int) -> int:
+        """Value for a payload of that size."""
+        return self.base + (payload + self.optional if payload else 0)
+
+
+class LengthPlan(CountedLength, frozen=True, kw_only=True):
+    """The length part: its value for a payload, and the payload's size for a value."""
+
     region_end: int | None = None
     """Where it counts bytes on the wire: how many there are up to the end of what is stuffed, in a
     frame of the value `base`."""
@@ -81,10 +90,6 @@ class LengthPlan(msgspec.Struct, frozen=True, kw_only=True):
         """True if it counts stuffed bytes, so that only their end tells the payload's size."""
         return self.region_end is not None
 
-    def counted(self, payload: int) -> int:
-        """Value for a payload of that size."""
-        return self.base + (payload + self.optional if payload else 0)
-
     def payload(self, value: int) -> int | None:
         """Size of the payload for a value; None if there is none."""
         if value == self.base:
@@ -93,16 +98,11 @@ class LengthPlan(msgspec.Struct, frozen=True, kw_only=True):
         return size if size > 0 else None
 
 
-class FurtherLength(msgspec.Struct, frozen=True, kw_only=True):
+class FurtherLength(CountedLength, frozen=True, kw_only=True):
     """A length behind the first one of the frame, with which it has to agree."""
 
-    part: LengthPart
     placed: PlacedPart
     first: LengthPlan
-    base: int
-    """Value for an empty payload."""
-    optional: int
-    """Bytes that it counts besides, where the payload is not empty."""
 
     @property
     def more(self) -> int:
@@ -113,10 +113,6 @@ class FurtherLength(msgspec.Struct, frozen=True, kw_only=True):
     def more_if_empty(self) -> int:
         """What it is more than the first length, where the payload is empty."""
         return self.base - self.first.base
-
-    def counted(self, payload: int) -> int:
-        """Value for a payload of that size."""
-        return self.base + (payload + self.optional if payload else 0)
 
 
 class StuffedRegion(msgspec.Struct, frozen=True, kw_only=True):

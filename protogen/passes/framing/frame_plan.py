@@ -16,6 +16,7 @@ from protogen.model.frame import (
     Escape,
     Frame,
     Insertion,
+    LengthPart,
     LiteralPart,
     Part,
     PayloadPart,
@@ -169,8 +170,7 @@ class _Planner:
         part = self._frame.length
         if part is None:
             return None
-        base = counted_size(self._frame, part, empty=True)
-        optional = counted_size(self._frame, part, empty=False) - base
+        base, optional = self._counted(part)
         if not part.over_wire:
             return LengthPlan(part=part, base=base, optional=optional)
         names = [item.name for item in self._frame.parts]
@@ -184,14 +184,18 @@ class _Planner:
             most=min(part.greatest, self._framing.greatest - others),
         )
 
+    def _counted(self, part: LengthPart) -> tuple[int, int]:
+        """What a length counts of an empty payload's frame, and besides that of any other one's."""
+        base = counted_size(self._frame, part, empty=True)
+        return base, counted_size(self._frame, part, empty=False) - base
+
     def _further_lengths(self, first: LengthPlan | None) -> Iterator[FurtherLength]:
         """The lengths behind the first one."""
         for part in self._frame.lengths[1:]:
             assert first is not None
             placed = self._placed(self._frame.holder(part.name).name)
             assert placed is not None
-            base = counted_size(self._frame, part, empty=True)
-            optional = counted_size(self._frame, part, empty=False) - base
+            base, optional = self._counted(part)
             yield FurtherLength(part=part, placed=placed, first=first, base=base, optional=optional)
 
     # --- start and end ----------------------------------------------------------------------------
