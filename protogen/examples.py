@@ -15,8 +15,9 @@ from typing import Any
 import msgspec
 
 from protogen.live.codec import module_of
-from protogen.model.frame import Frame, LiteralPart, NumberPart
+from protogen.model.frame import Frame
 from protogen.model.messages import Example, Message, given_parts
+from protogen.model.parts import LiteralPart, NumberPart
 from protogen.model.protocol import Protocol
 from protogen.problems import Problems
 from protogen.runtime.attributes import arguments

@@ -15,8 +15,8 @@ from random import Random
 from compiled import module_at, protocol_of
 
 from protogen.fuzzing.samples import boundary_rounds, samples
-from protogen.model.frame import ChoicePart, NumberPart
 from protogen.model.messages import Message
+from protogen.model.parts import ChoicePart, NumberPart
 from protogen.model.protocol import Sender
 from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError

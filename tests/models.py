@@ -8,26 +8,23 @@ from typing import Any
 
 from protogen.model.checksums import find_algorithm
 from protogen.model.expressions import named
-from protogen.model.frame import (
-    Base16,
-    ChecksumPart,
-    CounterPart,
-    Escape,
-    Frame,
-    IdentityPart,
-    LengthPart,
-    LiteralPart,
-    PayloadPart,
-    Substitution,
-    Transparency,
-    ValuePart,
-)
+from protogen.model.frame import Frame
 from protogen.model.framing import End, Framing, MessageFraming, StartLiteral
 from protogen.model.meanings import Enum, Flags, NamedBit, NamedValue
 from protogen.model.messages import Example, Message
 from protogen.model.origin import About, Source
+from protogen.model.parts import (
+    ChecksumPart,
+    CounterPart,
+    IdentityPart,
+    LengthPart,
+    LiteralPart,
+    PayloadPart,
+    ValuePart,
+)
 from protogen.model.protocol import Endpoint, Link, Protocol, Sender
 from protogen.model.sizes import SizeSet
+from protogen.model.transparency import Base16, Escape, Substitution, Transparency
 from protogen.model.types import Case, Field, Integer, Struct, Switch, Type, total
 from protogen.passes.framing.frame_plan import plan_frame
 from protogen.problems.span import Span

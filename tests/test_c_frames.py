@@ -17,8 +17,9 @@ from protogen.compiler import compile_file
 from protogen.fuzzing.c_calls import OK, RANGE, SPACE, VALUE, Encoded
 from protogen.fuzzing.c_values import Unfit
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
-from protogen.model.frame import BitsPart, Insertion
+from protogen.model.parts import BitsPart
 from protogen.model.protocol import Protocol
+from protogen.model.transparency import Insertion
 from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError
 

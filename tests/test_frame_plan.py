@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 from protogen.api import load
-from protogen.model.frame import Base16, Escape, LiteralPart, PayloadPart, Substitution
 from protogen.model.frame_places import Place, Run, Side
 from protogen.model.frame_plan import EndRule, FramePlan, StartRule, Store
+from protogen.model.parts import LiteralPart, PayloadPart
+from protogen.model.transparency import Base16, Escape, Substitution
 
 ROOT = Path(__file__).parent.parent
 

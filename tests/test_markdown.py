@@ -35,10 +35,11 @@ from models import (
 
 from protogen.compiler import compile_file
 from protogen.copying import defaults_of, replace
-from protogen.model.frame import Frame, LiteralPart, PayloadPart
+from protogen.model.frame import Frame
 from protogen.model.meanings import Enum, NamedValue
 from protogen.model.messages import Contradiction, Exchange, Overload, Step
 from protogen.model.origin import About, Source
+from protogen.model.parts import LiteralPart, PayloadPart
 from protogen.model.protocol import (
     Decision,
     Endpoint,

@@ -29,9 +29,11 @@ from models import (
 
 from protogen.copying import replace
 from protogen.model.expressions import named
-from protogen.model.frame import Cobs, Frame, LiteralPart, Transparency
+from protogen.model.frame import Frame
 from protogen.model.meanings import BitField, NamedValue
 from protogen.model.messages import Contradiction
+from protogen.model.parts import LiteralPart
+from protogen.model.transparency import Cobs, Transparency
 from protogen.model.types import Array, Counted, Fill, Fixed, Float, Integer, Octets, Struct, Text
 
 

@@ -28,9 +28,11 @@ from models import (
 from protogen.copying import replace
 from protogen.model.checksums import find_algorithm
 from protogen.model.expressions import named
-from protogen.model.frame import ChecksumPart, Cobs, Frame, LiteralPart, Transparency
+from protogen.model.frame import Frame
+from protogen.model.parts import ChecksumPart, LiteralPart
 from protogen.model.protocol import Protocol
 from protogen.model.sizes import SizeSet
+from protogen.model.transparency import Cobs, Transparency
 from protogen.model.types import Array, Case, Counted, Fill, Fixed, Octets, Struct, Switch, Text
 from protogen.targets.markdown.frames.layout import has_further_codes
 

@@ -11,22 +11,19 @@ from passes_support import HEAD, SCHEMAS, protocol_of
 from protogen.compiler import compile_file
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.expressions import named
-from protogen.model.frame import (
-    Base16,
+from protogen.model.parts import (
     ChecksumPart,
-    Cobs,
     CounterPart,
-    Escape,
     IdentityPart,
     LengthPart,
     LiteralPart,
     Part,
     PayloadPart,
-    Substitution,
     ValuePart,
 )
 from protogen.model.protocol import Link, Protocol
 from protogen.model.sizes import SizeSet
+from protogen.model.transparency import Base16, Cobs, Escape, Substitution
 from protogen.model.types import (
     Array,
     Counted,

@@ -14,8 +14,8 @@ from passes_support import HEAD
 from passes_support import protocol_of as model_of
 
 from protogen.live.codec import module_of
-from protogen.model.frame import IdentityPart
 from protogen.model.identities import Identities
+from protogen.model.parts import IdentityPart
 from protogen.model.types import Integer
 from protogen.runtime.api import EncodeError
 

@@ -15,7 +15,10 @@ SLOW = (
 )  # fmt: skip
 """Modules that take longer to import than a generated module may."""
 
-REFERENCE = ("constructs", "framing.frame_format", "payload.records", "payload.rules")
+REFERENCE = (
+    "constructs", "framing.frame_format", "payload.number_rules", "payload.records",
+    "payload.rules",
+)  # fmt: skip
 """Modules of the runtime that only the reference needs, and that import what takes long."""
 
 USES = {

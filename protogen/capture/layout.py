@@ -19,8 +19,8 @@ from protogen.capture.schema import (
 )
 from protogen.copying import replace
 from protogen.model.expressions import Expression, Operand, plain_name, rebuilt
-from protogen.model.frame import NumberPart
 from protogen.model.messages import Message
+from protogen.model.parts import NumberPart
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,

@@ -14,9 +14,9 @@ import msgspec
 
 from protogen.copying import replace
 from protogen.model.expressions import Expression
-from protogen.model.frame import NumberPart
 from protogen.model.meanings import Enum, Flags, NamedValue
 from protogen.model.messages import Message
+from protogen.model.parts import NumberPart
 from protogen.model.types import Field, NumberType, Type
 from protogen.runtime.errors import Reason
 

@@ -9,15 +9,12 @@ from protogen.copying import replace
 from protogen.evolution.change import Change, named
 from protogen.evolution.shapes import are_crossed, encoding_shape
 from protogen.model.checksums import ChecksumSpec
-from protogen.model.frame import (
+from protogen.model.frame import Frame
+from protogen.model.parts import (
     BitsPart,
     ChecksumPart,
     ChoicePart,
     CounterPart,
-    Encoding,
-    Escape,
-    Frame,
-    Insertion,
     LengthPart,
     LiteralPart,
     MirrorBits,
@@ -25,13 +22,12 @@ from protogen.model.frame import (
     Part,
     PartType,
     PayloadPart,
-    Substitution,
-    Transparency,
     TypedPart,
     ValuePart,
     VirtualPart,
 )
 from protogen.model.protocol import Sender
+from protogen.model.transparency import Encoding, Escape, Insertion, Substitution, Transparency
 from protogen.passes.framing.capacity import payload_range
 
 

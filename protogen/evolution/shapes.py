@@ -8,8 +8,8 @@ from typing import Any
 
 from protogen.copying import field_names, is_record
 from protogen.model.expressions import Expression
-from protogen.model.frame import Encoding, Escape, Insertion, Substitution
 from protogen.model.meanings import Enum, Flags
+from protogen.model.transparency import Encoding, Escape, Insertion, Substitution
 from protogen.model.types import Struct
 
 _WORDS = frozenset({"about", "renamed_from", "stated", "sizes", "holds_values", "needs"})

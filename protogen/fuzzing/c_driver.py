@@ -12,8 +12,8 @@ from pathlib import Path
 
 import msgspec
 
-from protogen.model.frame import NumberPart
 from protogen.model.messages import Message
+from protogen.model.parts import NumberPart
 from protogen.model.protocol import Protocol
 
 TEMPLATES = Path(__file__).with_name("templates")

@@ -14,9 +14,9 @@ import msgspec
 
 from protogen.model.expression_bounds import linear
 from protogen.model.expressions import Number, Operand, every, operands
-from protogen.model.frame import ChoicePart, CounterPart, IdentityPart, ValuePart
 from protogen.model.identities import Runs
 from protogen.model.messages import Message
+from protogen.model.parts import ChoicePart, CounterPart, IdentityPart, ValuePart
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,

@@ -6,9 +6,7 @@ from enum import Enum, auto
 
 import msgspec
 
-from protogen.model.frame import (
-    Part,
-)
+from protogen.model.parts import Part
 
 
 class Side(Enum):

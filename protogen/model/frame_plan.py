@@ -12,18 +12,7 @@ from functools import cached_property
 
 import msgspec
 
-from protogen.model.frame import (
-    FULL_GROUP,
-    ChoicePart,
-    Cobs,
-    CounterPart,
-    Frame,
-    IdentityPart,
-    Part,
-    ValuePart,
-    varying_bits,
-    written_apart,
-)
+from protogen.model.frame import Frame
 from protogen.model.frame_places import PlacedPart
 from protogen.model.messages import Message
 from protogen.model.part_plans import (
@@ -34,7 +23,17 @@ from protogen.model.part_plans import (
     StuffedRegion,
     VirtualPlan,
 )
+from protogen.model.parts import (
+    ChoicePart,
+    CounterPart,
+    IdentityPart,
+    Part,
+    ValuePart,
+    varying_bits,
+    written_apart,
+)
 from protogen.model.sizes import SizeSet
+from protogen.model.transparency import FULL_GROUP, Cobs
 
 _FEW = 256
 """So many identities are looked at one by one."""

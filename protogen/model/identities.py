@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 if TYPE_CHECKING:
-    from protogen.model.frame import IdentityPart
+    from protogen.model.parts import IdentityPart
 
 Identity = tuple[int, ...]
 """Raw value of each identity part, in wire order."""

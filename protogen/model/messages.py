@@ -7,9 +7,10 @@ from typing import Any
 
 import msgspec
 
-from protogen.model.frame import Frame, NumberPart, VirtualPart
+from protogen.model.frame import Frame
 from protogen.model.identities import Identities, Identity
 from protogen.model.origin import NOTHING, About
+from protogen.model.parts import NumberPart, VirtualPart
 from protogen.model.payload_builder import plan_of
 from protogen.model.payload_plan import PayloadPlan
 from protogen.model.sizes import SizeSet

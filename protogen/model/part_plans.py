@@ -4,19 +4,12 @@ from __future__ import annotations
 
 import msgspec
 
-from protogen.model.frame import (
-    Base16,
-    ChecksumPart,
-    Encoding,
-    Escape,
-    Insertion,
-    LengthPart,
-    VirtualPart,
-)
 from protogen.model.frame_places import Place, PlacedPart, Run
 from protogen.model.identities import Identities
 from protogen.model.messages import Message
+from protogen.model.parts import ChecksumPart, LengthPart, VirtualPart
 from protogen.model.sizes import SizeSet
+from protogen.model.transparency import Base16, Encoding, Escape, Insertion
 
 
 class ChecksumPlan(msgspec.Struct, frozen=True, kw_only=True):

@@ -7,13 +7,14 @@ from functools import cached_property
 
 import msgspec
 
-from protogen.model.frame import Frame, IdentityPart, NumberPart
+from protogen.model.frame import Frame
 from protogen.model.frame_plan import FramePlan
 from protogen.model.framing import Framing
 from protogen.model.identities import Identities
 from protogen.model.meanings import Enum, Flags
 from protogen.model.messages import Exchange, Message, Overload
 from protogen.model.origin import NOTHING, About, Source
+from protogen.model.parts import IdentityPart, NumberPart
 from protogen.model.types import Struct
 
 

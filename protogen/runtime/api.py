@@ -127,6 +127,7 @@ if TYPE_CHECKING:
 
     from protogen.runtime.framing.frame_format import FrameFormat
     from protogen.runtime.payload.formula import Formula
+    from protogen.runtime.payload.number_rules import BoolRule, FloatRule, IntegerRule
     from protogen.runtime.payload.records import (
         ArrayRule,
         FieldRules,
@@ -135,14 +136,7 @@ if TYPE_CHECKING:
         SwitchRule,
         WhenRule,
     )
-    from protogen.runtime.payload.rules import (
-        BoolRule,
-        FloatRule,
-        IntegerRule,
-        OctetsRule,
-        TextRule,
-        Violation,
-    )
+    from protogen.runtime.payload.rules import OctetsRule, TextRule, Violation
 else:
     __getattr__ = importer(
         globals(),
@@ -150,6 +144,7 @@ else:
             "fractions": ("Fraction",),
             ".framing.frame_format": ("FrameFormat",),
             ".payload.formula": ("Formula",),
+            ".payload.number_rules": ("BoolRule", "FloatRule", "IntegerRule"),
             ".payload.records": (
                 "ArrayRule",
                 "FieldRules",
@@ -158,13 +153,6 @@ else:
                 "SwitchRule",
                 "WhenRule",
             ),
-            ".payload.rules": (
-                "BoolRule",
-                "FloatRule",
-                "IntegerRule",
-                "OctetsRule",
-                "TextRule",
-                "Violation",
-            ),
+            ".payload.rules": ("OctetsRule", "TextRule", "Violation"),
         },
     )

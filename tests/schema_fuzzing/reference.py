@@ -14,24 +14,19 @@ from bit_runs import bits_of_number, bytes_of, number_of
 from expression_oracle import worked_out
 
 from protogen.model.checksums import ChecksumSpec
-from protogen.model.frame import (
-    Base16,
+from protogen.model.frame import Frame
+from protogen.model.messages import Message
+from protogen.model.parts import (
     BitsPart,
     ChecksumPart,
-    Cobs,
-    Encoding,
-    Escape,
-    Frame,
-    Insertion,
     LengthPart,
     LiteralPart,
     NumberPart,
     Part,
     PayloadPart,
-    Substitution,
     VirtualPart,
 )
-from protogen.model.messages import Message
+from protogen.model.transparency import Base16, Cobs, Encoding, Escape, Insertion, Substitution
 from protogen.model.types import (
     Array,
     Extent,

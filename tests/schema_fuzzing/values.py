@@ -15,8 +15,9 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from protogen.model.expressions import Expression, Operand, Quotient, plain_name
-from protogen.model.frame import ChoicePart, CounterPart, Frame, IdentityPart, ValuePart
+from protogen.model.frame import Frame
 from protogen.model.messages import Message
+from protogen.model.parts import ChoicePart, CounterPart, IdentityPart, ValuePart
 from protogen.model.types import (
     Array,
     Counted,

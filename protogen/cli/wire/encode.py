@@ -14,8 +14,8 @@ from protogen.cli.options import SchemaFile
 
 if TYPE_CHECKING:
     from protogen.cli.wire.codec import Codec
-    from protogen.model.frame import NumberPart
     from protogen.model.messages import Message
+    from protogen.model.parts import NumberPart
     from protogen.model.protocol import Sender
 
 EXAMPLE = "Example: protogen encode schemas/matty.yaml go speed=500 steer=-2.5deg"

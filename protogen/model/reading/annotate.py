@@ -12,8 +12,9 @@ import msgspec
 
 from protogen.copying import replace
 from protogen.model.checksums import checksum_of
-from protogen.model.frame import (
-    FULL_GROUP,
+from protogen.model.identities import Identity
+from protogen.model.messages import Message
+from protogen.model.parts import (
     BitsPart,
     ChecksumPart,
     ChoicePart,
@@ -27,12 +28,11 @@ from protogen.model.frame import (
     TypedPart,
     VirtualPart,
 )
-from protogen.model.identities import Identity
-from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.reading.dissect import Cursor, Row, dissect
 from protogen.model.reading.readings import character, quoted
 from protogen.model.reading.wire import Unit, Wire, plain, unstuff
+from protogen.model.transparency import FULL_GROUP
 from protogen.model.types import characters, codec
 from protogen.runtime.errors import ByteError
 

@@ -11,9 +11,9 @@ import msgspec
 
 from protogen.copying import replace
 from protogen.model.expressions import Expression, reached, value_of
-from protogen.model.frame import Part
 from protogen.model.numbers import FreeNumeral
 from protogen.model.packing import Packing
+from protogen.model.parts import Part
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,

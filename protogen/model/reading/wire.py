@@ -6,16 +6,9 @@ from collections.abc import Iterator
 
 import msgspec
 
-from protogen.model.frame import (
-    Base16,
-    Cobs,
-    Encoding,
-    Escape,
-    Insertion,
-    LiteralPart,
-    Substitution,
-)
 from protogen.model.frame_plan import FramePlan
+from protogen.model.parts import LiteralPart
+from protogen.model.transparency import Base16, Cobs, Encoding, Escape, Insertion, Substitution
 from protogen.runtime import transparency as stuffing
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
 from protogen.copying import replace
-from protogen.model.frame import ChoicePart, Cobs, Frame, LiteralPart, Part, PayloadPart
+from protogen.model.frame import Frame
 from protogen.model.framing import (
     AfterEnd,
     Anywhere,
@@ -22,7 +22,9 @@ from protogen.model.framing import (
     StartSet,
 )
 from protogen.model.messages import Message
+from protogen.model.parts import ChoicePart, LiteralPart, Part, PayloadPart
 from protogen.model.sizes import SizeSet
+from protogen.model.transparency import Cobs
 from protogen.passes.context import Context
 from protogen.passes.draft import Draft
 from protogen.passes.framing import framing_words

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import product
 
-from protogen.model.frame import ChoicePart, Frame, LengthPart, LiteralPart, Part, PayloadPart
+from protogen.model.frame import Frame
+from protogen.model.parts import ChoicePart, LengthPart, LiteralPart, Part, PayloadPart
 from protogen.model.sizes import SizeSet
 from protogen.passes.proofs.wire_code import EVERY_BYTE, code_of, part_bytes
 

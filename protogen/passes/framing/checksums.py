@@ -16,7 +16,7 @@ from protogen.model.checksums import (
     find_algorithm,
     variants,
 )
-from protogen.model.frame import ChecksumPart, Part, PartType
+from protogen.model.parts import ChecksumPart, Part, PartType
 from protogen.model.types import ByteOrder, Integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.framing.bit_names import are_whole, holders_of

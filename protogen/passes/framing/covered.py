@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from protogen.model.frame import ChecksumPart, Cobs, Frame, checksums_of
+from protogen.model.frame import Frame
+from protogen.model.parts import ChecksumPart, checksums_of
+from protogen.model.transparency import Cobs
 from protogen.passes.context import Context, Loc
 from protogen.passes.framing.bit_names import place_of_number
 from protogen.passes.framing.wire_counts import check_wire_sum

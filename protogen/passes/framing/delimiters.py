@@ -7,7 +7,8 @@ from collections.abc import Iterable, Sequence
 
 import msgspec
 
-from protogen.model.frame import ChoicePart, Frame, LiteralPart
+from protogen.model.frame import Frame
+from protogen.model.parts import ChoicePart, LiteralPart
 from protogen.passes.context import Context, Loc
 from protogen.passes.framing.capacity import head_literals, joined_words, tail_literals
 from protogen.passes.proofs.codewords import occurs

@@ -7,7 +7,8 @@ from itertools import combinations
 from typing import TypeVar
 
 from protogen.copying import replace
-from protogen.model.frame import (
+from protogen.model.framing import AfterEnd, Framing, StartLiteral, StartSet
+from protogen.model.parts import (
     BitsPart,
     ChoicePart,
     LengthPart,
@@ -16,7 +17,6 @@ from protogen.model.frame import (
     NumberPart,
     PayloadPart,
 )
-from protogen.model.framing import AfterEnd, Framing, StartLiteral, StartSet
 from protogen.passes.context import Context
 from protogen.passes.draft import Draft
 from protogen.passes.proofs.wire_code import EVERY_BYTE, ByteSet, part_bytes

@@ -8,22 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 
-from protogen.model.frame import (
-    Base16,
-    ChecksumPart,
-    Cobs,
-    Encoding,
-    Escape,
-    Frame,
-    Insertion,
-    LengthPart,
-    LiteralPart,
-    Part,
-    PayloadPart,
-    Substitution,
-    VirtualPart,
-    written_apart,
-)
+from protogen.model.frame import Frame
 from protogen.model.frame_places import Place, PlacedPart, Run, Side
 from protogen.model.frame_plan import EndRule, FramePlan, StartRule
 from protogen.model.framing import AfterEnd, Anywhere, Framing, StartLiteral, StartSet
@@ -37,6 +22,16 @@ from protogen.model.part_plans import (
     StuffedRegion,
     VirtualPlan,
 )
+from protogen.model.parts import (
+    ChecksumPart,
+    LengthPart,
+    LiteralPart,
+    Part,
+    PayloadPart,
+    VirtualPart,
+    written_apart,
+)
+from protogen.model.transparency import Base16, Cobs, Encoding, Escape, Insertion, Substitution
 from protogen.passes.framing.capacity import counted_size, tail_literals
 from protogen.passes.framing.transparencies import beginning_in
 

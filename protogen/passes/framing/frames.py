@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from protogen.copying import field_names
-from protogen.model.frame import (
+from protogen.model.frame import Frame
+from protogen.model.origin import About
+from protogen.model.parts import (
     BitsPart,
     CounterPart,
-    Frame,
     IdentityPart,
     LengthPart,
     NumberPart,
@@ -16,7 +17,6 @@ from protogen.model.frame import (
     ValuePart,
     VirtualPart,
 )
-from protogen.model.origin import About
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.bit_names import check_names, place_of_number

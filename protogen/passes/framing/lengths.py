@@ -5,15 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from protogen.copying import replace
-from protogen.model.frame import (
-    BitsPart,
-    Frame,
-    LengthPart,
-    MirrorBits,
-    Part,
-    PayloadPart,
-    written_apart,
-)
+from protogen.model.frame import Frame
+from protogen.model.parts import BitsPart, LengthPart, MirrorBits, Part, PayloadPart, written_apart
 from protogen.model.sizes import SizeSet
 from protogen.passes.context import Context, Loc
 from protogen.passes.framing.bit_names import place_of_number

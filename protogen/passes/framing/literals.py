@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 
-from protogen.model.frame import ChoicePart, LiteralPart
 from protogen.model.origin import About
+from protogen.model.parts import ChoicePart, LiteralPart
 from protogen.model.types import Integer, codec
 from protogen.passes.context import Context, Loc
 from protogen.schema.syntax.parts import LiteralChoice, Part

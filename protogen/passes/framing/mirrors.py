@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from protogen.model.frame import LengthPart, MirrorBits, NumberPart, Part, varying_bits
 from protogen.model.numbers import BitPlace
 from protogen.model.origin import About
+from protogen.model.parts import LengthPart, MirrorBits, NumberPart, Part, varying_bits
 from protogen.model.types import Integer
 from protogen.passes.context import Context, Loc
 from protogen.problems import hint_for

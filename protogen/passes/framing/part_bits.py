@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from protogen.copying import field_names, replace
-from protogen.model.frame import (
+from protogen.model.numbers import BitPlace
+from protogen.model.origin import About
+from protogen.model.parts import (
     BitsMember,
     BitsPart,
     ChecksumPart,
@@ -17,8 +19,6 @@ from protogen.model.frame import (
     ValuePart,
     place_mask,
 )
-from protogen.model.numbers import BitPlace
-from protogen.model.origin import About
 from protogen.model.types import Integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.framing.checksums import Checksums

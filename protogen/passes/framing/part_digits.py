@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from protogen.copying import replace
-from protogen.model.frame import PartType
+from protogen.model.parts import PartType
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.fixed_digits import (
     NOT_IN_SEVEN_BITS,

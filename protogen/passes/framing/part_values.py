@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from protogen.model.frame import NumberPart
+from protogen.model.parts import NumberPart
 from protogen.model.types import ByteOrder, Integer
 from protogen.passes.context import Context, Loc
 from protogen.schema.hints import number_hint

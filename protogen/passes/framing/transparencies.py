@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping
 from itertools import pairwise
 
-from protogen.model.frame import (
+from protogen.model.transparency import (
     Base16,
     Cobs,
     Encoding,

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from protogen.model.frame import ChecksumPart, Escape, Frame, Insertion, LengthPart, Substitution
+from protogen.model.frame import Frame
+from protogen.model.parts import ChecksumPart, LengthPart
+from protogen.model.transparency import Escape, Insertion, Substitution
 from protogen.passes.context import Context, Loc
 from protogen.passes.framing.capacity import counted_size
 

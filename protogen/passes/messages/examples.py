@@ -13,8 +13,9 @@ from typing import Any
 
 from protogen.copying import replace
 from protogen.model.expressions import Operand, value_of
-from protogen.model.frame import Frame, members_of
+from protogen.model.frame import Frame
 from protogen.model.messages import Contradiction, Example, Exchange, Message, Step
+from protogen.model.parts import members_of
 from protogen.model.types import Array, Field, Octets, Struct, Switch, Type, is_integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft

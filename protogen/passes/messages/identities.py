@@ -6,10 +6,10 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from itertools import combinations
 
-from protogen.model.frame import IdentityPart
 from protogen.model.identities import Identities
 from protogen.model.messages import Message
 from protogen.model.messages import Overload as OverloadModel
+from protogen.model.parts import IdentityPart
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.schema.syntax.messages import Overload

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 
-from protogen.model.frame import Frame, IdentityPart
+from protogen.model.frame import Frame
 from protogen.model.identities import Identities, Runs
+from protogen.model.parts import IdentityPart
 from protogen.passes.context import Context, Loc
 from protogen.passes.framing.part_values import number_of
 from protogen.problems import hint_for

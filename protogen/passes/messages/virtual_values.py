@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from protogen.model.frame import Frame, NumberPart, VirtualPart
+from protogen.model.frame import Frame
 from protogen.model.identities import Identities
 from protogen.model.messages import Message
+from protogen.model.parts import NumberPart, VirtualPart
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
 from protogen.passes.framing.part_values import number_of

@@ -9,16 +9,9 @@ import msgspec
 
 from protogen.model.checksums import checksum_of
 from protogen.model.constants import constant_bytes
-from protogen.model.frame import (
-    BitsPart,
-    ChecksumPart,
-    Frame,
-    Insertion,
-    LengthPart,
-    NumberPart,
-    Part,
-    PayloadPart,
-)
+from protogen.model.frame import Frame
+from protogen.model.parts import BitsPart, ChecksumPart, LengthPart, NumberPart, Part, PayloadPart
+from protogen.model.transparency import Insertion
 from protogen.model.types import Field
 from protogen.passes.framing.capacity import counted_size
 from protogen.passes.proofs.wire_code import ByteSet, bits_bytes, code_of, part_bytes

@@ -13,9 +13,11 @@ from collections.abc import Iterator
 from functools import partial
 from random import Random
 
-from protogen.model.frame import Base16, ChoicePart, Cobs, Frame, LiteralPart, PayloadPart
+from protogen.model.frame import Frame
 from protogen.model.framing import End, Start, StartLiteral, StartSet
 from protogen.model.messages import Message
+from protogen.model.parts import ChoicePart, LiteralPart, PayloadPart
+from protogen.model.transparency import Base16, Cobs
 from protogen.passes.framing.capacity import tail_literals
 from protogen.passes.proofs.contents import has_checksum, put_checksum
 from protogen.passes.proofs.wire_code import ByteSet, code_of

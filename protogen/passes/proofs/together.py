@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 from protogen.model.checksums import ChecksumSpec
-from protogen.model.frame import ChecksumPart, Frame, checksums_of
+from protogen.model.frame import Frame
+from protogen.model.parts import ChecksumPart, checksums_of
 from protogen.passes.proofs.contents import Contents, checksum_bytes, has_virtual, number_bytes
 from protogen.passes.proofs.correlation import Place, Sum, most_summed, most_tried
 from protogen.passes.proofs.wire_code import ByteSet

@@ -13,13 +13,14 @@ from itertools import combinations
 from operator import or_
 
 from protogen.model.checksums import ChecksumSpec
-from protogen.model.frame import (
-    Base16,
+from protogen.model.frame import Frame
+from protogen.model.framing import Anywhere, End, Start, StartLiteral, StartSet
+from protogen.model.identities import Identities
+from protogen.model.messages import Message
+from protogen.model.parts import (
     BitsPart,
     ChecksumPart,
     ChoicePart,
-    Cobs,
-    Frame,
     IdentityPart,
     LengthPart,
     LiteralPart,
@@ -30,10 +31,8 @@ from protogen.model.frame import (
     VirtualPart,
     place_of,
 )
-from protogen.model.framing import Anywhere, End, Start, StartLiteral, StartSet
-from protogen.model.identities import Identities
-from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
+from protogen.model.transparency import Base16, Cobs
 from protogen.passes.framing.capacity import payload_range
 from protogen.passes.framing.framing_words import span
 from protogen.passes.proofs.contents import has_virtual

@@ -10,25 +10,20 @@ from functools import cache, reduce
 from operator import or_
 
 from protogen.copying import replace
-from protogen.model.frame import (
-    Base16,
+from protogen.model.frame import Frame
+from protogen.model.numbers import Integer, Numeral
+from protogen.model.parts import (
     BitsPart,
     ChecksumPart,
     ChoicePart,
-    Cobs,
-    Encoding,
-    Escape,
-    Frame,
-    Insertion,
     LiteralPart,
     NumberPart,
     Part,
-    Substitution,
     TypedPart,
     place_mask,
     place_of,
 )
-from protogen.model.numbers import Integer, Numeral
+from protogen.model.transparency import Base16, Cobs, Encoding, Escape, Insertion, Substitution
 from protogen.passes.proofs.codewords import Inserted, Segment
 
 ByteSet = frozenset[int]

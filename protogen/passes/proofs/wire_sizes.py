@@ -11,21 +11,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import partial
 
-from protogen.model.frame import (
-    Base16,
+from protogen.model.frame import Frame
+from protogen.model.messages import Message
+from protogen.model.parts import (
     ChecksumPart,
-    Cobs,
-    Escape,
-    Frame,
-    Insertion,
     LengthPart,
     Part,
     checksums_of,
     members_of,
     mirrors_of,
 )
-from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
+from protogen.model.transparency import Base16, Cobs, Escape, Insertion
 from protogen.model.types import Field
 from protogen.passes.proofs.contents import Contents, Stretch, contents_of, payload_of
 from protogen.passes.proofs.together import Together

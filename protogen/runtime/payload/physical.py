@@ -18,7 +18,7 @@ from protogen.runtime.errors import EncodeError
 from protogen.runtime.payload.number import as_integer
 
 if TYPE_CHECKING:
-    from protogen.runtime.payload.rules import FloatRule, IntegerRule
+    from protogen.runtime.payload.number_rules import FloatRule, IntegerRule
 
 EnumT = TypeVar("EnumT", bound=int)
 ValueT = TypeVar("ValueT")

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from protogen.model.frame import members_of
 from protogen.model.frame_plan import FramePlan
 from protogen.model.messages import Message
+from protogen.model.parts import members_of
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.types import Struct, Switch
 from protogen.targets.c.frame.checksums import checksum_name

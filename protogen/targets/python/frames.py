@@ -3,33 +3,35 @@
 from __future__ import annotations
 
 from protogen.model.checksums import ChecksumSpec
-from protogen.model.frame import (
-    Base16,
+from protogen.model.frame import Silence
+from protogen.model.framing import AfterEnd, Anywhere, End, Start, StartLiteral, StartSet
+from protogen.model.identities import Identities
+from protogen.model.part_plans import VirtualPlan
+from protogen.model.parts import (
     BitsPart,
     ChecksumPart,
     ChoicePart,
-    Cobs,
     CounterPart,
-    Encoding,
-    Escape,
     IdentityPart,
-    Insertion,
     LengthPart,
     LiteralPart,
     MirrorBits,
     NumberPart,
     Part,
     PayloadPart,
-    Silence,
-    Substitution,
-    Transparency,
     TypedPart,
     ValuePart,
 )
-from protogen.model.framing import AfterEnd, Anywhere, End, Start, StartLiteral, StartSet
-from protogen.model.identities import Identities
-from protogen.model.part_plans import VirtualPlan
 from protogen.model.protocol import Sender
+from protogen.model.transparency import (
+    Base16,
+    Cobs,
+    Encoding,
+    Escape,
+    Insertion,
+    Substitution,
+    Transparency,
+)
 from protogen.targets.python.formats import numeral
 from protogen.targets.python.literals import call, mapping, octets, text, tuple_of
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import msgspec
 
-from protogen.model.frame import ChoicePart, CounterPart, IdentityPart, ValuePart
 from protogen.model.messages import Message
+from protogen.model.parts import ChoicePart, CounterPart, IdentityPart, ValuePart
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.attributes import argument, attribute
 from protogen.targets import descriptions

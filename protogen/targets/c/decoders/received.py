@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from protogen.model.frame import BitsPart, NumberPart
 from protogen.model.frame_places import PlacedPart
 from protogen.model.frame_plan import FramePlan, StartRule, Store
+from protogen.model.parts import BitsPart, NumberPart
 from protogen.targets.c.decoders.groups import (
     Alternatives,
     GroupView,

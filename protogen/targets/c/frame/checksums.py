@@ -5,10 +5,10 @@ from __future__ import annotations
 import msgspec
 
 from protogen.model.checksums import ChecksumSpec, find_algorithm
-from protogen.model.frame import ChecksumPart, VirtualPart
 from protogen.model.frame_places import Run, Side
 from protogen.model.frame_plan import FramePlan
 from protogen.model.part_plans import ChecksumPlan
+from protogen.model.parts import ChecksumPart, VirtualPart
 from protogen.targets.c.frame.algorithms import Algorithm, algorithm_of
 from protogen.targets.c.frame.expressions import Index, differs, taken_bits
 from protogen.targets.c.frame.part_numbers import PartNumbers

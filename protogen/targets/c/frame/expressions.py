@@ -11,8 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
 
-from protogen.model.frame import BitsPart, ChecksumPart, MirrorBits, place_of
 from protogen.model.frame_places import Place, Side
+from protogen.model.parts import BitsPart, ChecksumPart, MirrorBits, place_of
 from protogen.model.types import Integer, NumberType
 from protogen.targets.c.spelling import hexadecimal, unsigned_type
 

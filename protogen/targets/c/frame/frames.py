@@ -13,7 +13,11 @@ from functools import cached_property
 import msgspec
 
 from protogen.copying import replace
-from protogen.model.frame import (
+from protogen.model.frame_places import PlacedPart, Side
+from protogen.model.frame_plan import FramePlan
+from protogen.model.identities import Runs
+from protogen.model.part_plans import ChecksumPlan, FurtherLength
+from protogen.model.parts import (
     BitsPart,
     ChecksumPart,
     ChoicePart,
@@ -26,10 +30,6 @@ from protogen.model.frame import (
     ValuePart,
     VirtualPart,
 )
-from protogen.model.frame_places import PlacedPart, Side
-from protogen.model.frame_plan import FramePlan
-from protogen.model.identities import Runs
-from protogen.model.part_plans import ChecksumPlan, FurtherLength
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.groups import in_run
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun

@@ -6,7 +6,9 @@ from collections.abc import Iterable
 
 import msgspec
 
-from protogen.model.frame import (
+from protogen.model.frame_places import PlacedPart
+from protogen.model.frame_plan import FramePlan, StartRule
+from protogen.model.parts import (
     BitsPart,
     ChoicePart,
     IdentityPart,
@@ -14,8 +16,6 @@ from protogen.model.frame import (
     MirrorBits,
     NumberPart,
 )
-from protogen.model.frame_places import PlacedPart
-from protogen.model.frame_plan import FramePlan, StartRule
 from protogen.model.types import Integer
 from protogen.targets.c.frame.expressions import byte, less_absent
 from protogen.targets.c.frame.part_numbers import PartNumbers

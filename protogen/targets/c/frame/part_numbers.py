@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from protogen.model.frame import BitsPart, NumberPart, TypedPart
 from protogen.model.frame_plan import FramePlan
 from protogen.model.numbers import Numeral
+from protogen.model.parts import BitsPart, NumberPart, TypedPart
 from protogen.model.types import Integer, storage_bits
 from protogen.targets.c.frame import expressions
 from protogen.targets.c.payload.helpers import Helpers

@@ -6,8 +6,8 @@ from enum import Enum, auto
 
 import msgspec
 
-from protogen.model.frame import Base16, Cobs, Escape, Insertion, Substitution
 from protogen.model.part_plans import StuffedRegion
+from protogen.model.transparency import Base16, Cobs, Escape, Insertion, Substitution
 from protogen.runtime.transparency.insertion import followed
 from protogen.targets.c.frame.expressions import byte
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import msgspec
 
-from protogen.model.frame import CounterPart, IdentityPart, ValuePart
+from protogen.model.parts import CounterPart, IdentityPart, ValuePart
 from protogen.model.protocol import Protocol
 from protogen.model.types import Integer
 from protogen.targets.c.spelling import Names, unsigned_type

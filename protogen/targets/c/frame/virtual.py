@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import msgspec
 
-from protogen.model.frame import VirtualPart
 from protogen.model.frame_plan import FramePlan
 from protogen.model.part_plans import VirtualPlan
+from protogen.model.parts import VirtualPart
 from protogen.targets.c.decoders.groups import is_among, key_constant
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.spelling import hexadecimal, unsigned_type

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import msgspec
 
-from protogen.model.frame import IdentityPart
 from protogen.model.messages import Message
+from protogen.model.parts import IdentityPart
 from protogen.model.protocol import Sender
 from protogen.targets import naming
 from protogen.targets.c.named import Macro, claim_fields

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
-from protogen.model.frame import Frame, PayloadPart
+from protogen.model.frame import Frame
 from protogen.model.messages import Message
 from protogen.model.packing import Packing
+from protogen.model.parts import PayloadPart
 from protogen.model.payload_plan import (
     AnyStep,
     CaseStep,

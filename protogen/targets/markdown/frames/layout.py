@@ -14,18 +14,10 @@ from itertools import accumulate
 import msgspec
 
 from protogen.copying import replace
-from protogen.model.frame import (
-    FULL_GROUP,
-    Base16,
-    Cobs,
-    Frame,
-    LengthPart,
-    Part,
-    PayloadPart,
-    VirtualPart,
-    varying_bits,
-)
+from protogen.model.frame import Frame
+from protogen.model.parts import LengthPart, Part, PayloadPart, VirtualPart, varying_bits
 from protogen.model.sizes import SizeSet
+from protogen.model.transparency import FULL_GROUP, Base16, Cobs
 from protogen.targets.markdown.text.words import code, size_text, span
 
 INDICES = "ijkl"

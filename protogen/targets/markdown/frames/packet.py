@@ -10,8 +10,9 @@ from collections.abc import Iterable, Iterator
 
 import msgspec
 
-from protogen.model.frame import Frame, LiteralPart, PayloadPart
+from protogen.model.frame import Frame
 from protogen.model.messages import Message
+from protogen.model.parts import LiteralPart, PayloadPart
 from protogen.model.sizes import SizeSet
 from protogen.targets.markdown.frames.layout import Slot, slots
 from protogen.targets.markdown.text.words import hex_bytes, size_text, span

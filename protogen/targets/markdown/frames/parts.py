@@ -6,36 +6,38 @@ from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 from protogen.model.checksums import ChecksumSpec
-from protogen.model.frame import (
-    FULL_GROUP,
-    Base16,
+from protogen.model.frame import Frame
+from protogen.model.identities import Runs
+from protogen.model.messages import Message
+from protogen.model.parts import (
     BitsPart,
     ChecksumPart,
     ChoicePart,
-    Cobs,
     CounterPart,
-    Encoding,
-    Escape,
     FixedBits,
-    Frame,
     IdentityPart,
-    Insertion,
     LengthPart,
     LiteralPart,
     MirrorBits,
     NumberPart,
     Part,
     PayloadPart,
-    Substitution,
-    Transparency,
     TypedPart,
     ValuePart,
     VirtualPart,
     place_mask,
 )
-from protogen.model.identities import Runs
-from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
+from protogen.model.transparency import (
+    FULL_GROUP,
+    Base16,
+    Cobs,
+    Encoding,
+    Escape,
+    Insertion,
+    Substitution,
+    Transparency,
+)
 from protogen.targets.emitted import EmittedNames
 from protogen.targets.markdown.fields.types import number_text
 from protogen.targets.markdown.fields.values import character, raw_text

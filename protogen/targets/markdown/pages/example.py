@@ -7,7 +7,8 @@ from itertools import groupby
 
 import msgspec
 
-from protogen.model.frame import (
+from protogen.model.messages import Contradiction, Example, Message
+from protogen.model.parts import (
     ChecksumPart,
     IdentityPart,
     NumberPart,
@@ -15,7 +16,6 @@ from protogen.model.frame import (
     PayloadPart,
     VirtualPart,
 )
-from protogen.model.messages import Contradiction, Example, Message
 from protogen.model.protocol import Protocol
 from protogen.model.reading.annotate import Row, annotate
 from protogen.model.types import Field, NumberType

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from protogen.model.frame import FULL_GROUP
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.sizes import SizeSet
+from protogen.model.transparency import FULL_GROUP
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.frames.framing import sender_title
 from protogen.targets.markdown.frames.layout import has_further_codes, is_stuffed, wire_scale

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import nullcontext
 
 from protogen.model.checksums import ChecksumSpec
-from protogen.model.frame import ChecksumPart, VirtualPart
+from protogen.model.parts import ChecksumPart, VirtualPart
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine import identities
 from protogen.targets.python.engine.frames import EngineFrame

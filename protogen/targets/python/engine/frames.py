@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property
 
-from protogen.model.frame import (
+from protogen.model.frame_places import Place, Run, Side
+from protogen.model.frame_plan import EndRule
+from protogen.model.parts import (
     BitsPart,
     ChecksumPart,
     LiteralPart,
@@ -14,8 +16,6 @@ from protogen.model.frame import (
     VirtualPart,
     checksums_of,
 )
-from protogen.model.frame_places import Place, Run, Side
-from protogen.model.frame_plan import EndRule
 from protogen.model.protocol import Sender
 from protogen.runtime.bulk_cut import MIN_DATA
 from protogen.runtime.transparency import replacing_order

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from protogen.model.frame import (
+from protogen.model.messages import Message
+from protogen.model.parts import (
     BitsPart,
     ChecksumPart,
     ChoicePart,
@@ -19,7 +20,6 @@ from protogen.model.frame import (
     VirtualPart,
     place_of,
 )
-from protogen.model.messages import Message
 from protogen.model.types import Integer
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.checksums import (

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import partial
 
-from protogen.model.frame import VirtualPart
 from protogen.model.frame_plan import EndRule
 from protogen.model.identities import Identities, Runs
 from protogen.model.part_plans import IdentityGroup
+from protogen.model.parts import VirtualPart
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.lines import Constants, Lines
 from protogen.targets.python.engine.numbers import FrameFunction

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from protogen.model.frame import BitsPart, TypedPart
 from protogen.model.framing import are_run
+from protogen.model.parts import BitsPart, TypedPart
 from protogen.model.types import Integer
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.frames import EngineFrame
