@@ -148,10 +148,10 @@ def _columns(
     for step in steps:
         held, when = held_step(step), None
         if isinstance(step, OptionalStep):  # Outside of a region, where there are both.
-            by = step.condition
+            by, member = step.presence.holds, step.presence.member
             when = by if isinstance(by, int) else _referred(by, outer)
-            if step.member:
-                when = _free(step.member, taken)
+            if member:
+                when = _free(member, taken)
                 yield Column(
                     name=when,
                     role="presence",

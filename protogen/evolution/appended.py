@@ -9,6 +9,7 @@ from protogen.evolution.change import Change
 from protogen.model.extents import Fixed
 from protogen.model.frame_plan import FramePlan
 from protogen.model.messages import Message
+from protogen.model.presence import Trailing
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Text, Type
 
 
@@ -28,7 +29,7 @@ def with_appended(
     is_filled_up = (
         is_cut and other.sizes.fixed is not None and all(new.is_trimmed for _, new in plans)
     )
-    names = {field.name for field in behind if is_cut and field.optional}
+    names = {field.name for field in behind if is_cut and _is_trailing(field)}
     names |= {field.name for field in behind if is_filled_up and _may_be_zeros(field)}
     for change in changes:
         is_appended = change.rule == "field-added" and change.path in names
@@ -43,9 +44,13 @@ def _is_cut(old: FramePlan, message: Message, other: Message) -> bool:
     return before <= other.sizes.greatest <= longest
 
 
+def _is_trailing(field: Field) -> bool:
+    return isinstance(field.presence, Trailing)
+
+
 def _may_be_zeros(field: Field) -> bool:
     """True if a receiver takes zeros for the field."""
-    is_plain = field.const is None and field.when is None and field.region is None
+    is_plain = field.const is None and field.presence is None and field.region is None
     return is_plain and _takes_zeros(field.type)
 
 

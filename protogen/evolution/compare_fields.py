@@ -12,6 +12,7 @@ from protogen.evolution.change import Change, named
 from protogen.evolution.compare_types import TypeComparison, named_values
 from protogen.evolution.quantities import meaning_of
 from protogen.evolution.shapes import are_alike, shape
+from protogen.model.presence import Conditional, Trailing
 from protogen.model.reading.readings import decimal
 from protogen.model.types import Field
 
@@ -68,9 +69,8 @@ class FieldComparison(msgspec.Struct, frozen=True):
     ) -> Iterator[Change]:
         types = TypeComparison(self._change, self.compare, renamed)
         yield from types.compare(old.type, new.type, path)
-        is_other = (old.when and types.now(old.when)) != new.when
-        if is_other or old.optional != new.optional:
-            words = named(_condition(old), _condition(new))
+        if _is_told_otherwise(old, new, types):
+            words = named(_presence(old), _presence(new))
             yield self._change("field-presence", path, words)
         yield from types.compare_regions(old.region, new.region, path)
         if old.const != new.const:
@@ -188,10 +188,23 @@ def _shown(value: object) -> str:
     return "none" if value is None else repr(value)
 
 
-def _condition(field: Field) -> str:
-    if field.optional:
-        return "there if it is not left out"
-    return "always there" if field.when is None else f"there if {field.when.text}"
+def _presence(field: Field) -> str:
+    match field.presence:
+        case Conditional(condition=condition):
+            return f"there if {condition.text}"
+        case Trailing():
+            return "there if it is not left out"
+        case None:
+            return "always there"
+
+
+def _is_told_otherwise(old: Field, new: Field, types: TypeComparison) -> bool:
+    """True if something else says whether the field is there."""
+    match old.presence, new.presence:
+        case Conditional(condition=before), Conditional(condition=after):
+            return types.now(before) != after
+        case before, after:
+            return type(before) is not type(after)
 
 
 def _bounds(field: Field) -> str:

@@ -126,13 +126,16 @@ class _Exchange(ABC):
 
     def _chosen(self, step: ChooseStep | OptionalStep, given: Any) -> AnyStep | RestStep | None:
         """The step that there is; None where there is none, or nothing in it."""
-        if isinstance(step, OptionalStep) and step.member:
-            return step.step if self._number(int(given is not None), 1) else None
         if isinstance(step, OptionalStep):
-            return step.step if said(step.condition, self._records) else None
+            return step.step if self._is_there(step, given) else None
         chosen = step.case(said(step.selector, self._records))
         is_empty = isinstance(chosen, RecordStep) and not chosen.steps
         return None if is_empty else chosen
+
+    def _is_there(self, step: OptionalStep, given: Any) -> bool:
+        if step.presence.member:
+            return bool(self._number(int(given is not None), 1))
+        return bool(said(step.presence.holds, self._records))
 
     def _number(self, given: int, size: int, *, signed: bool = False) -> int:
         data = self.octets(number(given, size, signed=signed), size)

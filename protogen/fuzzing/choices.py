@@ -22,6 +22,7 @@ from protogen.model.payload_plan import (
     BytesStep,
     Check,
     ChooseStep,
+    ConditionalPresence,
     ConstantStep,
     Count,
     FloatStep,
@@ -187,8 +188,8 @@ def _needs(step: AnyStep, level: int) -> Iterator[tuple[Reference, Need]]:
 def _needs_around(step: OptionalStep | RegionStep) -> Iterator[tuple[Reference, Need]]:
     if isinstance(step, RegionStep):
         yield from _needs_of_count(step.region)
-    elif not step.member:
-        yield from _needs_of_formula(step.condition, (0, 1))
+    elif isinstance(step.presence, ConditionalPresence):
+        yield from _needs_of_formula(step.presence.holds, (0, 1))
 
 
 def _needs_of_count(count: Count) -> Iterator[tuple[Reference, Need]]:

@@ -34,6 +34,7 @@ from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
     ChooseStep,
+    ConditionalPresence,
     ConstantStep,
     Count,
     Formula,
@@ -44,6 +45,7 @@ from protogen.model.payload_plan import (
     RegionStep,
     RepeatStep,
     RestStep,
+    TrailingPresence,
 )
 from protogen.model.payload_walks import said, without_constant
 from protogen.model.sizes import SizeSet
@@ -173,6 +175,10 @@ def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, V
     return fields, parts
 
 
+def _is_trailing(step: AnyStep) -> bool:
+    return isinstance(step, OptionalStep) and isinstance(step.presence, TrailingPresence)
+
+
 def _carried(message: Message, frame: Frame) -> SizeSet:
     """The sizes of the message that the frame's length can say: other forms may carry others."""
     stated = payload_range(frame)
@@ -211,7 +217,7 @@ class _Sampler:
         needs = needs_of(steps, level)
         values: Values = {}
         self._records.append(values)
-        optional = sum(isinstance(step, OptionalStep) and bool(step.member) for step in steps)
+        optional = sum(map(_is_trailing, steps))
         if optional:
             self._tails = optional + 1
             self._going_on = chooser.choose(any_of(range(optional, -1, -1)))
@@ -233,14 +239,9 @@ class _Sampler:
                 return self._array(step, chooser)
             case ChooseStep():
                 return self._case(step, chooser)
-            case OptionalStep() if step.member:
-                self._going_on -= 1
-                inside = chooser.inside(self._tails)
-                return self._value(step.step, inside) if self._going_on >= 0 else None
             case OptionalStep():
-                # What is there half of the time takes twice the rounds.
-                is_there = self._told(step.condition)
-                return self._value(step.step, chooser.inside(2)) if is_there else None
+                is_there, rounds = self._presence(step.presence)
+                return self._value(step.step, chooser.inside(rounds)) if is_there else None
             case RegionStep():
                 return self._region(step, chooser)
             case ConstantStep():
@@ -248,6 +249,15 @@ class _Sampler:
             case _:
                 lengths = self._lengths(step.count, 1) if isinstance(step, BytesStep) else (0, 0)
                 return self._taken(step, chooser.choose(scalar_choices(step, lengths, need)))
+
+    def _presence(self, presence: ConditionalPresence | TrailingPresence) -> tuple[bool, int]:
+        """Whether a step is there, and how many more rounds it takes as it is not always."""
+        match presence:
+            case ConditionalPresence(holds=condition):
+                return bool(self._told(condition)), 2
+            case TrailingPresence():
+                self._going_on -= 1
+                return self._going_on >= 0, self._tails
 
     def _taken(self, step: AnyStep, value: Any) -> Any:
         """A value whose bytes are counted; where their number varies, it is text or hex digits."""

@@ -13,6 +13,7 @@ from protogen.model.payload_plan import (
     CaseStep,
     Check,
     ChooseStep,
+    ConditionalPresence,
     ConstantStep,
     Count,
     FloatStep,
@@ -27,8 +28,10 @@ from protogen.model.payload_plan import (
     RepeatStep,
     RestStep,
     Step,
+    TrailingPresence,
     packing_checks,
 )
+from protogen.model.presence import Conditional, Trailing
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
@@ -103,11 +106,7 @@ class _Builder:
             if isinstance(step, IntegerStep) and field.name in needed[index]:
                 step = replace(step, is_needed=True)
             step = _constant(field, step) if field.const is not None else step
-            if field.when is not None:
-                step = self._optional(field, field.when, step)
-            elif field.optional:
-                step = self._left_out(fields, field, step, steps)
-            steps.append(step)
+            steps.append(self._present(fields, field, step))
             for rest in _inside(needed[index], field.name) | {""}:
                 self._remember(_member(field, rest), f"{field.name}.{rest}" if rest else field.name)
         return tuple(steps)
@@ -199,7 +198,7 @@ class _Builder:
         return RegionStep(
             name=field.name,
             field=field,
-            sizes=replace(field, when=None).sizes,
+            sizes=field.sizes_there,
             checks=step.checks | {Check.COUNT},
             is_refusable=True,
             holds_values=step.holds_values or step.fills,
@@ -209,32 +208,40 @@ class _Builder:
             region=self._count(region, ""),
         )
 
-    def _optional(self, field: Field, when: Expression, step: AnyStep) -> OptionalStep:
+    def _present(self, fields: Sequence[Field], field: Field, step: AnyStep) -> AnyStep:
+        """The step of a field, whether that is always there or not."""
+        is_refusable = step.is_refusable
+        presence: ConditionalPresence | TrailingPresence
+        match field.presence:
+            case None:
+                return step
+            case Conditional(condition=condition):
+                presence = ConditionalPresence(expression=condition, holds=self._formula(condition))
+            case Trailing(behind=behind):
+                presence = self._trailing(fields, field)
+                is_refusable = is_refusable or bool(behind)
         return OptionalStep(
             name=field.name,
             field=field,
             sizes=field.sizes,
             checks=step.checks,
-            is_refusable=step.is_refusable,
+            is_refusable=is_refusable,
             holds_values=step.holds_values,
             is_last=step.is_last,
             type=field.type,
-            expression=when,
-            condition=self._formula(when),
+            presence=presence,
             step=step,
         )
 
-    def _left_out(
-        self, fields: Sequence[Field], field: Field, step: AnyStep, front: Sequence[AnyStep]
-    ) -> OptionalStep:
-        """The step of a field behind which, or in front of which, the payload may end."""
+    def _trailing(self, fields: Sequence[Field], field: Field) -> TrailingPresence:
         member = presence_name(fields, field)
-        self._scope[member] = Reference(member, self._level, _PRESENCE)
-        before = front[-1] if front else None
-        behind = before if isinstance(before, OptionalStep) and before.member else None
-        found = self._optional(field, Operand((member,)), step)
-        refusable = found.is_refusable or behind is not None
-        return replace(found, is_refusable=refusable, member=member, behind=behind)
+        number = Reference(member, self._level, _PRESENCE)
+        front = [presence_name(fields, item) for item in fields if item.name == field.behind]
+        return TrailingPresence(
+            member=member,
+            holds=Formula(Operand((member,)), {member: number}),
+            behind=front[0] if front else "",
+        )
 
     def _inner(self, type_: Struct, name: str, is_last: bool) -> tuple[AnyStep, ...]:
         """The steps of a struct, made once for all places where they are the same."""

@@ -312,29 +312,37 @@ class ChooseStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
         return self.rest if found is None else found.step
 
 
-class OptionalStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
-    """A step that is there or not, as earlier numbers or the payload's end say."""
+class ConditionalPresence(msgspec.Struct, frozen=True, kw_only=True, eq=False):
+    """Presence that earlier numbers say."""
 
     expression: Expression
     """The condition, as the schema has it."""
-    condition: int | Formula
-    """The condition; of constants 0 where it does not hold."""
+    holds: int | Formula
+    """The condition over a record; of constants 0 where it does not hold."""
+
+    @property
+    def member(self) -> str:
+        """Name for it in a record: none, as other members say it."""
+        return ""
+
+
+class TrailingPresence(msgspec.Struct, frozen=True, kw_only=True, eq=False):
+    """Presence that the end of the payload says: the step is there if bytes are left."""
+
+    member: str
+    """Name for it in a record, in which nothing else says it."""
+    holds: Formula
+    """The condition over a record: that member."""
+    behind: str = ""
+    """The member of the trailing step in front, which has to be there, too; empty: none."""
+
+
+class OptionalStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
+    """A step that is there or not."""
+
+    presence: ConditionalPresence | TrailingPresence
+    """What says it."""
     step: AnyStep
-    member: str = ""
-    """Name for whether it is there in a record, where the payload's end says it; the condition is
-    that."""
-    behind: OptionalStep | None = None
-    """What has to be there, too: the step in front, if that is one that the end leaves out."""
-
-    @cached_property
-    def known_size(self) -> int | None:
-        """Bytes of every such value, where that tells the places behind it; None where it does not.
-
-        Numbers of as many digits as they need are read up to where they end, whatever their size,
-        and so is what has a number of bytes of its own.
-        """
-        steps = every_step([cast("AnyStep", self)])
-        return None if any(map(_tells_its_end, steps)) else self.sizes.fixed
 
     @property
     def fills(self) -> bool:

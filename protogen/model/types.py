@@ -29,6 +29,7 @@ from protogen.model.numbers import (
 )
 from protogen.model.origin import NOTHING, About
 from protogen.model.packing import Packing
+from protogen.model.presence import Conditional, Presence, Trailing
 from protogen.model.sizes import SizeSet
 from protogen.runtime.payload.bits import BitOrder
 
@@ -345,6 +346,13 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     def sizes_in_front(self) -> SizeSet:
         """Wire bytes in front of the next field, without which nothing optional is left out."""
         return self.sizes_there if self.optional else self.sizes
+
+    @property
+    def presence(self) -> Presence | None:
+        """What says whether the field is there; None: it always is."""
+        if self.optional:
+            return Trailing(self.behind)
+        return None if self.when is None else Conditional(self.when)
 
     @property
     def may_be_absent(self) -> bool:

@@ -8,6 +8,7 @@ from typing import Any
 
 from protogen.model.expressions import Expression, value_of
 from protogen.model.expressions import reached as reached_in
+from protogen.model.presence import Conditional, Trailing
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Type
 
 Scope = ChainMap[str, Any]
@@ -25,10 +26,19 @@ def plain_fields(
     plain = {}
     for item in fields:
         scope[item.name] = values[item.name]
-        is_there = item.when is None or _said(item.when, scope)
-        is_there = is_there and not (item.optional and values[item.name] is None)
+        is_there = _is_there(item, scope)
         plain[item.name] = _plain(item.type, values[item.name], scope) if is_there else None
     return plain
+
+
+def _is_there(item: Field, scope: Scope) -> bool:
+    match item.presence:
+        case Conditional(condition=condition):
+            return bool(_said(condition, scope))
+        case Trailing():
+            return scope[item.name] is not None
+        case None:
+            return True
 
 
 def _said(expression: Expression, scope: Scope) -> int:

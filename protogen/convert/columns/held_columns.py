@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from protogen.capture.schema import Choice, Column, Dimension, Record
 from protogen.model.expressions import Expression
+from protogen.model.presence import Conditional, Trailing
 from protogen.model.types import Field
 
 
@@ -25,14 +26,18 @@ def held_by(item: Field, columns: Iterable[Column]) -> Column | None:
     return next((it for it in columns if it.role == "field" and it.source == item.name), None)
 
 
-def condition_of(item: Field, columns: Iterable[Column]) -> str | Expression | None:
+def presence_of(item: Field, columns: Iterable[Column]) -> Column | Expression | None:
     """What says in a row whether a field is there: a column, or an expression over some.
 
     None: it always is.
     """
-    if not item.optional:
-        return item.when
-    return next(it.name for it in columns if it.role == "presence" and it.source == item.name)
+    match item.presence:
+        case Conditional(condition=condition):
+            return condition
+        case Trailing():
+            return next(it for it in columns if it.role == "presence" and it.source == item.name)
+        case None:
+            return None
 
 
 def members_of(column: Column | None) -> Sequence[Column]:

@@ -20,10 +20,10 @@ from protogen.convert.columns.composite_arrays import Cases, ListsOf, Same, Scat
 from protogen.convert.columns.event_values import constant_of
 from protogen.convert.columns.held_columns import (
     cases_of,
-    condition_of,
     dimensions_of,
     held_by,
     members_of,
+    presence_of,
     rest_of,
 )
 from protogen.convert.columns.python_values import Values
@@ -56,10 +56,10 @@ def _reach(
     column = held_by(item, columns)
     scope = around.new_child(_InFront(item, fields, columns, rows))
     held = _in_rows(column, rows)
-    condition = condition_of(item, columns)
-    if condition is None:
+    presence = presence_of(item, columns)
+    if presence is None:
         return _inside(path[1:], item, item.type, column, held, scope)
-    said = rows[condition] if isinstance(condition, str) else _said(condition, scope)
+    said = rows[presence.name] if isinstance(presence, Column) else _said(presence, scope)
     having, places = _having(np.broadcast_to(said != 0, len(held)))
     scope = _at_places(scope, lambda: having)
     return Scattered(_inside(path[1:], item, item.type, column, held[having], scope), places)

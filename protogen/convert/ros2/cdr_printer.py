@@ -7,7 +7,7 @@ from typing import Any
 
 from protogen.convert.ros2.cdr import CdrWriter, missing
 from protogen.convert.ros2.layout import ListOf, Message, Number, RosType, String
-from protogen.convert.writers.value_steps import Spot, presence_of
+from protogen.convert.writers.value_steps import Spot, told_presence
 from protogen.model.types import Field
 from protogen.native import cdr_steps as cdr
 from protogen.native.cdr_steps import Alignment
@@ -110,7 +110,7 @@ class CdrPrinter:
 
     def if_there(self, item: Field, at: Spot, body: Make, other: Make) -> list[Step]:
         """Steps of a field where it is there, and others where it is not."""
-        condition = presence_of(item, at)
+        condition = told_presence(item, at)
         if isinstance(condition, int):
             return body() if condition else other()
         return [cdr.where(condition, *self.fork([body, other]))]

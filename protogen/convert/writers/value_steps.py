@@ -21,6 +21,7 @@ from protogen.convert.columns.held_columns import (
     dimensions_of,
     held,
     members_of,
+    presence_of,
     rest_of,
 )
 from protogen.model.expression_bounds import Interval
@@ -88,23 +89,30 @@ class Spot:
     ) -> Iterator[tuple[Field, Column | None, Spot]]:
         """The fields of the record that begins here, which know the numbers in front of them."""
         counts = {item.name: item for item in columns if item.role == "count"}
-        flags = {_flag(item.source): item for item in columns if item.role == "presence"}
         front: dict[str, Count] = {
-            name: self.moved(item).place(item) for name, item in (counts | flags).items()
+            name: self.moved(item).place(item) for name, item in counts.items()
         }
         scope = self.scope.new_child(front)
         inner = Spot(self.depth, self.offset, scope)
         for item, column in held(fields, columns):
             here = inner if column is None else inner.moved(column)
+            scope[_flag(item.name)] = inner.presence(item, columns)
             yield item, column, here
             if column is None and isinstance(item.const, int):
                 scope[item.name] = item.const
             elif column is not None:
                 scope.update(_numbers(item.name, item.type, column, here))
 
+    def presence(self, item: Field, columns: Sequence[Column]) -> Count:
+        """What is not 0 where a field of the record that begins here is there."""
+        found = presence_of(item, columns)
+        if found is None:
+            return 1
+        return self.moved(found).place(found) if isinstance(found, Column) else said(found, self)
+
 
 def _flag(name: str) -> str:
-    """Name in a scope, unlike that of any field, for whether an optional field is there."""
+    """Name in a scope, unlike that of any field, for whether a field is there."""
     return f"{name}?"
 
 
@@ -245,18 +253,16 @@ def if_there(
     item: Field, at: Spot, body: Iterable[Step], other: Iterable[Step] = ()
 ) -> Iterator[Step]:
     """The steps of a field where it is there, and others where it is not."""
-    condition = presence_of(item, at)
+    condition = told_presence(item, at)
     if isinstance(condition, int):
         yield from body if condition else other
     else:
         yield where(condition, body, other)
 
 
-def presence_of(item: Field, at: Spot) -> Count:
-    """What is not 0 where a field is there."""
-    if item.optional:
-        return at.scope[_flag(item.name)]
-    return 1 if item.when is None else said(item.when, at)
+def told_presence(item: Field, at: Spot) -> Count:
+    """What is not 0 where a field is there, at whose spot its record's fields are known."""
+    return at.scope[_flag(item.name)]
 
 
 def count_of(extent: Extent, left: Sequence[Dimension], at: Spot) -> Count:

@@ -19,6 +19,7 @@ from protogen.model.payload_plan import (
     BytesStep,
     Check,
     ChooseStep,
+    ConditionalPresence,
     ConstantStep,
     Count,
     FloatStep,
@@ -30,6 +31,7 @@ from protogen.model.payload_plan import (
     RegionStep,
     RepeatStep,
     RestStep,
+    TrailingPresence,
 )
 from protogen.model.payload_walks import PackedNumber, packed_numbers
 from protogen.model.reading.readings import integer_reading, physical, quoted, value_name
@@ -184,12 +186,19 @@ class _Reader:
             case ConstantStep():
                 self._step(step.value, path, scope)
             case OptionalStep():
-                if self._cursor.left if step.member else _said(step.expression, scope):
+                if self._is_there(step, scope):
                     self._step(step.step, path, scope)
             case RegionStep():
                 self._region(step, path, scope)
             case _:
                 self._scalar(step, path, scope)
+
+    def _is_there(self, step: OptionalStep, scope: Scope) -> bool:
+        match step.presence:
+            case ConditionalPresence(expression=condition):
+                return bool(_said(condition, scope))
+            case TrailingPresence():
+                return bool(self._cursor.left)
 
     def _region(self, step: RegionStep, path: str, scope: Scope) -> None:
         size = _count(step.region, scope) or 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from protogen.model.messages import Message
 from protogen.model.origin import About
+from protogen.model.presence import Conditional, Trailing
 from protogen.model.protocol import Link, Protocol
 from protogen.model.types import Field
 from protogen.targets import descriptions
@@ -33,10 +34,13 @@ def field(item: Field, *, is_computed: bool = False) -> list[str]:
     facts += descriptions.extent_of(item) + descriptions.specials_of(item)
     if item.const is not None:
         facts.append("constant")
-    if item.when is not None:
-        facts.append(f"None unless {item.when.text}")
-    if item.optional:
-        facts.append("None if it is left out")
+    match item.presence:
+        case Conditional(condition=condition):
+            facts.append(f"None unless {condition.text}")
+        case Trailing():
+            facts.append("None if it is left out")
+        case None:
+            pass
     if is_computed:
         facts.append("computed where it is left out")
     return escaped(descriptions.of_field(item, facts))

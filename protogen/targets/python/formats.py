@@ -30,6 +30,7 @@ from protogen.model.types import (
 from protogen.targets.python.formulas import formula
 from protogen.targets.python.literals import call, mapping, octets_in_class, text
 from protogen.targets.python.names import Names
+from protogen.targets.python.presence import where_present
 
 
 def field_format(field: Field, names: Names) -> str:
@@ -39,9 +40,7 @@ def field_format(field: Field, names: Names) -> str:
         found = call("_c.Fixed", _any_size(field.type, names), constant(field))
     if field.region is not None:
         found = call("_c.Region", extent(field.region), found)
-    if field.optional:
-        return call("_c.IfLeft", found, behind=text(field.behind) if field.behind else None)
-    return found if field.when is None else call("_c.When", formula(field.when), found)
+    return where_present(field, found, conditional="_c.When", trailing="_c.IfLeft")
 
 
 def _any_size(type_: Type, names: Names) -> str:

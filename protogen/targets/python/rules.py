@@ -27,14 +27,13 @@ from protogen.targets.python.formats import constant, is_empty, least
 from protogen.targets.python.formulas import formula
 from protogen.targets.python.literals import call, mapping, number, text
 from protogen.targets.python.names import Names
+from protogen.targets.python.presence import where_present
 
 
 def field_rule(field: Field, names: Names) -> str:
     """The rule of a field."""
     found = _rule(field.type, field, names)
-    if field.optional:
-        return call("_rt.OptionalRule", found, behind=text(field.behind) if field.behind else None)
-    return found if field.when is None else call("_rt.WhenRule", formula(field.when), found)
+    return where_present(field, found, conditional="_rt.WhenRule", trailing="_rt.OptionalRule")
 
 
 def _rule(type_: Type, field: Field | None, names: Names) -> str:

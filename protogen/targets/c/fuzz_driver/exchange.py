@@ -35,8 +35,8 @@ def exchange_function(name: str, struct: str, plan: PayloadPlan, names: Names) -
 class _Exchange(Walk):
     def step(self, step: AnyStep, place: str) -> None:
         """A step of any kind; in front of what has a member for its number goes that number."""
-        if isinstance(step, OptionalStep) and step.member:
-            self._scalar(self._records[-1] + step.member)
+        if isinstance(step, OptionalStep) and step.presence.member:
+            self._scalar(self._records[-1] + step.presence.member)
         if isinstance(step, BytesStep | RepeatStep) and step.count.member:
             self._scalar(self.filled(step.count))
         if step.holds_values:

@@ -15,6 +15,7 @@ from protogen.model.payload_plan import (
     BytesStep,
     Check,
     ChooseStep,
+    ConditionalPresence,
     Count,
     Formula,
     NumberStep,
@@ -22,6 +23,7 @@ from protogen.model.payload_plan import (
     RegionStep,
     RepeatStep,
     RestStep,
+    TrailingPresence,
 )
 from protogen.targets.c.payload.number_checks import NumberChecker
 from protogen.targets.c.payload.walk import amount, out_of_bounds, times
@@ -222,14 +224,15 @@ class Checker(NumberChecker):
     def optional(self, step: OptionalStep, place: str) -> None:
         """A step that may be there; behind it, `at` stands where it has ended."""
         self._flush()
-        if isinstance(step.condition, int):
+        if isinstance(step.presence.holds, int):
             super().optional(step, place)
             return
         with self._joined(step.known_size):
-            if step.member:
-                self._if_left(step, place)
-            else:
-                super().optional(step, place)
+            match step.presence:
+                case ConditionalPresence():
+                    super().optional(step, place)
+                case TrailingPresence():
+                    self._if_left(step, place)
 
     def _if_left(self, step: OptionalStep, place: str) -> None:
         """A step that is there if bytes are left."""

@@ -19,6 +19,7 @@ from protogen.model.payload_plan import (
     RegionStep,
     RepeatStep,
     RestStep,
+    TrailingPresence,
 )
 from protogen.model.types import Float, NumberType
 from protogen.targets.c.lines import Lines
@@ -81,13 +82,13 @@ class Load(PlacedWalk):
 
     def optional(self, step: OptionalStep, place: str) -> None:
         """A step that may be there; where the payload's end says it, a member keeps that."""
-        if step.member:
+        if isinstance(step.presence, TrailingPresence):
             self.catch_up()
             self.reads_size = True
             goes_on = f"{self.address()} < payload + size"
             if self._name == "payload":
                 goes_on = f"size > {self._offset}U"
-            self.lines.add(f"{self._records[-1]}{step.member} = {goes_on};")
+            self.lines.add(f"{self._records[-1]}{step.presence.member} = {goes_on};")
         super().optional(step, place)
 
     def _written(self, step: IntegerStep, place: str) -> None:

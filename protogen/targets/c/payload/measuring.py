@@ -100,7 +100,7 @@ class Measure(Walk):
 
     def optional(self, step: OptionalStep, place: str) -> None:
         """A step that is there only where a condition holds."""
-        if isinstance(step.condition, int):
+        if isinstance(step.presence.holds, int):
             super().optional(step, place)
             return
         with self._apart():

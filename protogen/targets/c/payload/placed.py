@@ -119,7 +119,7 @@ class PlacedWalk(Walk):
 
     def optional(self, step: OptionalStep, place: str) -> None:
         """A step that may be there; behind it, `at` stands where it has ended."""
-        with self._joined(step, is_known=isinstance(step.condition, int)):
+        with self._joined(step, is_known=isinstance(step.presence.holds, int)):
             super().optional(step, place)
 
     def region(self, step: RegionStep, place: str) -> None:

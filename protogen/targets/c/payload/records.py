@@ -84,9 +84,9 @@ class Records:
 
     def _field(self, lines: Lines, step: AnyStep) -> None:
         held = held_step(step)
-        if isinstance(step, OptionalStep) and step.member:
+        if isinstance(step, OptionalStep) and step.presence.member:
             text = f"True if {step.name} is there: it may be left out, with all behind it."
-            lines.add(*comments.comment([text], INDENT), f"bool {step.member};")
+            lines.add(*comments.comment([text], INDENT), f"bool {step.presence.member};")
         if isinstance(held, BytesStep | RepeatStep) and held.count.member:
             what = "elements" if isinstance(held, RepeatStep) else "bytes"
             lines.add(*comments.comment([f"Number of {what} of {step.name}."], INDENT))

@@ -17,6 +17,7 @@ from protogen.model.payload_plan import (
     RegionStep,
     RepeatStep,
     RestStep,
+    TrailingPresence,
 )
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Text, counting_bits
@@ -146,9 +147,10 @@ class Validate(Walk):
 
     def optional(self, step: OptionalStep, place: str) -> None:
         """A step that may be there, but not behind one that is left out."""
-        if step.behind is not None:
+        presence = step.presence
+        if isinstance(presence, TrailingPresence) and presence.behind:
             base = self._records[-1]
-            self._refuse(f"{base}{step.member} && !{base}{step.behind.member}")
+            self._refuse(f"{base}{presence.member} && !{base}{presence.behind}")
         if step.step.is_refusable:
             super().optional(step, place)
 

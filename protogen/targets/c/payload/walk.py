@@ -335,11 +335,11 @@ class Walk:
 
     def optional(self, step: OptionalStep, place: str) -> None:
         """A step that is there only where a condition holds."""
-        if not isinstance(step.condition, Formula):
-            if step.condition:
+        formula = step.presence.holds
+        if not isinstance(formula, Formula):
+            if formula:
                 self.step(step.step, place)
             return
-        formula = step.condition
         condition = self.printer(formula).condition(formula.expression)
         with self.lines.block(f"if ({condition})"), self.branch():
             self.step(step.step, place)

@@ -9,6 +9,7 @@ from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
     ChooseStep,
+    ConditionalPresence,
     ConstantStep,
     Count,
     NumberStep,
@@ -16,6 +17,7 @@ from protogen.model.payload_plan import (
     RecordStep,
     RegionStep,
     RepeatStep,
+    TrailingPresence,
 )
 from protogen.model.types import Integer, NumberType, Text
 from protogen.targets.markdown.text.words import code, hex_number, plural
@@ -45,13 +47,18 @@ def type_text(step: AnyStep, region: RegionStep | None = None) -> str:
         case RecordStep():
             return "struct" + _packed(step)
         case OptionalStep():
-            is_there = f"if {code(step.expression.text)}"
-            if step.member:
-                is_there = "may be left out"
-            return f"{type_text(step.step, region)}, {is_there}"
+            return f"{type_text(step.step, region)}, {_presence(step)}"
         case RegionStep():
             inner = type_text(step.step, step)
             return inner if step.step.fills else f"{inner}, in {_region(step.region)}"
+
+
+def _presence(step: OptionalStep) -> str:
+    match step.presence:
+        case ConditionalPresence(expression=condition):
+            return f"if {code(condition.text)}"
+        case TrailingPresence():
+            return "may be left out"
 
 
 def end_of(region: RegionStep | None) -> str:

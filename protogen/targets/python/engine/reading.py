@@ -11,6 +11,7 @@ from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
     ChooseStep,
+    ConditionalPresence,
     ConstantStep,
     Count,
     FloatStep,
@@ -20,6 +21,7 @@ from protogen.model.payload_plan import (
     RegionStep,
     RepeatStep,
     RestStep,
+    TrailingPresence,
 )
 from protogen.model.payload_walks import without_constant
 from protogen.model.types import Octets, Struct
@@ -332,14 +334,19 @@ class _Reader(ArrayReader):
         value = self.lines.local()
         self._move_to(self.place.text)
         self.lines.add(f"{value}: _typing.Any = None")
-        goes_on = f"{self.place.text} < len(data)"
-        condition = goes_on if step.member else in_python(step.expression, self.raw_of)
-        with self.lines.block(f"if {condition}:"):
+        with self.lines.block(f"if {self._is_there(step)}:"):
             found = self._value(step.step)
             self._constant(found, step.step)
             self.lines.add(f"{value} = {found}")
             self._move_to(self.place.text)
         return value
+
+    def _is_there(self, step: OptionalStep) -> str:
+        match step.presence:
+            case ConditionalPresence(expression=condition):
+                return in_python(condition, self.raw_of)
+            case TrailingPresence():
+                return f"{self.place.text} < len(data)"
 
     def _held(self, step: OptionalStep | RegionStep) -> str:
         return self._optional(step) if isinstance(step, OptionalStep) else self._region(step)

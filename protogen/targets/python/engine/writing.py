@@ -12,6 +12,7 @@ from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
     ChooseStep,
+    ConditionalPresence,
     ConstantStep,
     Count,
     FloatStep,
@@ -22,6 +23,7 @@ from protogen.model.payload_plan import (
     RegionStep,
     RepeatStep,
     RestStep,
+    TrailingPresence,
 )
 from protogen.model.payload_walks import without_constant
 from protogen.model.types import Field, Struct, Text, is_text
@@ -120,6 +122,11 @@ def _is_looked_up(step: IntegerStep) -> bool:
     return step.type.role != "bool" and (is_pair(step) or is_byte)
 
 
+def _has_front(step: OptionalStep) -> bool:
+    """True if the step is there only where the one in front is, too."""
+    return isinstance(step.presence, TrailingPresence) and bool(step.presence.behind)
+
+
 def _is_bounded(item: Field) -> bool:
     """True if being in the declared range is being in the type's."""
     return item.ranged and None not in (item.least, item.greatest) and not item.special
@@ -149,7 +156,7 @@ class _Writer(Raw):
         for step in steps:
             value = self.lines.local()
             self.lines.add(f"{value} = {source}.{attribute(step.name)}")
-            if isinstance(step, OptionalStep) and step.behind is not None:
+            if isinstance(step, OptionalStep) and _has_front(step):
                 self.lines.refuse_if(f"{front} is None and {value} is not None")
             front = value
             bare = without_constant(step)
@@ -361,15 +368,19 @@ class _Writer(Raw):
         self._bytes.flush()
         data = self.lines.local()
         given = f"{value} is not None"
-        condition = given if step.member else in_python(step.expression, self.raw_of)
+        match step.presence:
+            case ConditionalPresence(expression=expression):
+                condition, refused = in_python(expression, self.raw_of), given
+            case TrailingPresence():
+                condition, refused = given, ""
         with self.lines.block(f"if {condition}:"):
             bare = without_constant(step.step)
             self.lines.add(f"{data} = {self._apart(value, bare, step.field)}")
             if isinstance(step.step, ConstantStep):
                 self.lines.refuse_if(f"{value} != {constant(step.field)}")
         with self.lines.block("else:"):
-            if not step.member:
-                self.lines.refuse_if(given)
+            if refused:
+                self.lines.refuse_if(refused)
             self.lines.add(f'{data} = b""')
         self._bytes.piece(data)
 
