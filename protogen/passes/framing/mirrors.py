@@ -9,6 +9,7 @@ from protogen.model.origin import About
 from protogen.model.parts import LengthPart, MirrorBits, NumberPart, Part, varying_bits
 from protogen.model.types import Integer
 from protogen.passes.context import Context, Loc
+from protogen.passes.framing.bit_names import holders_of
 from protogen.problems import hint_for
 from protogen.schema.syntax.parts import Part as PartSyntax
 from protogen.schema.syntax.parts import PartBits
@@ -40,12 +41,7 @@ class Mirrors:
         self._loc = loc
         self._parts = parts
         self._order = list(parts)
-        self._bits = {
-            name: (holder, bits)
-            for holder, item in parts.items()
-            for name, bits in (item.bits or {}).items()
-            if name not in parts
-        }
+        self._holders = holders_of(parts)
         self._numbers: dict[str, Part] = {}
 
     def add(self, *parts: Part | None) -> None:
@@ -78,19 +74,24 @@ class Mirrors:
 
     def _is_number(self, place: Loc, named: str) -> bool:
         """True if the frame has something of the name that is a number by itself."""
-        if named not in self._parts and named not in self._bits:
+        item = self._item(named)
+        if item is None:
             text = f"the frame has no part called `{named}`"
-            hint = hint_for(named, [*self._parts, *self._bits])
+            hint = hint_for(named, [*self._parts, *self._holders])
             self._context.error("PG132", place, text, hint)
             return False
-        item = self._parts[named] if named in self._parts else self._bits[named][1]
         what, hint = _no_number(named, item)
         if what:
             self._context.error("PG273", place, f"`{named}` {what}", hint)
         return not what
 
+    def _item(self, name: str) -> PartSyntax | PartBits | None:
+        """What is written of a part, or of some bits of one."""
+        holder = self._parts.get(self._holders.get(name, name))
+        return holder.bits[name] if holder and holder.bits and name in self._holders else holder
+
     def _is_in_front(self, place: Loc, named: str, holder: str) -> bool:
-        other = named if named in self._parts else self._bits[named][0]
+        other = self._holders.get(named, named)
         where, there = self._order.index(holder), self._order.index(other)
         if there > where:
             text = f"`{named}` stands behind `{holder}`"
