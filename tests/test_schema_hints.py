@@ -80,6 +80,12 @@ HABITS = [
         "  n: {type: uint8, length: payload}\n  payload: {}",
         "counts: p",
     ),
+    (
+        "an inverse",
+        "  payload: {}",
+        "  again: {type: uint8, inverse: kind}\n  payload: {}",
+        "write `complements: PART`",
+    ),
     ("bounds", VALUE, "{type: uint16, min: 0}", "write `range: [MIN, MAX]`"),
     ("endianness", VALUE, "{type: uint16, endian: big}", "write `byte_order: little` or"),
     (
