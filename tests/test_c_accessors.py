@@ -11,10 +11,10 @@ from compiled import ROOT, SCHEMAS, name_of, protocol_of
 from test_c_codecs import FLAGS, MACHINES, SAMPLERS, Case, run
 from tooling import require_compiler, require_tool
 
+from protogen.c_language.expressions import FormulaPrinter
 from protogen.model.payload_builder import plan_of
 from protogen.model.types import Array, Field, Fill, Fixed, Marked, Struct
 from protogen.targets.c.emit import unit_of
-from protogen.targets.c.formulas import FormulaPrinter
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.accessors import is_readable
 from protogen.targets.c.protocol_names import names_of

@@ -13,6 +13,7 @@ import pytest
 from expression_oracle import worked_out
 from tooling import require_compiler
 
+from protogen.c_language.expressions import FormulaPrinter
 from protogen.model.expression_bounds import Interval, bounds_of, hull_of, is_settled, linear
 from protogen.model.expressions import (
     Arithmetic,
@@ -35,7 +36,6 @@ from protogen.model.expressions import (
 from protogen.model.payload_plan import Formula, Reference
 from protogen.model.types import Integer
 from protogen.schema.expressions import ExpressionError, parse_expression
-from protogen.targets.c.formulas import FormulaPrinter
 from protogen.targets.python.formulas import in_python
 
 NUMBERS: Mapping[str, Integer] = {

@@ -13,6 +13,7 @@ import pytest
 from compiled import protocol_of
 from tooling import require_tool
 
+from protogen.c_language.words import headers
 from protogen.model.protocol import Protocol
 from protogen.runtime.api import Encoder, Message
 from protogen.runtime.attributes import ARGUMENTS, ATTRIBUTES, attribute, schema_name
@@ -21,7 +22,6 @@ from protogen.targets import TARGETS
 from protogen.targets.c.emit import emit, unit_of
 from protogen.targets.c.options import COptions
 from protogen.targets.c.protocol_names import names_of
-from protogen.targets.c.words import headers
 from protogen.targets.emitted import emitted_names
 from protogen.targets.naming import PROTOCOL, NameTable, endpoint, inside, message
 from protogen.targets.python.words import words_of_files

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from protogen.c_language.numbers import constant, integer_type, unsigned
 from protogen.model.expression_bounds import Interval, bounds_of
 from protogen.model.expressions import (
     Arithmetic,
@@ -21,7 +22,6 @@ from protogen.model.expressions import (
 )
 from protogen.model.payload_plan import Formula
 from protogen.model.types import Integer
-from protogen.targets.c.spelling import constant, integer_type, unsigned
 
 
 def type_for(hull: Interval) -> Integer:

@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
+from protogen.c_language.words import foreign_words
 from protogen.model.names import free_name
 from protogen.runtime.attributes import KEYWORDS
-from protogen.targets.c.words import foreign_words
 
 _RESERVED = frozenset((*KEYWORDS.split(), *foreign_words()))
 """Words that no field may be called in the C++ and Python that ROS generates."""

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from math import prod
 from typing import Any
 
+from protogen.c_language.expressions import CPrinter
+from protogen.c_language.numbers import number as number_in_c
 from protogen.capture.schema import Column, Dimension, Number, Record
 from protogen.capture.schema import Text as TextShape
 from protogen.convert.columns.event_values import constant_of
@@ -55,8 +57,6 @@ from protogen.native.print_steps import (
     repeat,
     where,
 )
-from protogen.targets.c.formulas import CPrinter
-from protogen.targets.c.spelling import number as number_in_c
 
 Scope = ChainMap[str, Count]
 """The numbers in front, which count and choose: their places, or constant ones themselves."""

@@ -8,20 +8,14 @@ from functools import lru_cache
 
 import msgspec
 
+from protogen.c_language.numbers import constant, hexadecimal, number, unsigned, unsigned_type
 from protogen.model.meanings import BitField, Enum, Flags, NamedBit, NamedValue
 from protogen.model.origin import About
 from protogen.model.types import Field, Float
 from protogen.targets import descriptions, naming
 from protogen.targets.c import comments
 from protogen.targets.c.lines import INDENT
-from protogen.targets.c.spelling import (
-    Names,
-    constant,
-    hexadecimal,
-    number,
-    unsigned,
-    unsigned_type,
-)
+from protogen.targets.c.spelling import Names
 from protogen.targets.escape import one_line, paragraphs
 from protogen.targets.naming import Thing, inside, named_type
 

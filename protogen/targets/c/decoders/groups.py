@@ -6,13 +6,13 @@ from collections.abc import Mapping
 
 import msgspec
 
+from protogen.c_language.numbers import hexadecimal, unsigned_type
 from protogen.model.frame_plan import FramePlan
 from protogen.model.identities import Identities, Identity
 from protogen.model.messages import Message
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Integer
 from protogen.targets.c.payload.messages import MessageView
-from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
 class ReceivedMessage(msgspec.Struct, frozen=True):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import msgspec
 
+from protogen.c_language.numbers import hexadecimal, unsigned_type
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.types import storage_bits
-from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
 class Algorithm(msgspec.Struct, frozen=True):

@@ -11,10 +11,10 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
 
+from protogen.c_language.numbers import hexadecimal, unsigned_type
 from protogen.model.frame_places import Place, Side
 from protogen.model.parts import BitsPart, ChecksumPart, MirrorBits, place_of
 from protogen.model.types import Integer, NumberType
-from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
 class Index(msgspec.Struct, frozen=True):

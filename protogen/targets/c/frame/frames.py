@@ -12,6 +12,7 @@ from functools import cached_property
 
 import msgspec
 
+from protogen.c_language.numbers import unsigned_type
 from protogen.copying import replace
 from protogen.model.frame_places import PlacedPart, Side
 from protogen.model.frame_plan import FramePlan
@@ -45,7 +46,7 @@ from protogen.targets.c.frame.expressions import (
 from protogen.targets.c.frame.numbers import has_others, none_of
 from protogen.targets.c.frame.stuffing import Stuffing
 from protogen.targets.c.frame.virtual import VirtualView
-from protogen.targets.c.spelling import Names, unsigned_type
+from protogen.targets.c.spelling import Names
 
 _STUFFED = 128
 _FEW = 4

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import msgspec
 
+from protogen.c_language.numbers import hexadecimal
 from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.decoder import DecoderView
@@ -13,7 +14,6 @@ from protogen.targets.c.frame.frames import Argument, FrameView, one_of
 from protogen.targets.c.frame.virtual import value_of
 from protogen.targets.c.payload.message_names import FrameNames
 from protogen.targets.c.payload.messages import MessageView
-from protogen.targets.c.spelling import hexadecimal
 
 
 class MessageFrame(msgspec.Struct, frozen=True, dict=True):

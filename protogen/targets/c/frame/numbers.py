@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 import msgspec
 
+from protogen.c_language.numbers import hexadecimal, unsigned_type
 from protogen.model.frame_places import PlacedPart
 from protogen.model.frame_plan import FramePlan, StartRule
 from protogen.model.parts import (
@@ -20,7 +21,6 @@ from protogen.model.types import Integer
 from protogen.targets.c.frame.expressions import byte, less_absent
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of
-from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 _WIDE = 16
 """Bits of the smallest type in which C adds numbers."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from protogen.c_language.numbers import unsigned_type
 from protogen.model.frame_plan import FramePlan
 from protogen.model.numbers import Numeral
 from protogen.model.parts import BitsPart, NumberPart, TypedPart
@@ -11,7 +12,6 @@ from protogen.model.types import Integer, storage_bits
 from protogen.targets.c.frame import expressions
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.numerals import Digits
-from protogen.targets.c.spelling import unsigned_type
 
 
 class PartNumbers:

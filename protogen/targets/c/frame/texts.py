@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 import msgspec
 
+from protogen.c_language.numbers import unsigned_type
 from protogen.model.parts import CounterPart, IdentityPart, ValuePart
 from protogen.model.protocol import Protocol
 from protogen.model.types import Integer
-from protogen.targets.c.spelling import Names, unsigned_type
+from protogen.targets.c.spelling import Names
 from protogen.targets.naming import OWN
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import msgspec
 
+from protogen.c_language.numbers import hexadecimal, unsigned_type
 from protogen.model.frame_plan import FramePlan
 from protogen.model.part_plans import VirtualPlan
 from protogen.model.parts import VirtualPart
 from protogen.targets.c.decoders.groups import is_among, key_constant
 from protogen.targets.c.frame.part_numbers import PartNumbers
-from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
 class VirtualCase(msgspec.Struct, frozen=True):

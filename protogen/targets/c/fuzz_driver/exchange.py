@@ -6,6 +6,7 @@ differ.
 
 from __future__ import annotations
 
+from protogen.c_language.expressions import FormulaPrinter
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -17,7 +18,6 @@ from protogen.model.payload_plan import (
     RepeatStep,
     RestStep,
 )
-from protogen.targets.c.formulas import FormulaPrinter
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.walk import Walk

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from protogen.c_language.numbers import integer_type, unsigned_type
 from protogen.model.payload_builder import plan_of_struct
 from protogen.model.payload_plan import (
     AnyStep,
@@ -18,7 +19,7 @@ from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole, join
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.records import Records
-from protogen.targets.c.spelling import Names, integer_type, unsigned_type
+from protogen.targets.c.spelling import Names
 from protogen.targets.naming import inside
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from protogen.c_language.numbers import unsigned
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.walk import RESERVED, Walk
-from protogen.targets.c.spelling import unsigned
 
 
 class CheckedWalk(Walk):

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from protogen.c_language.numbers import hexadecimal, unsigned
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -27,7 +28,6 @@ from protogen.model.payload_plan import (
 )
 from protogen.targets.c.payload.number_checks import NumberChecker
 from protogen.targets.c.payload.walk import amount, out_of_bounds, times
-from protogen.targets.c.spelling import hexadecimal, unsigned
 
 
 def _outside(count: Count, number: str, size: int) -> str:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import msgspec
 
+from protogen.c_language.numbers import constant, hexadecimal, integer_type, unsigned
 from protogen.model.numbers import FreeNumeral
 from protogen.model.types import Integer, storage_bits
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.spelling import constant, hexadecimal, integer_type, unsigned
 
 _TEXT = ("const uint8_t *at", "size_t size")
 _ROOM = 21

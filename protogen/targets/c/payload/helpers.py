@@ -12,20 +12,20 @@ from math import copysign, inf, isfinite, nextafter
 
 import msgspec
 
-from protogen.copying import replace
-from protogen.model.expressions import ArithmeticOperator
-from protogen.model.payload_plan import FloatStep
-from protogen.model.types import Float, Integer, NumberType, is_text, storage_bits
-from protogen.targets.c.formulas import floored
-from protogen.targets.c.lines import Lines, function
-from protogen.targets.c.spelling import (
-    Names,
+from protogen.c_language.expressions import floored
+from protogen.c_language.numbers import (
     constant,
     hexadecimal,
     integer_type,
     layout_name,
     unsigned_type,
 )
+from protogen.copying import replace
+from protogen.model.expressions import ArithmeticOperator
+from protogen.model.payload_plan import FloatStep
+from protogen.model.types import Float, Integer, NumberType, is_text, storage_bits
+from protogen.targets.c.lines import Lines, function
+from protogen.targets.c.spelling import Names
 
 _AT = "const uint8_t *at"
 _MOST_TERMS = 4

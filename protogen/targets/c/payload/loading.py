@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
+from protogen.c_language.numbers import counting_type, hexadecimal, integer_type
 from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     BytesStep,
@@ -30,7 +31,6 @@ from protogen.targets.c.payload.packing import Placed, members_of, number_in
 from protogen.targets.c.payload.placed import PlacedWalk
 from protogen.targets.c.payload.storing import is_bytes
 from protogen.targets.c.payload.walk import amount, times
-from protogen.targets.c.spelling import counting_type, hexadecimal, integer_type
 
 
 def loaded(helpers: Helpers, type_: NumberType, byte: str, address: str) -> str:

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 
 import msgspec
 
+from protogen.c_language.numbers import hexadecimal
 from protogen.model.messages import Message
 from protogen.model.parts import IdentityPart
 from protogen.model.protocol import Sender
 from protogen.targets import naming
 from protogen.targets.c.named import Macro, claim_fields
 from protogen.targets.c.payload.accessors import claim_accessor, is_readable
-from protogen.targets.c.spelling import Names, from_sender, hexadecimal
+from protogen.targets.c.spelling import Names, from_sender
 
 _FUNCTIONS = ("check", "load", "validate", "measure", "store", "put", "encode", "decode")
 

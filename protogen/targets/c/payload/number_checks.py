@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
+from protogen.c_language.numbers import hexadecimal, integer_type, unsigned
 from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     BytesStep,
@@ -28,7 +29,6 @@ from protogen.targets.c.payload.loading import loaded
 from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, faults_in, number_in
 from protogen.targets.c.payload.walk import is_unfit, out_of_bounds, type_of
-from protogen.targets.c.spelling import hexadecimal, integer_type, unsigned
 
 
 def _carried(step: BytesStep | NumberStep) -> int:

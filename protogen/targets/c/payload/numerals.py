@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import msgspec
 
+from protogen.c_language.numbers import hexadecimal, integer_type, unsigned, unsigned_type
 from protogen.model.numbers import Numeral
 from protogen.model.types import Integer
 from protogen.targets.c.payload.helpers import Helpers, is_whole
-from protogen.targets.c.spelling import hexadecimal, integer_type, unsigned, unsigned_type
 
 
 class Digits(msgspec.Struct, frozen=True):

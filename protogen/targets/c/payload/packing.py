@@ -11,12 +11,12 @@ from math import gcd
 
 import msgspec
 
+from protogen.c_language.numbers import constant, hexadecimal, integer_type, unsigned_type
 from protogen.model.packing import BytePart, Packing
 from protogen.model.payload_plan import AnyStep, Check, RepeatStep
 from protogen.model.payload_walks import PackedNumber, packed_numbers
 from protogen.model.types import Integer
 from protogen.targets.c.payload.helpers import Helpers, is_whole
-from protogen.targets.c.spelling import constant, hexadecimal, integer_type, unsigned_type
 
 Placed = tuple[PackedNumber, str]
 """A number, and the member that holds it."""

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import msgspec
 
+from protogen.c_language.numbers import counting_type, integer_type
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -25,7 +26,7 @@ from protogen.targets.c import comments
 from protogen.targets.c.lines import INDENT, Lines
 from protogen.targets.c.named import BitsView, Macro, bits_views, meaning
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.spelling import Names, counting_type, integer_type
+from protogen.targets.c.spelling import Names
 
 
 class StructView(msgspec.Struct, frozen=True):

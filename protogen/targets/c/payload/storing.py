@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from protogen.c_language.numbers import hexadecimal, unsigned_type
 from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     AnyStep,
@@ -24,7 +25,6 @@ from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, bytes_of
 from protogen.targets.c.payload.placed import PlacedWalk
 from protogen.targets.c.payload.walk import Walk, amount
-from protogen.targets.c.spelling import hexadecimal, unsigned_type
 
 
 def is_bytes(element: AnyStep) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from protogen.c_language.numbers import constant, hexadecimal, unsigned
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -25,7 +26,6 @@ from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.measuring import Measure
 from protogen.targets.c.payload.walk import Walk, amount, is_unfit, out_of_bounds
-from protogen.targets.c.spelling import constant, hexadecimal, unsigned
 
 
 def can_be_refused(plan: PayloadPlan, sizes: SizeSet) -> bool:

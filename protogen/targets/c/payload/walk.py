@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
+from protogen.c_language.expressions import FormulaPrinter, type_for
+from protogen.c_language.numbers import constant, integer_type, unsigned, unsigned_type
 from protogen.model.expressions import ArithmeticOperator, Expression, Number, Operand
 from protogen.model.names import free_name
 from protogen.model.packing import Packing
@@ -26,11 +28,9 @@ from protogen.model.payload_plan import (
 )
 from protogen.model.payload_walks import PackedNumber
 from protogen.model.types import Integer
-from protogen.targets.c.formulas import FormulaPrinter, type_for
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.packing import Placed, groups_of, members_of
-from protogen.targets.c.spelling import constant, integer_type, unsigned, unsigned_type
 
 _INDICES = "ijklmnopqrstuvw"
 """Names of indices; those of loops that are nested deeper have a number."""

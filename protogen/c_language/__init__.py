@@ -1,0 +1,1 @@
+"""How things are written in C, whoever prints it: words, numbers and expressions."""
