@@ -148,6 +148,8 @@ class _Verification:
 
     def _read(self, wire: bytes) -> _Reading:
         decoder = self._module.Decoder(sender=self._sender.name)
+        numbers = self._numbers()
+        decoder.tell(**{part.name: numbers[part.name] for part in self._frame.told})
         events = [*decoder.feed(wire), *decoder.flush()]
         bad = next((event for event in events if isinstance(event, InvalidEvent)), None)
         if bad is not None:

@@ -155,9 +155,20 @@ def python_events(module: Any, sender: str, steps: Iterable[Step]) -> list[list[
     for step in steps:
         if step[0] == "clear":
             decoder = module.Decoder(sender)
+        if step[0] == "tell":
+            _tell(module, sender, decoder, step[1])
+            found.append([])
+            continue
         events = decoder.feed(step[1]) if len(step) == 2 else decoder.flush()
         found.append([_event(event, has_forms=has_forms) for event in events])
     return found
+
+
+def _tell(module: Any, sender: str, decoder: Any, data: bytes) -> None:
+    """Tell Python what the bytes of a step tell C: the number of a part, and its value."""
+    parts = [part for spec in module.PROTOCOL.forms(sender) for part in spec.frame.told]
+    names = list(dict.fromkeys(part.name for part in parts))
+    decoder.tell(**{names[data[0]]: int.from_bytes(data[1:], "big")})
 
 
 def _event(event: Any, *, has_forms: bool = False) -> CEvent:

@@ -43,6 +43,12 @@ def makers(protocol: Model, sender: Sender, name: EngineName | None) -> tuple[Ma
     """
     if name not in (None, "native", "python"):
         raise CaptureError(f"there is no engine {name!r}; there are native and python")
+    if sender.frame.told:
+        parts = " and ".join(part.name for part in sender.frame.told)
+        raise CaptureError(
+            f"frames of {sender.name} do not say what they are: a decoder is told {parts}, and "
+            "tables are not; decode the bytes of both ends instead"
+        )
     if sender.plan.ends_idle:
         text = f"only a silence ends a frame of {sender.name}, and a capture without times has one"
         _warn(NoSilenceWarning, f"{text}: at its end, in front of which one frame is found at most")

@@ -29,6 +29,15 @@ HexText = Annotated[
     typer.Option("--hex", metavar="TEXT", help="The bytes in hex, instead of other input."),
 ]
 
+ToldParts = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--told",
+        metavar="PART=NUMBER",
+        help="What the bytes do not say of their identity, such as what was asked for.",
+    ),
+]
+
 Versions = Annotated[
     list[str] | None,
     typer.Argument(

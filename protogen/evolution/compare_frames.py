@@ -22,6 +22,7 @@ from protogen.model.parts import (
     Part,
     PartType,
     PayloadPart,
+    ToldPart,
     TypedPart,
     ValuePart,
     VirtualPart,
@@ -108,6 +109,8 @@ class _Frames:
     def _typed(self, old: Part, new: Part, renamed: dict[str, str]) -> Iterator[Change]:
         if isinstance(old, NumberPart) and isinstance(new, NumberPart):
             yield from self._number(old, new, renamed)
+            if isinstance(old, ToldPart) and isinstance(new, ToldPart):
+                yield from self._told(old, new, renamed)
         elif isinstance(old, BitsPart) and isinstance(new, BitsPart):
             yield from self._bits(old, new, renamed)
         elif isinstance(old, ChecksumPart) and isinstance(new, ChecksumPart):
@@ -199,6 +202,14 @@ class _Frames:
             words = named(_coverage(old), _coverage(new))
             yield self._change("frame-checksum-coverage", old.name, words)
 
+    def _told(self, old: ToldPart, new: ToldPart, renamed: dict[str, str]) -> Iterator[Change]:
+        """What receivers take a frame for, beside what they are told."""
+        was, now = ((part.default, part.once, _tellers(part)) for part in (old, new))
+        setters = tuple(sorted(renamed.get(name, name) for name in was[2]))
+        if (*was[:2], setters) != now:
+            words = named(_telling(old), _telling(new))
+            yield self._change("frame-told", old.name, words)
+
     def _virtual(self, old: VirtualPart, new: VirtualPart) -> Iterator[Change]:
         if _layout(old.type) != _layout(new.type):
             words = named(old.type.label, new.type.label)
@@ -218,6 +229,17 @@ class _Frames:
         elif old is not None and new is not None and old.lenient != new.lenient:
             words = "sloppy encodings are " + ("taken" if new.lenient else "refused")
             yield self._change("frame-leniency", "transparency", words)
+
+
+def _tellers(part: ToldPart) -> tuple[str, ...]:
+    return tuple(sorted(item.text for item in part.set_by))
+
+
+def _telling(part: ToldPart) -> str:
+    """What tells a part that is not sent, for how long, and its value before, in words."""
+    by = f"told by {' and '.join(_tellers(part))}" if part.set_by else "told by the program"
+    once = ", for one frame" if part.once else ""
+    return f"{part.shown(part.default)}, {by}{once}"
 
 
 def _origin(mirror: MirrorBits, renamed: dict[str, str]) -> tuple[str, bool]:

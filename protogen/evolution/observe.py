@@ -123,13 +123,31 @@ class Side:
             self._decoders[sender] = Decoder(self._codec.forms(sender))
         return self._decoders[sender]
 
-    def reads(self, sender: str, frame: bytes, like: Reading | None = None) -> Reading:
-        """Observe a frame that stands alone.
+    def _understood(self, sender: str, told: Mapping[str, int]) -> dict[str, int]:
+        """What this version's receivers can be told, in which it may differ from the other."""
+        parts = {
+            part.name: part for form in self.protocol.forms(sender) for part in form.frame.told
+        }
+        return {
+            name: value
+            for name, value in told.items()
+            if name in parts and parts[name].holds(value)
+        }
+
+    def reads(
+        self,
+        sender: str,
+        frame: bytes,
+        like: Reading | None = None,
+        told: Mapping[str, int] | None = None,
+    ) -> Reading:
+        """Observe a frame that stands alone, by a receiver that was `told` what is not sent.
 
         `like` is what another receiver made of it. Most messages of two versions are the same, and
         then so is what is in them.
         """
         decoder = self._decoder(sender)
+        decoder.tell(**self._understood(sender, told or {}))
         events = [*decoder.feed(frame), *decoder.flush()]
         found = [event for event in events if event.kind == "message"]
         if not found:

@@ -69,6 +69,13 @@ RULES: tuple[Rule, ...] = (
         _TOGETHER,
         by_frame=False,
     ),
+    Rule(
+        "frame-told",
+        _W,
+        "receivers learn another way which message a frame is",
+        _TOGETHER,
+        by_frame=False,
+    ),
     Rule("frame-length-rule", _W, "the length counts other parts", _TOGETHER),
     Rule("frame-length-range", _W, "receivers take other lengths", "rebuild the receivers first"),
     Rule("frame-checksum-algorithm", _W, "the checksum is worked out another way", _TOGETHER),

@@ -197,12 +197,13 @@ class Witnesses:
             frame = one.frame(sender.name, message.name, values, parts)
             if frame is None:
                 continue
-            sent = one.reads(sender.endpoint, frame)
+            told = _told(sender, message, parts)
+            sent = one.reads(sender.endpoint, frame, told=told)
             if sent.message != message.name:
                 continue  # A frame that its own side can't tell proves nothing.
             received = Reading(None, "nobody listens")
             if listens:
-                received = other.reads(theirs, frame, like=sent)
+                received = other.reads(theirs, frame, like=sent, told=told)
             harm, differences = self._judged(sent, received, old_sends)
             if harm is not None:
                 yield Witness(
@@ -274,6 +275,12 @@ class Witnesses:
         filled = received.contents.filled
         for path in (path for path in theirs if path not in filled):
             yield Difference(path, None, received.values[path])
+
+
+def _told(sender: Sender, message: Message, parts: Values) -> dict[str, int]:
+    """What a receiver was told before a frame of this message."""
+    identity = dict(zip(sender.frame.identity, message.identity, strict=True))
+    return {part.name: parts.get(part.name, identity[part]) for part in sender.frame.told}
 
 
 def _drawn(message: Message, sender: Sender) -> Iterator[tuple[Values, Values]]:

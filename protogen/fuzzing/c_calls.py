@@ -77,9 +77,12 @@ class CEvent(msgspec.Struct, frozen=True):
     """The form of the frame, where the decoder finds several."""
 
 
-Step = tuple[Literal["feed", "push"], bytes] | tuple[Literal["flush", "clear"]]
-"""A step that is done with a decoder; `clear` gives it memory of zeros, without initialising it."""
-_STEPS = {"feed": 1, "push": 2, "flush": 3, "clear": 4}
+Step = tuple[Literal["feed", "push", "tell"], bytes] | tuple[Literal["flush", "clear"]]
+"""A step that is done with a decoder.
+
+`clear` gives it memory of zeros, without initialising it; `tell` takes bytes of `Calls.told`.
+"""
+_STEPS = {"feed": 1, "push": 2, "flush": 3, "clear": 4, "tell": 5}
 
 
 class Calls:
@@ -166,6 +169,11 @@ class Calls:
             counts.append(len(portions))
         request.append(b"\0")
         return Call(b"".join(request), lambda answers: self._events(answers, decoder, counts))
+
+    def told(self, sender: str, values: Mapping[str, int]) -> list[bytes]:
+        """What a decoder is told, for `tell`: each part by its place, and its value."""
+        names = [name for name, _, _ in self._driver.decoder(sender).told]
+        return [number(names.index(name), 1) + number(value, 4) for name, value in values.items()]
 
     def _portions(self, data: bytes) -> list[bytes]:
         places = range(0, max(1, len(data)), self._room)

@@ -88,6 +88,8 @@ class DrivenDecoder(msgspec.Struct, frozen=True):
     """True if `push` returns which message is complete, instead of calling a handler."""
     parts: tuple[DrivenPart, ...]
     handlers: tuple[DrivenHandler, ...]
+    told: tuple[tuple[str, str, str], ...] = ()
+    """The identities that it is told: their names, members of the parts, and types."""
     forms: tuple[DrivenForm, ...] = ()
     """The forms of the frames, where it finds several; their parts and handlers are those of the
     decoders for each of them."""

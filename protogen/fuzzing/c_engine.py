@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from protogen.fuzzing.c_calls import OK, RANGE, CEvent, Encoded, Step
 from protogen.fuzzing.c_driver import Driver
@@ -49,10 +49,11 @@ class CEngine:
             raise Refused(_WHY[RANGE]) from None
         return frame
 
-    def events(self, sender: str, pieces: Sequence[bytes]) -> list[Seen]:
-        """Feed the pieces to a new decoder and flush it."""
+    def events(self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]) -> list[Seen]:
+        """Feed the pieces to a new decoder, which is told this first, and flush it."""
+        telling: list[Step] = [("tell", data) for data in self._calls.told(sender, told)]
         steps: list[Step] = [("feed", piece) for piece in pieces]
-        call = self._calls.events(sender, [*steps, ("flush",)])
+        call = self._calls.events(sender, [*telling, *steps, ("flush",)])
         return [_seen(event) for events in self._library.do(call) for event in events]
 
 

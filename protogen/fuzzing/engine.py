@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 import msgspec
@@ -41,5 +41,5 @@ class Engine(Protocol):
     def frame(self, sender: str, message: str, values: Values, parts: Values) -> bytes:
         """Encode a whole frame. Raises Refused."""
 
-    def events(self, sender: str, pieces: Sequence[bytes]) -> list[Seen]:
-        """Feed the pieces to a new decoder and flush it."""
+    def events(self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]) -> list[Seen]:
+        """Feed the pieces to a new decoder, which is told this first, and flush it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
 
 from protogen.fuzzing.engine import Refused, Seen
@@ -53,10 +53,11 @@ class PythonEngine:
         except EncodeError as error:
             raise Refused(str(error)) from None
 
-    def events(self, sender: str, pieces: Sequence[bytes]) -> list[Seen]:
-        """Feed the pieces to a new decoder and flush it."""
+    def events(self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]) -> list[Seen]:
+        """Feed the pieces to a new decoder, which is told this first, and flush it."""
         endpoint = self._codec.sender(sender).name
         decoder = Decoder(self._codec.forms(endpoint), self._engine)
+        decoder.tell(**told)
         events = [event for piece in pieces for event in decoder.feed(piece)]
         return [_seen(event) for event in (*events, *decoder.flush())]
 

@@ -110,11 +110,19 @@ def _trip(engine: Engine, sender: Sender, case: Case) -> Outcome:
     return Outcome(case, problem=problem, frame=frame)
 
 
+def _told(sender: Sender, case: Case) -> dict[str, int]:
+    """What the receiver of a case has to be told before its frame."""
+    message = next(item for item in sender.messages if item.name == case.message)
+    identity = dict(zip(sender.frame.identity, message.identity, strict=True))
+    return {part.name: case.parts.get(part.name, identity[part]) for part in sender.frame.told}
+
+
 def _wrong_with_events(
     engine: Engine, sender: Sender, case: Case, payload: bytes, frame: bytes
 ) -> str:
-    events = engine.events(case.sender, [frame])
-    single = engine.events(case.sender, [bytes((byte,)) for byte in frame])
+    told = _told(sender, case)
+    events = engine.events(case.sender, [frame], told)
+    single = engine.events(case.sender, [bytes((byte,)) for byte in frame], told)
     if not same_events(events, single):
         return f"byte by byte it decodes to {single}, at once to {events}"
     if len(events) != 1 or events[0].kind != "message" or events[0].size != len(frame):

@@ -17,6 +17,8 @@ from protogen.model.parts import (
     MirrorBits,
     Part,
     PayloadPart,
+    ToldPart,
+    UnsentPart,
     ValuePart,
     VirtualPart,
     checksums_of,
@@ -53,7 +55,9 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
 
     parts: tuple[Part, ...]
     virtual: tuple[VirtualPart, ...] = ()
-    """The parts that are not sent."""
+    """The parts that go into checksums and are not sent."""
+    told: tuple[ToldPart, ...] = ()
+    """The identity parts that are not sent."""
     transparency: Transparency | None = None
     limit: int | None = None
     """Wire bytes that no frame exceeds, where the schema bounds them."""
@@ -63,11 +67,12 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     @cached_property
     def declared(self) -> tuple[Part, ...]:
         """All parts in the order of the schema, those that are not sent among them."""
+        unsent: tuple[UnsentPart, ...] = (*self.virtual, *self.told)
         found: list[Part] = []
         for index, part in enumerate(self.parts):
-            found += [item for item in self.virtual if item.place == index]
+            found += [item for item in unsent if item.place == index]
             found.append(part)
-        return (*found, *(item for item in self.virtual if item.place >= len(self.parts)))
+        return (*found, *(item for item in unsent if item.place >= len(self.parts)))
 
     def virtual_part(self, name: str) -> VirtualPart | None:
         """The part of that name that is not sent; None if there is none."""
@@ -120,7 +125,12 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
 
     @cached_property
     def identity(self) -> tuple[IdentityPart, ...]:
-        """The identity parts in wire order."""
+        """The identity parts: those that receivers are told, and the others in wire order."""
+        return (*self.told, *self.sent_identity)
+
+    @cached_property
+    def sent_identity(self) -> tuple[IdentityPart, ...]:
+        """The identity parts that are sent, in wire order."""
         return tuple(part for part in self.numbers if isinstance(part, IdentityPart))
 
     @cached_property
@@ -131,7 +141,7 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     @cached_property
     def identity_is_early(self) -> bool:
         """True if nothing of the identity stands behind the payload."""
-        return set(self.identity) <= set(written_apart(self.head))
+        return set(self.sent_identity) <= set(written_apart(self.head))
 
     def holder(self, name: str) -> Part:
         """The part of that name, or the one that has it among its bits; raises KeyError."""
@@ -176,7 +186,7 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     def shown_parts(self) -> tuple[IdentityPart | CounterPart | ValuePart, ...]:
         """The parts that events show."""
         kinds = IdentityPart | CounterPart | ValuePart
-        return tuple(part for part in self.numbers if isinstance(part, kinds))
+        return (*self.told, *(part for part in self.numbers if isinstance(part, kinds)))
 
     @cached_property
     def caller_parts(self) -> tuple[CounterPart | ValuePart, ...]:

@@ -154,9 +154,9 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         """Bytes of content that tell the payload's size; None if they are not all in the head."""
         if self.length is not None:
             return None if self.length.over_wire else self.part(self.length.part.name).end
-        if not self.identity:
+        if not self.sent_identity:
             return 0 if self.groups and all(g.fixed is not None for g in self.groups) else None
-        return self.part(self.identity[-1].name).end if self.identity_is_early else None
+        return self.part(self.sent_identity[-1].name).end if self.identity_is_early else None
 
     @property
     def is_trimmed(self) -> bool:
@@ -231,8 +231,18 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
 
     @property
     def identity(self) -> tuple[IdentityPart, ...]:
-        """The identity parts in wire order."""
+        """The identity parts: those that receivers are told, and the others in wire order."""
         return self.frame.identity
+
+    @property
+    def sent_identity(self) -> tuple[IdentityPart, ...]:
+        """The identity parts that are sent, in wire order."""
+        return self.frame.sent_identity
+
+    @property
+    def is_told_alone(self) -> bool:
+        """True if there is an identity, and nothing of it is sent."""
+        return bool(self.frame.told) and not self.sent_identity
 
     @property
     def identity_bits(self) -> int:
@@ -241,8 +251,8 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
 
     @property
     def identity_is_early(self) -> bool:
-        """True if there is an identity, and all of it stands in front of the payload."""
-        return bool(self.identity) and self.part(self.identity[-1].name).in_head
+        """True if there is an identity, and nothing of it stands behind the payload."""
+        return bool(self.identity) and self.frame.identity_is_early
 
     @property
     def bounded(self) -> tuple[PlacedPart, ...]:
@@ -275,7 +285,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
             return None
         if all(map(self.takes_any_size, self.groups)):
             return None
-        told = [self.length.part, *self.identity[-1:]]
+        told = [self.length.part, *self.sent_identity[-1:]]
         return max(self.part(part.name).end for part in told)
 
     @property

@@ -107,6 +107,37 @@ class IdentityPart(NumberPart, frozen=True, kw_only=True):
     """Tells, alone or with others, which message the frame carries."""
 
 
+class Teller(msgspec.Struct, frozen=True):
+    """A number of frames that tells what frames behind them are."""
+
+    message: str
+    """The message that has it as a field; empty where it is a part of frames."""
+    name: str
+
+    @property
+    def text(self) -> str:
+        """The number as a schema names it."""
+        return f"{self.message}.{self.name}" if self.message else self.name
+
+
+class ToldPart(IdentityPart, frozen=True, kw_only=True):
+    """An identity that is not sent: a receiver is told it, by its program or by other frames."""
+
+    place: int
+    """Parts that stand in front of it."""
+    default: int = 0
+    """Value before a receiver is told one."""
+    once: bool = False
+    """True if what was told is that of one frame, and then the default is again."""
+    set_by: tuple[Teller, ...] = ()
+    """What tells it in frames that a receiver takes."""
+
+    @property
+    def size(self) -> int:
+        """Bytes before stuffing: none."""
+        return 0
+
+
 class LengthPart(NumberPart, frozen=True, kw_only=True):
     """The number of unstuffed bytes of some parts; it may count itself.
 
@@ -319,6 +350,10 @@ class VirtualPart(TypedPart, frozen=True, kw_only=True):
     def size(self) -> int:
         """Bytes before stuffing: none."""
         return 0
+
+
+UnsentPart = VirtualPart | ToldPart
+"""A part that has no bytes on the wire."""
 
 
 def members_of(part: Part) -> tuple[BitsMember, ...]:

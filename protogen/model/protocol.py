@@ -191,6 +191,11 @@ class Protocol(msgspec.Struct, frozen=True, kw_only=True):
         raise KeyError(name)
 
     @property
+    def is_told(self) -> bool:
+        """True if receivers are told identities that are not sent."""
+        return any(sender.frame.told for sender in self.senders)
+
+    @property
     def sending(self) -> tuple[str, ...]:
         """Names of the endpoints that send, in their order."""
         return tuple(dict.fromkeys(sender.endpoint for sender in self.senders))

@@ -15,6 +15,7 @@ from protogen.passes.framing.cutting import check_cut
 from protogen.passes.framing.forms import check_forms
 from protogen.passes.framing.frame_plan import plan_frame
 from protogen.passes.framing.frames import resolve_frames
+from protogen.passes.framing.told_parts import check_told
 from protogen.passes.framing.transparencies import check_codes
 from protogen.passes.framing.trimming import check_trimmed
 from protogen.passes.messages.building import resolve_messages
@@ -43,6 +44,7 @@ PASSES: tuple[Pass, ...] = (
     check_distinct_names,
     check_identities,
     check_shared_values,
+    check_told,
     check_trimmed,
     check_cut,
     resolve_reserved,

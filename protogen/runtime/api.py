@@ -25,6 +25,7 @@ from protogen.runtime.framing.frame import (
     StartLiteral,
     StartSet,
     StartWords,
+    ToldPart,
     ValuePart,
     VirtualPart,
 )
@@ -111,6 +112,7 @@ __all__ = [
     "StructRule",
     "SwitchRule",
     "TextRule",
+    "ToldPart",
     "UnknownEvent",
     "ValuePart",
     "Violation",

@@ -122,25 +122,32 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         return named
 
     def read(
-        self, frame: BytesLike, sender: str | None = None
+        self,
+        frame: BytesLike,
+        sender: str | None = None,
+        told: Mapping[str, int] | None = None,
     ) -> FrameEvent[MessageT_co, PartsT_co]:
         """The event of exactly one valid frame. Raises DecodeError.
 
-        Without `sender`, any endpoint may have sent it. Raises TypeError for what is not like
-        bytes.
+        Without `sender`, any endpoint may have sent it. `told` has identities that are not sent, by
+        the names of their parts. Raises TypeError for what is not like bytes.
         """
-        return read_frame(self.forms(sender), octets(frame))
+        return read_frame(self.forms(sender), octets(frame), told or {})
 
     def decode(
-        self, frame: BytesLike, sender: str | None = None, engine: Engine = "construct"
+        self,
+        frame: BytesLike,
+        sender: str | None = None,
+        engine: Engine = "construct",
+        told: Mapping[str, int] | None = None,
     ) -> MessageT_co:
         """The message of exactly one frame, as the reference reads it. Raises DecodeError.
 
-        Without `sender`, any endpoint may have sent it. Raises TypeError for what is not like
-        bytes.
+        Without `sender`, any endpoint may have sent it. `told` has identities that are not sent, by
+        the names of their parts. Raises TypeError for what is not like bytes.
         """
         check_engine(engine)
-        event = self.read(frame, sender)
+        event = self.read(frame, sender, told)
         if isinstance(event, UnknownEvent):
             raise DecodeError("unknown", f"no message has the identity of {event.parts}")
         return event.message

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Sequence
-from typing import Generic, Literal
+from typing import Any, Generic, Literal
 
 from protogen.runtime.errors import PayloadFault, Reason
-from protogen.runtime.events import Event, InvalidEvent, frame_event
+from protogen.runtime.events import Event, InvalidEvent, MessageEvent, frame_event
 from protogen.runtime.framing.damage import IdleJudge, idle_judge_of
 from protogen.runtime.framing.forms import (
     FormsCandidate,
@@ -21,6 +21,7 @@ from protogen.runtime.framing.machine import Candidate, Cut, Failure
 from protogen.runtime.framing.prefix import Prefix, prefix_of
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
 from protogen.runtime.framing.starts import Starts, starts_of
+from protogen.runtime.framing.told import GivenIdentity, Told
 from protogen.runtime.plain_cut import PlainCutter
 
 Engine = Literal["fast", "construct"]
@@ -66,6 +67,7 @@ class _Search(Generic[MessageT_co, PartsT_co]):
         self, senders: Sequence[SenderSpec[MessageT_co, PartsT_co]], engine: Engine
     ) -> None:
         self._senders = senders
+        self.told = Told(senders)
         if len(senders) == 1:
             cut = senders[0].cut if engine == "fast" else None
             self.starts = starts_of(senders[0].frame)
@@ -80,15 +82,16 @@ class _Search(Generic[MessageT_co, PartsT_co]):
 
     def candidate(self, data: bytes, at: int, *, is_fresh: bool) -> Candidate | FormsCandidate:
         """What begins there; `is_fresh`: nothing has come in front of it."""
+        told = self.told.values
         if len(self._senders) == 1:
-            return Candidate(self._senders[0])
-        return FormsCandidate(self._senders, self._forms, data, at, is_fresh=is_fresh)
+            return Candidate(self._senders[0], told=told)
+        return FormsCandidate(self._senders, self._forms, data, at, is_fresh=is_fresh, told=told)
 
     def sharing(self) -> Candidate | FormsCandidate:
         """What begins with the end of the frame before."""
         if len(self._senders) == 1:
-            return Candidate(self._senders[0], shares_start=True)
-        return FormsCandidate.sharing(self._senders)
+            return Candidate(self._senders[0], shares_start=True, told=self.told.values)
+        return FormsCandidate.sharing(self._senders, self.told.values)
 
 
 class Decoder(Generic[MessageT_co, PartsT_co]):
@@ -115,6 +118,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         names = {item.name for item in senders}
         self._name = names.pop() if len(names) == 1 else ""
         self._search = _Search(senders, engine)
+        self._told = self._search.told
         self._starts = self._search.starts
         self._plain_cut = self._search.cutter
         self._shares = senders[0].layout.shares_delimiter
@@ -267,6 +271,35 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         if self._behind:
             self._data += self._behind
             self._behind = bytearray()
+
+    def tell(self, **values: GivenIdentity) -> None:
+        """Tell identities that are not sent, such as what was asked for, by their parts' names.
+
+        They hold for the frame that comes next and those behind it, or for one where the schema
+        says so. Several values are those of frames that follow each other, of which the last stays.
+        Raises ValueError where there is no such part, or it can't have the value.
+        """
+        for name, value in values.items():
+            self._told.tell(name, value)
+        self._restart()
+
+    def hear(self, event: Event[Any, Any]) -> None:
+        """Take what another decoder found on the same bus, which may tell an identity here."""
+        if isinstance(event, InvalidEvent):
+            return
+        numbers = event.codec.layout.numbers_of(event.parts)
+        message = event.message if isinstance(event, MessageEvent) else None
+        self._told.hear(numbers, message)
+        self._restart()
+
+    def _restart(self) -> None:
+        """Let a candidate that has taken no byte know what was told since it was made."""
+        if self._candidate is None or self._pushed != self._scan:
+            return
+        if self._shares_start:
+            self._candidate = self._search.sharing()
+        else:
+            self._candidate = self._search.candidate(self._data, self._scan, is_fresh=False)
 
     def flush(self) -> list[Event[MessageT_co, PartsT_co]]:
         """Take the end of the input, or a silence on the line; all remaining events."""
@@ -425,6 +458,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._noise(self._scan, complete=True)
         offset, raw = self._cover(self._scan + cut.size)
         self._events.append(frame_event(sender, cut, message, raw, offset))
+        if self._told:
+            self._told.pass_frame(sender, cut.numbers, message)
         return None
 
     def _resume(self, failure: Failure, final: bool) -> bool:

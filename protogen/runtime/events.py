@@ -72,7 +72,8 @@ class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
     @property
     def payload(self) -> bytes:
         """The message's bytes: with zeros that a frame leaves out, without what is not known."""
-        payload = payload_of(self.codec, self.raw)
+        told = self.codec.told_among(self.numbers)
+        payload = payload_of(self.codec, self.raw, told)
         return self.codec.layout.payload.fitted(payload, self.message.__known__())
 
     def __repr__(self) -> str:

@@ -33,6 +33,7 @@ _PART_ROLES = (
     *_MIRRORS,
     "id",
     "virtual",
+    "told",
     "counts",
     "counter",
     "algorithm",
@@ -229,12 +230,13 @@ _PART_RULES = (
         {"propertyNames": {"enum": [*_MIRRORS, "type", "byte_order", "doc", "source"]}},
     ),
     _where(
-        _with("virtual"),
+        _any_of(("virtual", "told")),
         "What is not sent has no bounds, and no delimiter can be mistaken for it.",
         _none_of(("range", "unprotected")),
     ),
     *(_bounded(f"uint{bits}", 0, 2**bits - 1) for bits in (8, 16, 32)),
     _where(_with("over"), "This is for a checksum or a length.", _any_of(("algorithm", "counts"))),
+    _together("These are for a part that is told.", {key: ["told"] for key in ("set_by", "once")}),
     _together("These are for a checksum.", {key: ["algorithm"] for key in ("covers", "when")}),
 )
 

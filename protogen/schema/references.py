@@ -23,10 +23,14 @@ from protogen.schema.syntax.names import (
     Kind,
     Mark,
     Member,
+    NumberPath,
     Ref,
 )
 from protogen.schema.syntax.protocol import SCHEMA, is_by_sender
 from protogen.schema.text.scalars import Scalar
+
+_ANYWHERE: Place = ("messages",)
+"""A place that is about all frames."""
 
 _NAMINGS = ("values", "flags", "bits")
 """Keys under which a field names its values or bits."""
@@ -124,7 +128,9 @@ class _Walk:
                 yield from self._in_formula(str(written), spot)
             case Member() if isinstance(written, str):
                 yield from self._in_element(written, spot)
-            case FieldPath():
+            case NumberPath() if "." not in str(written):
+                yield Reference(Kind.PART, spot, written, self._scopes.of_parts(_ANYWHERE))
+            case NumberPath() | FieldPath():
                 yield from _field_path(str(written), spot)
 
     def _in_formula(self, written: str, spot: Spot) -> Iterator[Reference]:

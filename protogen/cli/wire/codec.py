@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,19 +36,41 @@ class Codec(msgspec.Struct, frozen=True):
         """The endpoints that send something."""
         return self.protocol.sending
 
-    def decoder(self, sender: str | None) -> Decoder[Any, Any]:
+    def decoder(self, sender: str | None, told: Sequence[str] | None = None) -> Decoder[Any, Any]:
         """Return a new decoder of what ``sender`` sends; without one, of what all endpoints do.
 
-        Raises UsageError where one decoder can't take the frames of all of them.
+        ``told`` are values of identities that are not sent, as PART=NUMBER. Raises UsageError where
+        one decoder can't take the frames of all of them, or can't be told so.
         """
         from protogen.runtime.decoder import Decoder
 
         if sender is not None:
             find_senders(self.protocol, sender)
         try:
-            return Decoder(self.runtime.forms(sender))
+            decoder = Decoder(self.runtime.forms(sender))
         except ValueError as error:
             raise UsageError(str(error), f"give --sender {' or '.join(self.senders)}") from None
+        for item in told or ():
+            tell(decoder, item)
+        return decoder
+
+
+def tell(decoder: Decoder[Any, Any], written: str) -> None:
+    """Tell a decoder PART=NUMBER, or PART=NUMBER,NUMBER for frames that follow each other.
+
+    Raises UsageError.
+    """
+    name, is_there, numbers = written.partition("=")
+    try:
+        values = [int(number, 0) for number in numbers.split(",")] if is_there else []
+    except ValueError:
+        values = []
+    if not values:
+        raise UsageError(f"--told {written}: expected PART=NUMBER, or several with commas")
+    try:
+        decoder.tell(**{name: values})
+    except ValueError as error:
+        raise UsageError(f"--told {written}: {error}") from None
 
 
 def open_codec(schema: Path) -> Codec:

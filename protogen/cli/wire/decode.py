@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
-from protogen.cli.options import CaptureFile, HexText, SchemaFile, SenderOfBytes
+from protogen.cli.options import CaptureFile, HexText, SchemaFile, SenderOfBytes, ToldParts
 from protogen.cli.schemas import find_senders
 from protogen.cli.wire.capture import (
     STANDARD_INPUT,
@@ -71,6 +71,7 @@ def decode(  # noqa: PLR0913 - each option is one argument
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 if any byte belongs to no valid frame.")
     ] = False,
+    told: ToldParts = None,
 ) -> int:
     """Cut bytes into messages, unknown frames and what is no frame.
 
@@ -89,7 +90,7 @@ def decode(  # noqa: PLR0913 - each option is one argument
     has_invalid = False
     show = _printer(codec, format, show_sender=sender is None and len(codec.senders) > 1)
     with _capture(file, hex, kind, codec, sender, complaints.add, timed=timed) as pieces:
-        for events in _batches(codec, sender, pieces, silences):
+        for events in _batches(codec, sender, pieces, silences, told or ()):
             for event in events:
                 has_invalid = has_invalid or event.kind == "invalid"
                 show(event)
@@ -162,23 +163,54 @@ def _capture(
 
 
 def _batches(
-    codec: Codec, sender: str | None, pieces: Iterable[Piece], silences: Silences | None
+    codec: Codec,
+    sender: str | None,
+    pieces: Iterable[Piece],
+    silences: Silences | None,
+    told: Sequence[str],
 ) -> Iterator[list[Any]]:
     """Yield the events of each piece: from one sender, or from all, each with its decoder.
 
     A piece that names no sender may be from any. A silence in front of it ends what came before.
+    What one sender's frames tell of another's, the decoder of that one hears.
     """
     decoders: dict[str, Decoder[Any, Any]] = {}
     for piece in pieces:
         if sender is not None and piece.sender != sender:
             continue
-        if piece.sender not in decoders:
-            decoders[piece.sender] = codec.decoder(piece.sender or None)
+        # Where frames tell what others are, all decoders have to hear them from the beginning.
+        known = codec.senders if piece.sender and codec.protocol.is_told else ()
+        for name in (piece.sender, *known):
+            if name not in decoders:
+                decoders[name] = codec.decoder(name or None, _told_to(codec, name, told))
+        decoder = decoders[piece.sender]
         if silences is not None and silences.are_in_front(piece):
-            yield decoders[piece.sender].flush()
-        yield decoders[piece.sender].feed(piece.data)
+            yield _heard(codec, decoders, decoder, decoder.flush())
+        yield _heard(codec, decoders, decoder, decoder.feed(piece.data))
     for decoder in decoders.values():
         yield decoder.flush()
+
+
+def _told_to(codec: Codec, sender: str, told: Sequence[str]) -> list[str]:
+    """Return what is told to the decoder of a sender: of parts that others have, nothing."""
+    forms = codec.protocol.senders
+    others = {part.name for form in forms if form.endpoint != sender for part in form.frame.told}
+    own = {part.name for form in codec.protocol.forms(sender) for part in form.frame.told}
+    return [item for item in told if not sender or item.partition("=")[0] not in others - own]
+
+
+def _heard(
+    codec: Codec,
+    decoders: dict[str, Decoder[Any, Any]],
+    own: Decoder[Any, Any],
+    events: list[Any],
+) -> list[Any]:
+    """Return the events, which the decoders of the other senders hear."""
+    if codec.protocol.is_told:
+        for other in (item for item in decoders.values() if item is not own):
+            for event in events:
+                other.hear(event)
+    return events
 
 
 # --- out ------------------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from protogen.cli.exits import CLEAN
-from protogen.cli.options import HexText, SchemaFile, SenderOfBytes
+from protogen.cli.options import HexText, SchemaFile, SenderOfBytes, ToldParts
 from protogen.convert.inputs.hex_digits import parse_hex
 from protogen.copying import replace
 
@@ -29,6 +29,7 @@ def explain(
     schema: SchemaFile,
     sender: SenderOfBytes = None,
     hex: HexText = None,
+    told: ToldParts = None,
 ) -> int:
     """Show what each byte stands for.
 
@@ -40,7 +41,7 @@ def explain(
 
     codec = open_codec(schema)
     data = parse_hex(_standard_input() if hex is None else hex)
-    decoder = codec.decoder(sender)
+    decoder = codec.decoder(sender, told)
     out = console()
     if not data:
         out.print("no bytes")
@@ -99,7 +100,8 @@ def _rows(protocol: Protocol, sender: Sender, event: Any) -> Sequence[Row]:
 
     if event.kind == "invalid" and event.reason == "noise":
         return [Row(offset=0, wire=event.raw, bytes=b"", path="", type="", meaning="noise")]
-    rows = annotate(protocol, sender.name, event.raw)
+    numbers = {} if event.kind == "invalid" else event.codec.layout.numbers_of(event.parts)
+    rows = annotate(protocol, sender.name, event.raw, told=numbers)
     if event.kind == "invalid" and event.reason != "truncated":
         return [*rows[:-1], *map(_not_looked_at, rows[-1:])]
     return rows

@@ -6,7 +6,7 @@ decoder says.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import msgspec
 
@@ -25,6 +25,7 @@ from protogen.model.parts import (
     NumberPart,
     Part,
     PayloadPart,
+    ToldPart,
     TypedPart,
     VirtualPart,
 )
@@ -50,19 +51,21 @@ def annotate(
     *,
     covers: Sequence[str] | None = None,
     message: Message | None = None,
+    told: Mapping[str, int] | None = None,
 ) -> tuple[Row, ...]:
     """Return what each byte of `data`, which `sender` is said to have sent, stands for.
 
     The `wire` of all rows, joined, is `data`. Bytes that are no frame are taken apart as far as
     they look like one. With `covers`, `data` holds only those parts, without transparency, as a
     document prints them. The payload is that of `message`, if given, whatever the identity says.
+    `told` has the values of identity parts that are not sent; the others have their defaults.
     Raises KeyError if there is no such sender.
     """
     known = protocol.sender(sender)
     if covers is None:
         parts, wire = known.frame.declared, unstuff(known.plan, data)
         if not known.frame.virtual:
-            return _Frame(known, parts, wire, message).rows()
+            return _Frame(known, parts, wire, message, told=told or {}).rows()
         first = _Frame(known, parts, wire, message)
         first.rows()  # What is not sent follows from the identity, which may stand behind it.
         return _Frame(known, parts, wire, message, first.identity).rows()
@@ -87,8 +90,10 @@ class _Frame:
         wire: Wire,
         message: Message | None,
         identity: Identity | None = None,
+        told: Mapping[str, int] | None = None,
     ) -> None:
         """With the identity, where some other reading has found it."""
+        self._told_values = told or {}
         self._identity = identity
         self._sender = sender
         self._parts = parts
@@ -128,6 +133,9 @@ class _Frame:
         elif isinstance(part, VirtualPart):
             self._virtual(part)
             return
+        elif isinstance(part, ToldPart):
+            self._told(part)
+            return
         elif self._is_absent(part):
             self._found[part.name] = _Found(b"", b"")
             return
@@ -143,6 +151,15 @@ class _Frame:
     def _is_absent(self, part: Part) -> bool:
         payload = self._found.get(self._sender.frame.payload.name)
         return part.is_optional and (payload is None or not payload.content)
+
+    def _told(self, part: ToldPart) -> None:
+        """A part of the identity that is not sent: as told, or as the given message has it."""
+        index = self._sender.frame.identity.index(part)
+        default = part.default if self._given is None else self._given.identity[index]
+        value = self._told_values.get(part.name, default)
+        self._numbers[part.name] = value
+        row = self._cursor.take(0, part.name, part.type.label, subject=part, value_type=part.type)
+        self._rows.append(row.reads(value, "told, not sent"))
 
     def _virtual(self, part: VirtualPart) -> None:
         """A part without bytes, which the checksums that cover it may need."""

@@ -99,6 +99,7 @@ class _Analysis:
         if start is None or not self._ends_known(end):
             return None
         self._needless(start)
+        self._told_too_late(start, end)
         self._only_end()
         if self._region_unclear():
             return None
@@ -145,6 +146,16 @@ class _Analysis:
             hint = "give the frame an identity or another part, or the message a field"
             self._context.error_at_key("PG146", ("messages", name), text, hint)
         return bool(empty)
+
+    def _told_too_late(self, start: Start, end: End | None) -> None:
+        """Report told parts where the end of a frame begins the next one, before more is told."""
+        if not self.frame.told or end is None or not isinstance(start, StartLiteral):
+            return
+        if end.protected and start.bytes == end.bytes:
+            name = self.frame.told[0].name
+            text = f"the end of a frame is the start of the next one, before `{name}` can be told"
+            hint = "end frames with another literal, or give them a length"
+            self._context.error_at_key("PG306", (*self._loc, name), text, hint)
 
     def _needless(self, start: Start) -> None:
         """Report parts that accept that nothing marks the start, where something does."""

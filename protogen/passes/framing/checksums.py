@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from protogen.copying import replace
@@ -196,6 +196,15 @@ class Checksums:
             return None
         return found
 
+    def _summed(self, written: Sequence[str], place: Loc) -> tuple[str, ...]:
+        """The parts of a run that go into a sum; one that names another part is reported."""
+        told = {name for name, item in self._syntax.items() if item.told}
+        for name in dict.fromkeys(name for name in written if name in told):
+            text = f"`{name}` is told: it has no bytes on the wire, and a checksum sums up bytes"
+            self._context.error("PG231", place, text, "name parts that are sent")
+        found = written_out(self._context, self._names, written, place)
+        return tuple(name for name in found if name not in told)
+
     def _covers(self, loc: Loc, item: PartSyntax | PartBits) -> tuple[str, ...] | None:
         name, holder = str(loc[-1]), str(loc[len(self._loc)])
         if item.covers is None:
@@ -205,7 +214,7 @@ class Checksums:
         place = (*loc, "covers")
         if not are_whole(self._context, holders_of(self._syntax), item.covers, place):
             return None
-        covers = written_out(self._context, self._names, item.covers, place)
+        covers = self._summed(item.covers, place)
         if holder in covers:
             where = "itself" if holder == name else f"`{holder}`, which has its bits"
             self._context.error("PG136", place, f"the checksum `{name}` covers {where}")

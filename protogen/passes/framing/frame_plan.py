@@ -326,7 +326,7 @@ class _Planner:
         cuts_region = region is not None and region.behind and region.before < self._head_size
         if region is not None and region.insertion is not None:
             return False
-        if self._frame.length_over_wire:
+        if self._frame.length_over_wire or self._frame.told:
             return False
         return (
             self._is_regular

@@ -14,6 +14,8 @@ from protogen.model.parts import (
     Part,
     PartType,
     PayloadPart,
+    ToldPart,
+    UnsentPart,
     ValuePart,
     VirtualPart,
 )
@@ -36,6 +38,7 @@ from protogen.passes.framing.part_bits import Others, bits_part
 from protogen.passes.framing.part_digits import digits_type, is_written, part_type_hint
 from protogen.passes.framing.part_values import number_of, text_bounds, text_type
 from protogen.passes.framing.silences import check_silence, silence_of
+from protogen.passes.framing.told_parts import tellers
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.framing.trimming import trimmed
 from protogen.passes.framing.virtual_parts import check_virtual_parts
@@ -52,6 +55,7 @@ _ROLES: dict[str, frozenset[str]] = {
     "bits": frozenset({"type", "byte_order", "bits", "size", "unprotected"}),
     **{key: frozenset({"type", "byte_order", "size", key}) for key in MIRRORS},
     "virtual": _TYPE | {"virtual", "size", "default"},
+    "told": frozenset({"type", "byte_order", "told", "default", "set_by", "once"}),
     "literal": frozenset({"literal", "unprotected", "type"}),
     "id": _NUMBER | {"id", "size"},
     "counts": _NUMBER | {"counts", "over"},
@@ -125,8 +129,9 @@ class FrameBuilder:
         if self._context.tally.errors > before or self._loc in self._context.doubtful:
             return None
         frame = Frame(
-            parts=tuple(part for part in parts if part and not isinstance(part, VirtualPart)),
+            parts=tuple(part for part in parts if part and not isinstance(part, UnsentPart)),
             virtual=tuple(part for part in parts if isinstance(part, VirtualPart)),
+            told=tuple(part for part in parts if isinstance(part, ToldPart)),
             transparency=transparency,
             limit=self._written.limit,
             silence=silence,
@@ -225,6 +230,14 @@ class FrameBuilder:
                 default=self._default(item, part),
             )
         given = {name: getattr(part, name) for name in field_names(type(part))}
+        if role == "told":
+            return ToldPart(
+                **given,
+                place=self._parts_before(part.name),
+                default=self._default(item, part) or 0,
+                once=item.once is not None,
+                set_by=tellers(item.set_by),
+            )
         if role == "id":
             return IdentityPart(**given)
         if role == "counts":
@@ -237,7 +250,7 @@ class FrameBuilder:
     def _parts_before(self, name: str) -> int:
         """Parts that are sent in front of the one called so."""
         before = self._names[: self._names.index(name)]
-        return sum(not self._syntax[other].virtual for other in before)
+        return sum(self._syntax[other].is_sent for other in before)
 
     def _default(self, item: PartSyntax, part: NumberPart) -> int | None:
         loc = (*self._loc, part.name, "default")

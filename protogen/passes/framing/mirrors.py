@@ -134,6 +134,7 @@ def _no_number(name: str, item: PartSyntax | PartBits) -> tuple[str, str | None]
         "literal": "is a literal",
         "algorithm": _LATE,
         "virtual": "is not sent",
+        "told": "is not sent",
     }
     found = (text for key, text in whats.items() if getattr(item, key) is not None)
     return next(found, ""), None

@@ -13,25 +13,26 @@ from protogen.schema.syntax.parts import Part
 
 def sent_names(parts: Mapping[str, Part]) -> list[str]:
     """The names of the parts that have bytes on the wire, in their order."""
-    return [name for name, item in parts.items() if not item.virtual]
+    return [name for name, item in parts.items() if item.is_sent]
 
 
 def sent_run(
     context: Context, parts: Mapping[str, Part], written: Sequence[str], loc: Loc, what: str
 ) -> tuple[str, ...]:
-    """The parts of a run that are sent; one that names a virtual part is reported.
+    """The parts of a run that are sent; one that names another part is reported.
 
     `what` says what the run is for, in the words of the problem.
     """
     named = [name for item in written for name in item.split("..")]
-    virtual = [name for name in named if name in parts and parts[name].virtual]
-    for name in dict.fromkeys(virtual):
-        text = f"`{name}` is virtual: it has no bytes on the wire, and {what}"
+    unsent = [name for name in named if name in parts and not parts[name].is_sent]
+    for name in dict.fromkeys(unsent):
+        kind = "virtual" if parts[name].virtual else "told"
+        text = f"`{name}` is {kind}: it has no bytes on the wire, and {what}"
         context.error("PG231", loc, text, "name parts that are sent")
-    if virtual or not are_whole(context, holders_of(parts), written, loc):
+    if unsent or not are_whole(context, holders_of(parts), written, loc):
         return ()
     found = written_out(context, list(parts), written, loc)
-    return tuple(name for name in found if not parts[name].virtual)
+    return tuple(name for name in found if parts[name].is_sent)
 
 
 def check_virtual_parts(context: Context, frame: Frame, loc: Loc) -> None:

@@ -49,7 +49,7 @@ def encode_frame(
         problem = f"makes a frame of {len(wire)} bytes, at most {sender.frame.greatest} are allowed"
         raise EncodeError("payload", problem)
     if sender.frame.ambiguous_cut or sender.group(identity) is None:
-        check_cut(sender, wire, payload)
+        check_cut(sender, wire, payload, numbers)
     return wire
 
 
@@ -77,9 +77,14 @@ def join_parts(
     return assembly.with_bytes(bytes_of).joined()
 
 
-def check_cut(sender: SenderSpec[Any, Any], wire: bytes, payload: bytes) -> None:
-    """Raise EncodeError unless a decoder takes exactly these bytes for the frame."""
-    verdict, _ = verdict_on(sender, wire)
+def check_cut(
+    sender: SenderSpec[Any, Any], wire: bytes, payload: bytes, numbers: Mapping[str, int]
+) -> None:
+    """Raise EncodeError unless a decoder takes exactly these bytes for the frame.
+
+    `numbers` has the values of parts, those that the decoder is told among them.
+    """
+    verdict, _ = verdict_on(sender, wire, told=numbers)
     if verdict.size < len(wire):
         problem = f"a decoder would end the frame behind {verdict.size} of its {len(wire)} bytes"
         raise EncodeError("payload", problem)

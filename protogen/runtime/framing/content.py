@@ -5,6 +5,7 @@ The *content* is the bytes of all parts before any stuffing, without the end lit
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from protogen.runtime.errors import ByteError, PayloadFault, Reason
@@ -35,12 +36,15 @@ class Rejected(Exception):  # noqa: N818 - it is a verdict, not an error of the 
 class Content:
     """Takes content byte by byte and says what is known of the frame."""
 
-    def __init__(self, sender: SenderSpec[Any, Any]) -> None:
+    def __init__(self, sender: SenderSpec[Any, Any], told: Mapping[str, int]) -> None:
+        """`told` has the values of parts that are not sent."""
         self._sender = sender
         self._layout = sender.layout
         self.bytes = bytearray()
-        self.numbers: dict[str, int] = {}
-        """The values of the parts that were read."""
+        self.numbers: dict[str, int] = {
+            part.name: told.get(part.name, part.default) for part in sender.frame.told
+        }
+        """The values of the parts that are known: told, or read."""
         self.index = 0
         """The part that is due."""
         self.payload_size: int | None = None
@@ -58,7 +62,7 @@ class Content:
         self._next = -1  # Where the part that is due ends.
         self._literal = b""  # What its bytes have to be.
         self._clear_bits = False  # Whether their most significant bit has to be clear.
-        if not self._layout.identity:
+        if not self._layout.sent_identity:
             self._identify()
         self._enter()
 
@@ -142,11 +146,15 @@ class Content:
         numbers = (part, *members_of(part))
         if self._layout.length in numbers:
             self._read_length(self._layout.length)
-        if self._layout.early_identity and self._layout.identity[-1] in numbers:
+        if self._layout.early_identity and self._completes_identity(numbers):
             self._identify()
         for length in self._layout.lengths[1:]:
             if length in numbers:
                 self._agree(length)
+
+    def _completes_identity(self, numbers: Sequence[Part]) -> bool:
+        """True if the last identity part that is sent is among these."""
+        return any(part in numbers for part in self._layout.sent_identity[-1:])
 
     def _read_bits(self, part: BitsPart, data: bytes) -> None:
         try:

@@ -57,6 +57,8 @@ def idle_judge_of(sender: SenderSpec[Any, Any]) -> IdleJudge | None:
     is_plain = sums_alone and bool(layout.checksums) and layout.length is None
     if not (layout.ends_idle and is_plain) or layout.has_wire_checksum or layout.stuffed:
         return None
+    if sender.frame.told:
+        return None
     return IdleJudge(sender)
 
 
@@ -94,7 +96,7 @@ class Judge:
         self._asks_identity = layout.length is None or (
             layout.spec.rescans and (layout.early_identity or not layout.identity)
         )
-        asked = layout.identity if self._asks_identity else ()
+        asked = layout.sent_identity if self._asks_identity else ()
         checked: tuple[Part, ...] = (*asked, *layout.lengths, *layout.bounded)
         head = [item for item in layout.slices(1) if item.part in layout.head]
         self._literals = [
@@ -143,7 +145,7 @@ class Judge:
             part.name: part.number.decode(content[slice(*places[held.name])])
             for held in self._layout.parts
             for part in written_apart((held,))
-            if part in self._layout.identity
+            if part in self._layout.sent_identity
         }
         return self._sender.virtual(numbers)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from protogen.runtime.framing.layout import Layout, is_optional
@@ -9,15 +10,20 @@ from protogen.runtime.framing.machine import Cut, verdict_on
 from protogen.runtime.framing.sender import SenderSpec
 
 
-def payload_of(sender: SenderSpec[Any, Any], raw: bytes) -> bytes:
-    """The payload of what was seen to be a frame: the raw bytes of an event."""
+def payload_of(
+    sender: SenderSpec[Any, Any], raw: bytes, told: Mapping[str, int] | None = None
+) -> bytes:
+    """The payload of what was seen to be a frame: the raw bytes of an event.
+
+    `told` has the values of identity parts that are not sent.
+    """
     layout = sender.layout
     # Its start may have been the end of the frame before, which is not among its bytes.
     begins_inside = layout.shares_delimiter and not raw.startswith(layout.start)
     content = _content_of(layout, layout.start + raw if begins_inside else raw)
     size = None if content is None else layout.payload_size(len(content))
     if content is None or size is None:
-        verdict, _ = verdict_on(sender, raw, shares_start=begins_inside)
+        verdict, _ = verdict_on(sender, raw, shares_start=begins_inside, told=told or {})
         assert isinstance(verdict, Cut)
         return verdict.payload
     return content[layout.head_size : layout.head_size + size]

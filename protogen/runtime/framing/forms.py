@@ -6,7 +6,7 @@ whose identity is unknown.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import Any
 
@@ -42,30 +42,44 @@ class FormsCandidate:
     """A possible frame of one of several forms. Of no use after its verdict."""
 
     def __init__(
-        self, senders: Senders, starts: FormStarts, data: bytes, at: int, *, is_fresh: bool
+        self,
+        senders: Senders,
+        starts: FormStarts,
+        data: bytes,
+        at: int,
+        *,
+        is_fresh: bool,
+        told: Mapping[str, int],
     ) -> None:
-        """It begins at a place in the data; `is_fresh`: nothing has come in front of it."""
+        """It begins at a place in the data; `is_fresh`: nothing has come in front of it.
+
+        `told` has the values of identity parts that are not sent.
+        """
         begun = [
             (sender, is_begun)
             for sender, each in zip(senders, starts.each, strict=True)
             if (is_begun := _is_begun(sender, each, data, at, is_fresh)) is not None
         ]
-        self._take([sender for sender, _ in begun])
+        self._take([sender for sender, _ in begun], told)
         self._begun = [is_begun for _, is_begun in begun]
 
-    def _take(self, senders: Senders, *, shares_start: bool = False) -> None:
+    def _take(
+        self, senders: Senders, told: Mapping[str, int], *, shares_start: bool = False
+    ) -> None:
         self._senders = list(senders)
-        self._candidates = [Candidate(item, shares_start=shares_start) for item in senders]
+        self._candidates = [
+            Candidate(item, shares_start=shares_start, told=told) for item in senders
+        ]
         self._verdicts: list[Cut | Failure | None] = [None] * len(senders)
         self._is_known = [False] * len(senders)
         self._wire = bytearray()
         self._chosen = 0
 
     @classmethod
-    def sharing(cls, senders: Senders) -> FormsCandidate:
+    def sharing(cls, senders: Senders, told: Mapping[str, int]) -> FormsCandidate:
         """A candidate that begins with the end of the frame before, in any of the forms."""
         item = cls.__new__(cls)
-        item._take(senders, shares_start=True)
+        item._take(senders, told, shares_start=True)
         item._begun = [True] * len(senders)
         return item
 
@@ -200,7 +214,12 @@ def _kind_of_start(sender: SenderSpec[Any, Any]) -> object:
 
 
 def cutter_of(senders: Senders, starts: FormStarts) -> FormsCutter | None:
-    """The cutter for these forms; None where their starts do not tell which one comes first."""
+    """The cutter for these forms; None where their starts do not tell which one comes first.
+
+    Nor is there one where frames tell what those behind them are.
+    """
+    if any(sender.frame.told for sender in senders):
+        return None
     each = [sender.frame.start for sender in senders]
     if any(sender.layout.shares_delimiter for sender in senders):
         return None

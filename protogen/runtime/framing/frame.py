@@ -44,6 +44,21 @@ class IdentityPart(NamedTuple):
         return self.number.size
 
 
+class ToldPart(NamedTuple):
+    """An identity part that is not sent: a receiver is told it.
+
+    `default` is its value before. `once`: what was told holds for one frame. `set_by` are the
+    numbers of frames that tell it: those of a part, which have no message, or of its field.
+    """
+
+    name: str
+    number: Number
+    default: int = 0
+    once: bool = False
+    set_by: tuple[tuple[str, str], ...] = ()
+    """Name of a part and nothing, or of a message and a field."""
+
+
 class LengthPart(NamedTuple):
     """The number of bytes of the parts that it `counts`, before any stuffing or on the wire.
 
@@ -377,6 +392,8 @@ class FrameSpec(NamedTuple):
     virtual: tuple[VirtualPart, ...] = ()
     """Parts that are not sent. A frame whose identity gives one of them no value can't be verified:
     it fails as one with a wrong checksum does."""
+    told: tuple[ToldPart, ...] = ()
+    """Identity parts that are not sent."""
     silence: float | None = None
     """Seconds of silence that end a frame, where nothing else does."""
 

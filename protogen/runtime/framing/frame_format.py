@@ -32,7 +32,7 @@ class FrameFormat(Piece):
         if not may_start(self._sender.layout, stream.read(self._start_size)):
             raise PayloadError("noise", path, start, "no frame starts so")
         stream.seek(start)
-        verdict = self._verdict(stream)
+        verdict = self._verdict(stream, context.get("told", {}))
         if isinstance(verdict, Failure):
             raise PayloadError(verdict.reason, path, stream.tell(), verdict.problem)
         stream.seek(start + verdict.size)
@@ -43,8 +43,8 @@ class FrameFormat(Piece):
             shown[name] = characters.text(shown[name])
         return Container({**shown, "payload": verdict.payload})
 
-    def _verdict(self, stream: BinaryIO) -> Cut | Failure:
-        candidate = Candidate(self._sender)
+    def _verdict(self, stream: BinaryIO, told: Mapping[str, int]) -> Cut | Failure:
+        candidate = Candidate(self._sender, told=told)
         verdict: Cut | Failure | None = None
         while verdict is None:
             byte = stream.read(1)
@@ -64,5 +64,8 @@ class FrameFormat(Piece):
         payload = parts.pop("payload", b"")
         identity, given = split_parts(self._sender, parts)
         wire = encode_frame(self._sender, identity, payload, given, strict=False)
-        check_cut(self._sender, wire, payload)  # The payload may be of any size here.
+        told = dict(
+            zip((part.name for part in self._sender.layout.identity), identity, strict=True)
+        )
+        check_cut(self._sender, wire, payload, told)  # The payload may be of any size here.
         return wire

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from protogen.runtime.attributes import attribute
 from protogen.runtime.framing.frame import (
     AfterEnd,
     ChecksumPart,
@@ -17,6 +18,7 @@ from protogen.runtime.framing.frame import (
     PayloadPart,
     StartLiteral,
     StartMark,
+    ToldPart,
     ValuePart,
     checksums_of,
     mirrors_of,
@@ -70,15 +72,12 @@ class Layout:
             for has_payload in (False, True)
         }
         apart = written_apart(self.parts)
-        self.identity = tuple(part for part in apart if isinstance(part, IdentityPart))
+        self.sent_identity = tuple(part for part in apart if isinstance(part, IdentityPart))
+        self.identity: tuple[IdentityPart | ToldPart, ...] = (*spec.told, *self.sent_identity)
         self.values = tuple(part for part in apart if isinstance(part, ValuePart))
         held = early if spec.rescans else ()
         self.bounded = tuple(part for part in self.values if part in held or part.values)
         """The values that a receiver holds to their bounds."""
-        self.shown = tuple(
-            part.name for part in apart if isinstance(part, IdentityPart | ValuePart)
-        )
-        """The names of the parts that events show."""
         self.checksums = tuple(item for part in self.parts for item in checksums_of(part))
         self.has_wire_checksum = any(part.over_wire for part in self.checksums)
         self.start = spec.start.value if isinstance(spec.start, StartLiteral) else b""
@@ -102,6 +101,18 @@ class Layout:
         )
 
     @cached_property
+    def shown(self) -> tuple[str, ...]:
+        """The names of the parts that events show."""
+        apart = written_apart(self.parts)
+        sent = (part.name for part in apart if isinstance(part, IdentityPart | ValuePart))
+        return (*(part.name for part in self.spec.told), *sent)
+
+    def numbers_of(self, parts: Any) -> dict[str, int]:
+        """The numbers of an event's parts, but for texts."""
+        found = {name: getattr(parts, attribute(name)) for name in self.shown}
+        return {name: value for name, value in found.items() if isinstance(value, int)}
+
+    @cached_property
     def lengths(self) -> tuple[LengthPart, ...]:
         """The first tells where the frame ends, and the others have to agree with it."""
         apart = written_apart(self.parts)
@@ -114,8 +125,9 @@ class Layout:
 
     @cached_property
     def early_identity(self) -> bool:
-        """True if there is an identity, and all of it in front of the payload."""
-        return bool(self.identity) and self.identity[-1] in written_apart(self.head)
+        """True if there is an identity, and nothing of it behind the payload."""
+        early = written_apart(self.head)
+        return bool(self.identity) and all(part in early for part in self.sent_identity)
 
     @cached_property
     def mirrored(self) -> frozenset[str]:

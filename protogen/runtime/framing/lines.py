@@ -7,7 +7,7 @@ from typing import Any
 
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.assembly import encode_frame
-from protogen.runtime.framing.frame import IdentityPart
+from protogen.runtime.framing.frame import IdentityPart, ToldPart
 from protogen.runtime.framing.sender import SenderSpec
 from protogen.runtime.identities import Identity
 from protogen.runtime.payload.number import Characters, given_number
@@ -61,7 +61,7 @@ def split_parts(
     return tuple(_identifying(part, parts.get(part.name)) for part in identity), others
 
 
-def _identifying(part: IdentityPart, value: Any) -> int:
+def _identifying(part: IdentityPart | ToldPart, value: Any) -> int:
     try:
         return given_number(part.number, value)
     except EncodeError as error:

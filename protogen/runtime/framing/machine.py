@@ -16,6 +16,8 @@ from protogen.runtime.framing.layout import Place, Slice
 from protogen.runtime.framing.sender import SenderSpec
 from protogen.runtime.transparency import TransparencyError, Unstuffer
 
+_NOTHING: Mapping[str, int] = {}
+
 
 class Cut(NamedTuple):
     """A complete frame whose length and checksums are right: the values of parts, the payload."""
@@ -36,15 +38,24 @@ class Failure(NamedTuple):
 class Candidate:
     """A possible frame of one sender. Of no use after its verdict."""
 
-    def __init__(self, sender: SenderSpec[Any, Any], *, shares_start: bool = False) -> None:
-        """With `shares_start`, the end of the frame before is also this one's start."""
+    def __init__(
+        self,
+        sender: SenderSpec[Any, Any],
+        *,
+        shares_start: bool = False,
+        told: Mapping[str, int] = _NOTHING,
+    ) -> None:
+        """With `shares_start`, the end of the frame before is also this one's start.
+
+        `told` has the values of identity parts that are not sent.
+        """
         self.sender = sender
         self._spec = sender.frame
         self._layout = sender.layout
         self._wire = bytearray()
         self._shared = 0  # How many of these bytes, in front, are those of the frame before.
         self._behind = 0  # How many of these bytes, at the end, are not the candidate's own.
-        self._content = Content(sender)
+        self._content = Content(sender, told)
         self._cut: Cut | None = None
         # A delimiter is looked for: bytes that may begin it are held back until that is clear.
         self._delimiters = self._protected_ends()
@@ -59,9 +70,17 @@ class Candidate:
         self._empty_left = 0  # Wire bytes still to come of a region that holds nothing.
         self._passed = 0  # Wire bytes that were taken as content or stuffing.
         self._wire_ends: list[int] = []  # As many as were passed, for each byte of content.
-        self._cross()
+        self._refused = self._refusal()
         if shares_start:
             self._take_over(self._layout.start)
+
+    def _refusal(self) -> Rejected | None:
+        """What is wrong before the first byte: what was told is no message that has a size."""
+        try:
+            self._cross()
+        except Rejected as why:
+            return why
+        return None
 
     def _take_over(self, start: bytes) -> None:
         for byte in start:
@@ -82,6 +101,8 @@ class Candidate:
         """Take the next byte. None: the candidate needs more."""
         self._wire.append(byte)
         try:
+            if self._refused is not None:
+                raise self._refused
             self._take(byte)
             if self._cut is None and len(self._wire) >= self._spec.given_up_at:
                 raise Rejected("length", f"no frame has more than {self._spec.greatest} bytes")
@@ -340,14 +361,18 @@ def wrong_sum(
 
 
 def verdict_on(
-    sender: SenderSpec[Any, Any], data: bytes, *, shares_start: bool = False
+    sender: SenderSpec[Any, Any],
+    data: bytes,
+    *,
+    shares_start: bool = False,
+    told: Mapping[str, int] = _NOTHING,
 ) -> tuple[Cut | Failure, int]:
     """The verdict on a candidate that is the whole input, and the offset of the byte that gave it.
 
     The end of the input gives it where no byte does. With `shares_start` the end of the frame
     before, which is not in `data`, is the candidate's start.
     """
-    candidate = Candidate(sender, shares_start=shares_start)
+    candidate = Candidate(sender, shares_start=shares_start, told=told)
     for offset, byte in enumerate(data):
         verdict = candidate.push(byte)
         if verdict is not None:

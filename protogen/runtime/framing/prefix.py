@@ -110,7 +110,7 @@ class Prefix:
     def _telling_bits(self) -> bytes:
         """Bits of a head that tell the payload's size, or may show that it is none."""
         layout = self._sender.layout
-        told: tuple[Part, ...] = layout.identity
+        told: tuple[Part, ...] = layout.sent_identity
         if layout.length is not None:
             told = (*layout.lengths, *(told if layout.spec.rescans else ()))
         parts = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from protogen.runtime.errors import DecodeError, PayloadFault
 from protogen.runtime.events import FrameEvent, frame_event
@@ -12,16 +12,18 @@ from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
 
 
 def read_frame(
-    senders: Sequence[SenderSpec[MessageT_co, PartsT_co]], data: bytes
+    senders: Sequence[SenderSpec[MessageT_co, PartsT_co]], data: bytes, told: Mapping[str, int]
 ) -> FrameEvent[MessageT_co, PartsT_co]:
     """The event of the frame that `data` is, in the first form that it has.
+
+    `told` has the values of identity parts that are not sent; the others have their defaults.
 
     Raises DecodeError, at the byte that proves it; of several forms that of which most is there.
     """
     found: DecodeError | None = None
     for sender in senders:
         try:
-            return _read_as(sender, data)
+            return _read_as(sender, data, told)
         except DecodeError as error:
             if found is None or error.offset > found.offset:
                 found = error
@@ -30,15 +32,15 @@ def read_frame(
 
 
 def _read_as(
-    sender: SenderSpec[MessageT_co, PartsT_co], data: bytes
+    sender: SenderSpec[MessageT_co, PartsT_co], data: bytes, told: Mapping[str, int]
 ) -> FrameEvent[MessageT_co, PartsT_co]:
     if not may_start(sender.layout, data):
         raise DecodeError("noise", "no frame starts so")
-    cut = _cut(sender, data)
+    cut = _cut(sender, data, told)
     try:
         message = sender.read(cut.numbers, cut.payload)
     except PayloadFault as error:
-        offset = _wire_offset(sender, data, min(error.offset, len(cut.payload)))
+        offset = _wire_offset(sender, data, told, min(error.offset, len(cut.payload)))
         raise DecodeError(error.reason, error.problem, offset=offset, path=error.path) from None
     return frame_event(sender, cut, message, data, 0)
 
@@ -48,9 +50,9 @@ def may_start(layout: Layout, data: bytes) -> bool:
     return not layout.start_words or data.startswith(layout.start_words)
 
 
-def _cut(sender: SenderSpec[MessageT_co, PartsT_co], data: bytes) -> Cut:
+def _cut(sender: SenderSpec[MessageT_co, PartsT_co], data: bytes, told: Mapping[str, int]) -> Cut:
     """The only frame in `data`."""
-    verdict, offset = verdict_on(sender, data)
+    verdict, offset = verdict_on(sender, data, told=told)
     if isinstance(verdict, Failure):
         raise DecodeError(verdict.reason, verdict.problem, offset=offset)
     if verdict.size < len(data):
@@ -59,9 +61,11 @@ def _cut(sender: SenderSpec[MessageT_co, PartsT_co], data: bytes) -> Cut:
     return verdict
 
 
-def _wire_offset(sender: SenderSpec[MessageT_co, PartsT_co], data: bytes, offset: int) -> int:
+def _wire_offset(
+    sender: SenderSpec[MessageT_co, PartsT_co], data: bytes, told: Mapping[str, int], offset: int
+) -> int:
     """Place of a byte of the payload in the frame, stuffing included."""
-    candidate = Candidate(sender)
+    candidate = Candidate(sender, told=told)
     for place, byte in enumerate(data):
         candidate.push(byte)
         if candidate.content_size > sender.layout.head_size + offset:

@@ -12,6 +12,7 @@ from protogen.runtime.framing.frame import (
     FrameSpec,
     IdentityPart,
     PayloadPart,
+    ToldPart,
     VirtualPart,
 )
 from protogen.runtime.framing.layout import Layout
@@ -214,6 +215,10 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         group = self.group(self.identity(numbers))
         return None if group is None else group.read(payload)
 
+    def told_among(self, numbers: Sequence[int]) -> dict[str, int]:
+        """The values of the identity parts that are not sent, which come first in an event."""
+        return {part.name: value for part, value in zip(self.frame.told, numbers, strict=False)}
+
     def show(self, numbers: Sequence[int]) -> PartsT_co:
         """The parts that an event shows, of their numbers."""
         texts = self.layout.texts
@@ -244,7 +249,7 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         return next((message for message in every if name == message.NAME), None)
 
 
-def _one_of(message: type[Message], index: int, part: IdentityPart, value: Any) -> int:
+def _one_of(message: type[Message], index: int, part: IdentityPart | ToldPart, value: Any) -> int:
     """A value of an identity part that the message can have. Raises EncodeError."""
     try:
         number = given_number(part.number, value)
@@ -258,7 +263,7 @@ def _one_of(message: type[Message], index: int, part: IdentityPart, value: Any) 
     raise EncodeError(part.name, f"{value!r} is not {message.NAME}, whose {part.name} is {shown}")
 
 
-def _shown(part: IdentityPart, runs: Runs) -> str:
+def _shown(part: IdentityPart | ToldPart, runs: Runs) -> str:
     """Values of an identity part, in words."""
 
     def word(value: int) -> str:

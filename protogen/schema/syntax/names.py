@@ -48,6 +48,10 @@ class Member(msgspec.Struct, frozen=True):
     """Mark of a field of the elements of the array whose key holds the mapping around it."""
 
 
+class NumberPath(msgspec.Struct, frozen=True):
+    """Mark of values that are MESSAGE.FIELD, or a part of some frame."""
+
+
 class FieldPath(msgspec.Struct, frozen=True):
     """Mark of keys that are MESSAGE.FIELD, or a declared type."""
 
@@ -60,7 +64,7 @@ class BySender(msgspec.Struct, frozen=True):
     """Mark of a mapping from endpoints to what may also stand there once, for all of them."""
 
 
-Mark = Ref | Formula | Member | FieldPath | FieldValues | BySender
+Mark = Ref | Formula | Member | NumberPath | FieldPath | FieldValues | BySender
 
 EndpointName = Annotated[Name, Ref(Kind.ENDPOINT, missing="PG108")]
 """An endpoint."""

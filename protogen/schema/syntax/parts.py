@@ -29,7 +29,7 @@ from protogen.schema.syntax.base import (
     written_as,
 )
 from protogen.schema.syntax.digits import CharacterCode, FixedDigitsName, Positive
-from protogen.schema.syntax.names import Kind, PartName, Ref
+from protogen.schema.syntax.names import Kind, NumberPath, PartName, Ref
 from protogen.schema.syntax.octets import Octets, OctetsForm, at_most
 
 ByteOrder = Literal["little", "big"]
@@ -56,6 +56,25 @@ PartRun = Annotated[
     ),
 ]
 """Some parts of the frame: one name, a run `first..last`, or a list of names."""
+
+
+NumberName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*(\.[a-z][a-z0-9_]*)?$"), NumberPath()]
+"""MESSAGE.FIELD, or a part of some frame."""
+
+
+def _to_names(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list | tuple) else (value,)
+
+
+NumberNames = Annotated[
+    tuple[NumberName, ...],
+    BeforeValidator(
+        _to_names,
+        json_schema_input_type=NumberName | Annotated[list[NumberName], Field(min_length=1)],
+    ),
+    Field(min_length=1),
+]
+"""One of these, or a list of them."""
 
 
 class CrcParameters(Syntax):
@@ -270,6 +289,19 @@ class Part(Syntax):
         description="The part goes into the checksums that cover it and is not sent; each message "
         "gives its value under `parts`, unless the part has a default.",
     )
+    told: OnlyTrue | None = Field(
+        None,
+        description="The part tells which message this is, and is not sent: a receiver is told it, "
+        "as it is told what was asked where an answer does not say so.",
+    )
+    set_by: NumberNames | None = Field(
+        None,
+        description="What tells it in frames that a receiver takes: a part of frames, or "
+        "MESSAGE.FIELD; or several of these.",
+    )
+    once: OnlyTrue | None = Field(
+        None, description="What was told holds for one frame, and then the default does again."
+    )
     counts: PartRun | None = Field(
         None,
         description="The part is the length in bytes of these parts, unstuffed unless it says "
@@ -311,7 +343,7 @@ class Part(Syntax):
     default: PartValue | None = Field(
         None,
         description="What an encoder writes where the caller gives no value; of a virtual part, "
-        "the value of messages that give none.",
+        "the value of messages that give none; of one that is told, what there is before.",
     )
     idle: SilenceText | None = Field(
         None,
@@ -320,6 +352,11 @@ class Part(Syntax):
     byte_order: ByteOrder | None = Field(None, description="Byte order of this part.")
     doc: Text | None = Field(None, description="What the part means.")
     source: SourceRef | None = Field(None, description="Where the part is written down.")
+
+    @property
+    def is_sent(self) -> bool:
+        """True if the part has bytes on the wire."""
+        return not (self.virtual or self.told)
 
 
 class XorTransform(Syntax):

@@ -19,6 +19,7 @@ from protogen.model.parts import (
     NumberPart,
     Part,
     PayloadPart,
+    ToldPart,
     TypedPart,
     ValuePart,
 )
@@ -74,6 +75,20 @@ def mirror(item: MirrorBits) -> str:
     """Bits that follow from another number."""
     flips = f"0x{item.flips:02X}" if item.inverted else None
     return call("_rt.MirrorBits", text(item.name), number(item), text(item.of.name), flips=flips)
+
+
+def told_part(item: ToldPart) -> str:
+    """One identity part that is not sent."""
+    set_by = tuple_of(
+        tuple_of((text(it.message or it.name), text(it.name if it.message else "")))
+        for it in item.set_by
+    )
+    given = {
+        "default": str(item.default) if item.default else None,
+        "once": "True" if item.once else None,
+        "set_by": set_by if item.set_by else None,
+    }
+    return call("_rt.ToldPart", text(item.name), number(item), **given)
 
 
 def virtual_part(plan: VirtualPlan) -> str:

@@ -93,6 +93,8 @@ class Module(msgspec.Struct, frozen=True):
     decode_stub: str
     """Of the overload of `decode` for any sender."""
     decode_head: str
+    is_told: bool
+    """True if receivers are told identities that are not sent."""
 
 
 def view(protocol: Protocol) -> Module:
@@ -131,8 +133,9 @@ def view(protocol: Protocol) -> Module:
         formats=_formats(senders),
         registry=_registry(protocol, names),
         decoder_heads=_decoder_heads(endpoints, any_message, any_parts),
-        decode_stub=_decode_head(_ANY_SENDER, any_message, after=5),
-        decode_head=_decode_head(_ANY_SENDER, any_message, after=1),
+        decode_stub=_decode_head(protocol, _ANY_SENDER, any_message, after=5),
+        decode_head=_decode_head(protocol, _ANY_SENDER, any_message, after=1),
+        is_told=protocol.is_told,
     )
 
 
@@ -295,7 +298,9 @@ def _endpoints(
                 union=messages,
                 union_text=union(f"{messages} = ", union_text, 0),
                 parts=one_of(parts[sender.name].name for sender in forms),
-                decode_head=_decode_head(f"_typing.Literal[{text(name)}]", messages, after=5),
+                decode_head=_decode_head(
+                    protocol, f"_typing.Literal[{text(name)}]", messages, after=5
+                ),
             )
         )
     return tuple(views)
@@ -313,8 +318,10 @@ def _decoder_heads(
     )
 
 
-def _decode_head(name: str, message: str, after: int) -> str:
+def _decode_head(protocol: Protocol, name: str, message: str, after: int) -> str:
     parameters = f"frame: _rt.BytesLike, sender: {name}, {_ENGINE}"
+    if protocol.is_told:
+        parameters = f"{parameters}, told: dict[str, int] | None = None"
     return method("def decode(", parameters, f") -> {message}", 0, after)
 
 
@@ -361,6 +368,7 @@ def _frame(sender: Sender) -> str:
         ambiguous_cut="True" if framing.cut_ambiguous else None,
         is_bounded="True" if sender.frame.limit is not None else None,
         virtual=_unless(tuple_of(map(frames.virtual_part, sender.plan.virtual)), "()"),
+        told=_unless(tuple_of(map(frames.told_part, sender.frame.told)), "()"),
         silence=frames.silence(sender.frame.silence),
     )
     return wrapped(expression, _INDENT + len("return "), _INDENT, after=0)

@@ -115,7 +115,7 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
     @property
     def shows_tail(self) -> bool:
         """True if events show a part from behind the payload."""
-        return any(not part.placed.in_head for part in self.parts)
+        return any(not part.in_head for part in self.parts)
 
     # --- messages ---------------------------------------------------------------------------------
 

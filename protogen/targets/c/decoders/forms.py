@@ -13,6 +13,7 @@ from itertools import groupby
 import msgspec
 from msgspec.structs import astuple
 
+from protogen.c_language.numbers import unsigned_type
 from protogen.model.frame_plan import StartRule
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.candidate import Candidate
@@ -20,6 +21,7 @@ from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.members import POINTERS, SMALL_POINTER, Member, candidate_members
 from protogen.targets.c.decoders.named import NamedDecoder
 from protogen.targets.c.decoders.push import PushDecoder
+from protogen.targets.c.frame.numbers import ToldView
 from protogen.targets.c.options import Events
 from protogen.targets.c.spelling import Names
 
@@ -68,6 +70,16 @@ class _Search(PushDecoder, frozen=True, dict=True):
         return False
 
 
+class FormsTold(msgspec.Struct, frozen=True):
+    """An identity that is not sent, of all forms that have a part of its name."""
+
+    name: str
+    member: str
+    type: str
+    kept: tuple[tuple[str, ToldView], ...]
+    """The candidate of each of these forms, as a member of the decoder, and its part."""
+
+
 class FormsDecoder(NamedDecoder, frozen=True, dict=True):
     """Everything that the templates print of a decoder for all forms, named as the endpoint."""
 
@@ -99,6 +111,25 @@ class FormsDecoder(NamedDecoder, frozen=True, dict=True):
     def buffer_size(self) -> int:
         """Bytes of the buffer."""
         return max(item.buffer_size for item in self._each)
+
+    # --- what it is told --------------------------------------------------------------------------
+
+    @cached_property
+    def told(self) -> tuple[FormsTold, ...]:
+        """The identities that are not sent."""
+        kept: dict[str, list[tuple[str, ToldView]]] = {}
+        for form in self.forms:
+            for view in form.candidate.told_parts:
+                kept.setdefault(view.member, []).append((form.field, view))
+        return tuple(
+            FormsTold(item[0][1].name, member, _widest(item), tuple(item))
+            for member, item in kept.items()
+        )
+
+    def told_once(self, form: Form) -> tuple[FormsTold, ...]:
+        """What was told of a frame of this form, and holds no more behind it."""
+        names = [view.member for view in form.candidate.told_parts if view.part.once]
+        return tuple(item for item in self.told if item.member in names)
 
     # --- the search -------------------------------------------------------------------------------
 
@@ -170,6 +201,11 @@ def forms_decoders(
         if len(forms) > 1:
             found.append(FormsDecoder(names, endpoint, forms, events))
     return tuple(found)
+
+
+def _widest(kept: Sequence[tuple[str, ToldView]]) -> str:
+    """The type that holds what is told of all these parts."""
+    return unsigned_type(max(view.part.type.bits for _, view in kept))
 
 
 def _form(names: Names, sender: Sender, view: DecoderView) -> Form:

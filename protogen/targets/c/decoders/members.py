@@ -12,7 +12,7 @@ POINTERS = 2
 """The handler and what it is given."""
 SMALL_POINTER = 2
 """Bytes of a pointer on a small target, which aligns nothing."""
-_SIZES = {"uint8_t": 1, "uint16_t": 2, "uint32_t": 4}
+_SIZES = {"uint8_t": 1, "uint16_t": 2, "uint32_t": 4, "uint64_t": 8}
 
 
 class Member(msgspec.Struct, frozen=True):
@@ -91,6 +91,9 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
         *(Member(view.counter, name, about) for is_there, name, about in counters if is_there),
         *(Member("uint8_t", name, about) for is_there, name, about in states if is_there),
     ]
+    for part in view.told_parts:
+        found.append(Member(part.type, part.kept, f"What was told of {part.name}."))
+        found.append(Member(part.type, part.own, "The same of the candidate."))
     if view.all_events:
         offset = "Offset of the first byte that is in no event yet."
         found.insert(0, Member("uint32_t", "offset", offset))

@@ -81,12 +81,17 @@ class PushDecoder(PushStates, frozen=True, dict=True):
     @property
     def finds_size_early(self) -> bool:
         """True if the size is looked up as soon as the identity is there."""
-        return self._finds_size and self.plan.identity_is_early
+        return self._finds_size and self.plan.identity_is_early and not self.plan.is_told_alone
 
     @property
     def finds_size_at_once(self) -> bool:
         """True if the size is known before the first byte, or how it will be."""
         return self._finds_size and not self.identified
+
+    @property
+    def finds_size_with_first(self) -> bool:
+        """True if the size is known with the first byte, when what was told is taken."""
+        return self._finds_size and self.plan.is_told_alone
 
     @property
     def _finds_size(self) -> bool:

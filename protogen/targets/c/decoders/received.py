@@ -26,9 +26,11 @@ from protogen.targets.c.frame.numbers import (
     LiteralView,
     NumberView,
     PartView,
+    ToldView,
     length_of,
     literals_of,
     numbers_of,
+    told_of,
 )
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.stuffing import Node, Stuffing, StuffingKind, stuffing_of
@@ -262,10 +264,16 @@ class ReceivedFrame(NamedDecoder, frozen=True, dict=True):
         return length_of(self.plan)
 
     @cached_property
-    def parts(self) -> tuple[PartView, ...]:
+    def told_parts(self) -> tuple[ToldView, ...]:
+        """The identity parts that the decoder is told."""
+        return told_of(self.plan, self.names)
+
+    @cached_property
+    def parts(self) -> tuple[ToldView | PartView, ...]:
         """The parts that events show."""
         member = self.names.member
-        return tuple(PartView(item, member(item.name), self.numbers) for item in self.plan.shown)
+        sent = (PartView(item, member(item.name), self.numbers) for item in self.plan.shown)
+        return (*self.told_parts, *sent)
 
     @cached_property
     def checksums(self) -> tuple[ChecksumView, ...]:
@@ -315,7 +323,7 @@ class ReceivedFrame(NamedDecoder, frozen=True, dict=True):
 
     def key_in_content(self, payload: str) -> str:
         """The identity as it stands in `content` or `tail`, with a payload of that size."""
-        names = {part.placed.name: part.value(payload) for part in self.parts}
+        names = {part.name: part.value(payload) for part in self.parts}
         return key_from(self.plan, names)
 
     def told(self, key: str) -> str:
@@ -374,8 +382,9 @@ class ReceivedFrame(NamedDecoder, frozen=True, dict=True):
         """True if a start of one byte is the whole identity, and tells the payload's size."""
         first = self.plan.head[0].part if self.plan.head else None
         is_raw = isinstance(first, NumberPart | BitsPart) and first.type.text is None
-        is_told = any(n.identifies and n.last == 0 for n in self.head_numbers)
-        return self.plan.start is StartRule.SET and is_told and is_raw
+        is_first = any(n.identifies and n.last == 0 for n in self.head_numbers)
+        is_all = is_first and not self.told_parts
+        return self.plan.start is StartRule.SET and is_all and is_raw
 
     @property
     def identity_is_bits(self) -> bool:

@@ -23,12 +23,13 @@ def decoder_style(frame: ReceivedFrame) -> DecoderStyle:
 
     A flat decoder is for frames that begin with a protected start and tell their size in their
     head, where nobody asks what was wrong: a byte of a start is always one, and what does not fit
-    is given up.
+    is given up. Nothing of their identity is told.
     """
     is_flat = (
         not frame.all_events
         and frame.plan.store is Store.CONTENT
         and not frame.plan.is_cut_off
+        and not frame.told_parts
         and _delimiters_are_seen(frame)
         and frame.simple
         and frame.known_from > 0

@@ -81,6 +81,7 @@ def whole_frames(decoder: ReceivedFrame) -> WholeFrames | None:
         and d.plan.start in (StartRule.LITERAL, StartRule.SET)
         and not d.plan.ends_idle
         and d.known_from > 0
+        and not d.told_parts
         and sizes_are_known
         and not d.plan.shares_delimiter
         and not d.optional_size

@@ -121,8 +121,8 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
 
     @cached_property
     def identity(self) -> tuple[Argument, ...]:
-        """The identity parts."""
-        return tuple(_argument(part, self._names) for part in self.plan.identity)
+        """The identity parts that are sent."""
+        return tuple(_argument(part, self._names) for part in self.plan.sent_identity)
 
     @cached_property
     def arguments(self) -> tuple[Argument, ...]:

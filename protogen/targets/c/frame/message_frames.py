@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 
 import msgspec
 
 from protogen.c_language.numbers import hexadecimal
 from protogen.model.messages import Message
+from protogen.model.parts import IdentityPart
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.frames import Argument, FrameView, one_of
@@ -68,19 +70,22 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
             argument.name
             if self.message.chooses(index)
             else hexadecimal(self.message.identity[index], 2 * -(-part.type.bits // 8))
-            for index, (part, argument) in enumerate(
-                zip(self.decoder.plan.identity, self.frame.identity, strict=True)
-            )
+            for index, part, argument in self._sent_identity
         )
+
+    @property
+    def _sent_identity(self) -> Iterator[tuple[int, IdentityPart, Argument]]:
+        """The identity parts that are sent, with their places among all and their arguments."""
+        plan = self.decoder.plan
+        for part, argument in zip(plan.sent_identity, self.frame.identity, strict=True):
+            yield plan.identity.index(part), part, argument
 
     @cached_property
     def arguments(self) -> tuple[Argument, ...]:
         """The parts that the caller gives: those of several identities first."""
         chosen = (
             one_of(argument, part, self.message.told_by.runs[index])
-            for index, (part, argument) in enumerate(
-                zip(self.decoder.plan.identity, self.frame.identity, strict=True)
-            )
+            for index, part, argument in self._sent_identity
             if self.message.chooses(index)
         )
         return (*chosen, *self.frame.arguments)

@@ -12,15 +12,16 @@ from protogen.model.frame_plan import FramePlan, StartRule
 from protogen.model.parts import (
     BitsPart,
     ChoicePart,
-    IdentityPart,
     LiteralPart,
     MirrorBits,
     NumberPart,
+    ToldPart,
 )
 from protogen.model.types import Integer
 from protogen.targets.c.frame.expressions import byte, less_absent
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of
+from protogen.targets.c.spelling import Names
 
 _WIDE = 16
 """Bits of the smallest type in which C adds numbers."""
@@ -84,6 +85,16 @@ class PartView(msgspec.Struct, frozen=True):
         return self.placed.part
 
     @property
+    def name(self) -> str:
+        """Name of the part."""
+        return self.placed.name
+
+    @property
+    def in_head(self) -> bool:
+        """True if it stands in front of the payload."""
+        return self.placed.in_head
+
+    @property
     def type(self) -> str:
         """Type of its value."""
         return unsigned_type(self.part.type.bits)
@@ -98,6 +109,59 @@ class PartView(msgspec.Struct, frozen=True):
         at = "content" if self.placed.in_head else "tail"
         less = less_absent(self.placed.place, payload)
         return self.numbers.shown(self.part.type, at, self.placed.offset, less)
+
+
+class ToldView(msgspec.Struct, frozen=True):
+    """An identity that is not sent, which events show as a decoder was told it."""
+
+    part: ToldPart
+    member: str
+    """The member for it among an event's parts."""
+
+    in_head = True
+
+    @property
+    def name(self) -> str:
+        """Name of the part."""
+        return self.part.name
+
+    @property
+    def type(self) -> str:
+        """Type of its value."""
+        return unsigned_type(self.part.type.bits)
+
+    @property
+    def comment(self) -> str:
+        """What is said of it."""
+        return "Not sent: as the decoder was told it."
+
+    @property
+    def kept(self) -> str:
+        """The member of a decoder that keeps what it was told."""
+        return f"told_{self.member}"
+
+    @property
+    def own(self) -> str:
+        """The member that keeps what it was told when the candidate began."""
+        return f"own_{self.member}"
+
+    @property
+    def flips(self) -> str:
+        """What the value is kept with, by an exclusive or, so that zeros are the default."""
+        return f" ^ {hexadecimal(self.part.default)}" if self.part.default else ""
+
+    def keeps(self, value: str) -> str:
+        """A value as it is kept."""
+        return f"({self.type})({value}{self.flips})" if self.flips else value
+
+    def value(self, payload: str) -> str:
+        """Its value; where the payload lies tells nothing of it."""
+        return self.keeps(f"decoder->{self.own}")
+
+
+def told_of(plan: FramePlan, names: Names) -> tuple[ToldView, ...]:
+    """The views of the identities that are not sent."""
+    return tuple(ToldView(part, names.member(part.name)) for part in plan.frame.told)
 
 
 def numbers_of(
@@ -166,7 +230,7 @@ def _number(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberVi
     less = less_absent(item.place, "decoder->payload")
     value = numbers.value(type_, "content", item.offset, less)
     starts = isinstance(part, ChoicePart) and item.in_head and item.end <= plan.start_size
-    is_last = isinstance(part, IdentityPart) and part is plan.identity[-1]
+    is_last = part in plan.sent_identity[-1:]
     return NumberView(
         last=item.end - 1,
         value=value,

@@ -14,11 +14,13 @@ from protogen.fuzzing.c_driver import (
     Driver,
 )
 from protogen.model.messages import given_parts
+from protogen.model.parts import NumberPart, ToldPart
 from protogen.model.protocol import Protocol
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.forms import FormsDecoder
 from protogen.targets.c.emit import Unit, emit, unit_of
 from protogen.targets.c.frame.handlers import Dispatch
+from protogen.targets.c.frame.message_frames import MessageFrame
 from protogen.targets.c.fuzz_driver.exchange import exchange_function
 from protogen.targets.c.options import COptions
 from protogen.targets.printing import environment
@@ -107,14 +109,18 @@ def _frames(unit: Unit, indices: Mapping[str, int]) -> tuple[DrivenFrame, ...]:
             # By their names in the schema; those of arguments may differ.
             tuple(
                 DrivenPart(part.name, argument.type, part)
-                for part, argument in zip(
-                    given_parts(item.frame.plan.frame, item.message), item.arguments, strict=True
-                )
+                for part, argument in zip(_given(item), item.arguments, strict=True)
             ),
             item.room,
         )
         for index, item in enumerate(unit.framing.messages)
     )
+
+
+def _given(item: MessageFrame) -> list[NumberPart]:
+    """The parts that the caller of a message's functions gives: those that are sent."""
+    parts = given_parts(item.frame.plan.frame, item.message)
+    return [part for part in parts if not isinstance(part, ToldPart)]
 
 
 def _frame_of(unit: Unit, frames: tuple[DrivenFrame, ...]) -> dict[tuple[str, str], DrivenFrame]:
@@ -135,14 +141,12 @@ def _decoder(
         decoder.prefix,
         decoder.all_events,
         decoder.flat is not None,
-        tuple(
-            DrivenPart(part.placed.name, part.type, part.part, part.member)
-            for part in decoder.parts
-        ),
+        tuple(DrivenPart(part.name, part.type, part.part, part.member) for part in decoder.parts),
         tuple(
             DrivenHandler(item.function, item.message.struct, indices[item.message.name])
             for item in dispatch.handlers
         ),
+        told=tuple((part.name, part.member, part.type) for part in decoder.told_parts),
     )
 
 
@@ -154,4 +158,5 @@ def _forms_decoder(
         DrivenForm(form.name, form.member, form.constant, indices[form.sender])
         for form in item.forms
     )
-    return DrivenDecoder(index, item.name, item.prefix, item.all_events, False, (), (), forms)
+    told = tuple((part.name, part.member, part.type) for part in item.told)
+    return DrivenDecoder(index, item.name, item.prefix, item.all_events, False, (), (), told, forms)

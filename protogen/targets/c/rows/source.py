@@ -11,7 +11,7 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.emit import Unit, c_environment, texts, unit_of
 from protogen.targets.c.frame.fill import Fill
-from protogen.targets.c.frame.numbers import PartView
+from protogen.targets.c.frame.numbers import PartView, ToldView
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.messages import MessageView
 
@@ -52,7 +52,7 @@ class _Spelling(msgspec.Struct, frozen=True):
 class _Part(msgspec.Struct, frozen=True):
     """A part of the frame as a row has it: a text as characters, not as a number."""
 
-    view: PartView
+    view: ToldView | PartView
 
     @property
     def declared(self) -> str:
@@ -85,7 +85,7 @@ class _Part(msgspec.Struct, frozen=True):
 
     @property
     def _name(self) -> str:
-        return f"part_{self.view.placed.name}"
+        return f"part_{self.view.name}"
 
     @property
     def _is_text(self) -> bool:
@@ -128,7 +128,7 @@ def rows_source(
     tables = tuple(
         _table(unit.module.message(name), table) for name, table in schema.messages.items()
     )
-    parts = {view.placed.name: _Part(view) for view in decoder.parts}
+    parts = {view.name: _Part(view) for view in decoder.parts}
     spellings = []
     if not sender.plan.has_one_spelling:
         spellings = _spellings(unit, list(schema.messages), parts)

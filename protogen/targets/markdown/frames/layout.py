@@ -15,7 +15,7 @@ import msgspec
 
 from protogen.copying import replace
 from protogen.model.frame import Frame
-from protogen.model.parts import LengthPart, Part, PayloadPart, VirtualPart, varying_bits
+from protogen.model.parts import LengthPart, Part, PayloadPart, UnsentPart, varying_bits
 from protogen.model.sizes import SizeSet
 from protogen.model.transparency import FULL_GROUP, Base16, Cobs
 from protogen.targets.markdown.text.words import code, size_text, span
@@ -98,7 +98,7 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def size(self) -> str:
         """Number of these bytes, as tables show it."""
-        return "" if isinstance(self.part, VirtualPart) else size_text(self.sizes)
+        return "" if isinstance(self.part, UnsentPart) else size_text(self.sizes)
 
     @property
     def rows(self) -> Iterator[tuple[str, str, Part]]:
@@ -112,7 +112,7 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def place(self) -> str:
         """Place of these bytes in the frame."""
-        if isinstance(self.part, VirtualPart):
+        if isinstance(self.part, UnsentPart):
             return "not sent"
         if self.start is not None:
             return self._from_start(self.start)
@@ -142,7 +142,7 @@ def slots(frame: Frame, payload: SizeSet) -> tuple[Slot, ...]:
     present = [
         (part, sizes)
         for part, sizes in sized
-        if sizes.greatest > 0 or isinstance(part, PayloadPart | VirtualPart)
+        if sizes.greatest > 0 or isinstance(part, PayloadPart | UnsentPart)
     ]
     shown = [sizes.times(SizeSet.exactly(wire_scale(frame, part))) for part, sizes in present]
     starts = accumulate(shown, initial=_NOTHING)

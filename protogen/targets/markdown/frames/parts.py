@@ -22,6 +22,7 @@ from protogen.model.parts import (
     NumberPart,
     Part,
     PayloadPart,
+    ToldPart,
     TypedPart,
     ValuePart,
     VirtualPart,
@@ -154,6 +155,7 @@ def role(part: Part) -> str:
 
 _ROLE_WORDS: tuple[tuple[type[Part], str], ...] = (
     (LiteralPart, "Fixed."),
+    (ToldPart, "Identity, not sent."),
     (IdentityPart, "Identity."),
     (LengthPart, "Length."),
     (CounterPart, "Counter."),
@@ -255,8 +257,18 @@ def _jobs(part: NumberPart) -> tuple[str, ...]:
             return _choice_roles(part)
         case ValuePart():
             return ("The sender gives it.", _default(part))
+        case ToldPart():
+            return _told_jobs(part)
         case _:
             return ("Tells which message it is.",)
+
+
+def _told_jobs(part: ToldPart) -> tuple[str, ...]:
+    by = f"By {part_names([item.text for item in part.set_by])}." if part.set_by else ""
+    lasts = "What it is told holds for one frame." if part.once else ""
+    before = f"{raw_text(part.default, part.type)} before."
+    text = "Tells which message it is, and is not sent: a receiver is told it."
+    return (text, by, lasts, before)
 
 
 def _default(part: CounterPart | ValuePart) -> str:

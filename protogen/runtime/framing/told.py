@@ -1,0 +1,87 @@
+"""What a receiver is told of identities that are not sent: by its program, or by frames."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from protogen.runtime.attributes import attribute, schema_name
+from protogen.runtime.errors import EncodeError
+from protogen.runtime.framing.frame import ToldPart
+from protogen.runtime.framing.sender import SenderSpec
+from protogen.runtime.payload.message import Message
+from protogen.runtime.payload.number import given_number
+
+GivenIdentity = int | Sequence[int]
+"""A number, or those of frames that follow each other."""
+
+
+class Told:
+    """The values of a decoder's told parts, by their names.
+
+    A part that several forms of frame have has one value for all of them.
+    """
+
+    def __init__(self, senders: Sequence[SenderSpec[Any, Any]]) -> None:
+        self._parts: dict[str, ToldPart] = {
+            part.name: part for sender in senders for part in sender.frame.told
+        }
+        self.values: dict[str, int] = {name: part.default for name, part in self._parts.items()}
+        """What holds now."""
+        self._next: dict[str, list[int]] = {name: [] for name in self._parts}
+
+    def __bool__(self) -> bool:
+        return bool(self._parts)
+
+    def tell(self, name: str, given: GivenIdentity) -> None:
+        """Take a value, or those of the frames to come, one after another.
+
+        Raises ValueError where no part has the name, or the part can't hold it.
+        """
+        part = self._parts.get(schema_name(name))
+        if part is None:
+            known = ", ".join(self._parts) or "there is none"
+            raise ValueError(f"no part that is told is called {name!r}: {known}")
+        listed = given if isinstance(given, Sequence) else [given]
+        try:
+            values = [given_number(part.number, value) for value in listed]
+        except EncodeError as error:
+            raise ValueError(f"{name} {error.problem}") from None
+        wrong = [value for value in values if not 0 <= value < 1 << part.number.bits]
+        if wrong:
+            raise ValueError(f"{name} can't be {wrong[0]}: it has {part.number.bits} bits")
+        self._set(part, values)
+
+    def _set(self, part: ToldPart, values: Sequence[int]) -> None:
+        first, *others = values or [part.default]
+        self.values[part.name] = first
+        self._next[part.name] = others
+
+    def pass_frame(
+        self, sender: SenderSpec[Any, Any], numbers: Mapping[str, int], message: Message | None
+    ) -> None:
+        """Take a frame: what was told of it may hold no more, and it may tell something itself."""
+        for part in sender.frame.told:
+            following = self._next[part.name]
+            if following or part.once:
+                self._set(part, following)
+        self.hear(numbers, message)
+
+    def hear(self, numbers: Mapping[str, int], message: Message | None) -> None:
+        """Take the numbers of a frame, which may tell something of those behind it."""
+        for part in self._parts.values():
+            for values in _told_by(part, numbers, message):
+                self._set(part, values)
+
+
+def _told_by(
+    part: ToldPart, numbers: Mapping[str, int], message: Message | None
+) -> Iterator[list[int]]:
+    """The values that a frame tells of a part."""
+    for name, field in part.set_by:
+        if not field and name in numbers:
+            yield [numbers[name]]
+        elif field and message is not None and name == message.NAME:
+            value = getattr(message, attribute(field))
+            if value is not None:
+                yield [int(item) for item in value] if isinstance(value, Sequence) else [int(value)]
