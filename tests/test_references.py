@@ -30,6 +30,7 @@ frame:
     sync: {literal: 0xFF, unprotected: accepted}
     length: {type: uint8, counts: payload}
     number: {type: uint8, id: true}
+    asked: {type: uint8, told: true, set_by: [code, order.speed]}
     payload: {}
     extra: {type: uint8, virtual: true}
     sum: {type: uint8, algorithm: sum-8, covers: [length..number, payload], when: payload}

@@ -199,7 +199,8 @@ class Checksums:
     def _summed(self, written: Sequence[str], place: Loc) -> tuple[str, ...]:
         """The parts of a run that go into a sum; one that names another part is reported."""
         told = {name for name, item in self._syntax.items() if item.told}
-        for name in dict.fromkeys(name for name in written if name in told):
+        named = (name for item in written for name in item.split(".."))
+        for name in dict.fromkeys(name for name in named if name in told):
             text = f"`{name}` is told: it has no bytes on the wire, and a checksum sums up bytes"
             self._context.error("PG231", place, text, "name parts that are sent")
         found = written_out(self._context, self._names, written, place)

@@ -63,8 +63,10 @@ class _Telling:
             self._check_part(teller.name)
             return
         message = self._draft.messages.get(teller.message)
+        if message is None and teller.message in self._context.syntax.messages:
+            return  # Something else is wrong with it, which was said.
         if message is None:
-            known = self._draft.messages
+            known = self._context.syntax.messages
             text = f"there is no message called `{teller.message}`"
             self._report(text, hint_for(teller.message, known))
             return
@@ -72,12 +74,19 @@ class _Telling:
 
     def _check_part(self, name: str) -> None:
         named = [part for part in self._sent() if part.name == name]
+        if not named and name in self._written():
+            return
         if not named:
             text = f"no frame has a part called `{name}` that a receiver hands on"
             known = [part.name for part in self._sent()]
             self._report(text, hint_for(name, known) or "name an identity, a counter or a value")
         for part in named[:1]:
             self._check_bits(f"`{name}`", part.type)
+
+    def _written(self) -> set[str]:
+        """The parts of frames in which something else is wrong."""
+        frames = self._context.frames.items()
+        return {part for name, it in frames if name not in self._draft.frames for part in it.parts}
 
     def _sent(self) -> Iterator[IdentityPart | CounterPart | ValuePart]:
         for frame in self._draft.frames.values():

@@ -25,6 +25,7 @@ from protogen.problems.catalogue.switch_cases import SWITCH_CASE_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
 from protogen.problems.catalogue.trimming import TRIMMING_CODES
+from protogen.problems.catalogue.told_parts import TOLD_PART_CODES
 from protogen.problems.catalogue.virtual_parts import VIRTUAL_PART_CODES
 from protogen.problems.catalogue.wire_counts import WIRE_COUNT_CODES
 
@@ -36,6 +37,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *TERMINATOR_CODES,
     *LAST_ELEMENT_CODES,
     *VIRTUAL_PART_CODES,
+    *TOLD_PART_CODES,
     *SILENCE_CODES,
     *SIZED_ARRAY_CODES,
     *SWITCH_CASE_CODES,
