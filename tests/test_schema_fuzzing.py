@@ -238,6 +238,8 @@ def _check_stream(
     single = [bytes((byte,)) for byte in stream.data]
     for cut in (data.draw(portions(stream.data)), single):
         assert _shown(codec.events_of(module, sender, cut)) == _shown(events)
+    if sender.frame.told:
+        return  # Nobody said what these frames are.
     is_idle = sender.frame.silence is not None
     assert not lost(sender.framing, stream, events, is_idle=is_idle), events
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
@@ -16,7 +16,7 @@ from protogen.runtime.api import EncodeError
 from protogen.runtime.attributes import arguments, attribute
 from protogen.runtime.constructs import PayloadError, Whole
 from schema_fuzzing.reference import frame_bytes, payload_bytes
-from schema_fuzzing.values import all_parts
+from schema_fuzzing.values import all_parts, told_parts
 
 
 def check_payload(module: ModuleType, message: Message, values: dict[str, Any]) -> Any:
@@ -117,20 +117,27 @@ def check_decoded(
     shown: dict[str, int | str],
 ) -> None:
     """frame -> message, as one event and by `decode`."""
-    (event,) = events_of(module, sender, [frame])
+    told = told_parts(sender, message, shown)
+    (event,) = events_of(module, sender, [frame], told=told)
     assert event.kind == "message", event
     assert (event.offset, event.raw, event.message) == (0, frame, made)
     assert {name: getattr(event.parts, attribute(name)) for name in shown} == shown
-    assert module.decode(frame, sender.name) == made
-    assert module.decode(frame, sender.name, engine="construct") == made
+    given = {"told": told} if told else {}
+    assert module.decode(frame, sender.name, **given) == made
+    assert module.decode(frame, sender.name, engine="construct", **given) == made
     assert event.payload == made.to_payload()
 
 
 def events_of(
-    module: ModuleType, sender: Sender, data: Iterable[bytes], engine: str = "fast"
+    module: ModuleType,
+    sender: Sender,
+    data: Iterable[bytes],
+    engine: str = "fast",
+    told: Mapping[str, int] | None = None,
 ) -> list[Any]:
-    """The events of portions of a stream, with its end."""
+    """The events of portions of a stream, with its end; what is told is so in front of it."""
     decoder = module.Decoder(sender.name, engine)
+    decoder.tell(**arguments(told or {}))
     events: list[Any] = []
     for portion in data:
         events += decoder.feed(portion)

@@ -319,7 +319,9 @@ class Maker:
 
     def _small_bounds(self, type_: PartType) -> tuple[int, int]:
         least = self._draw(st.integers(0, type_.greatest // 2))
-        return least, self._draw(st.integers(min(least + 6, type_.greatest), type_.greatest - 1))
+        return least, self._draw(
+            st.integers(min(least + 6, type_.greatest - 1), type_.greatest - 1)
+        )
 
     # -- checksums ---------------------------------------------------------------------------
 

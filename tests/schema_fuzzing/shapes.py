@@ -35,7 +35,7 @@ COMMON = (
     "part that complements", "part that follows from a length", "several lengths",
     "several identities", "overload by size", "overload by undecidable", "unspecified payload",
     "empty message",
-    "separated fields", "separated fields, one in front", "virtual part",
+    "separated fields", "separated fields, one in front", "virtual part", "told part",
     "type: ascii", "type: bytes", "type: bool", "type: byte", "type: char", "type: float32",
     "type: float64", "type: decimal", "type: hexadecimal", "type: struct", "type: switch",
     "declared struct", "declared number",
@@ -71,6 +71,10 @@ def shapes_of(
     """Shapes that occur, each at least once."""
     yield f"{byte_bits} bits a byte"
     yield "one frame for all" if "" in frames else f"frames of {len(frames)} senders"
+    written = data["frame"]
+    for parts in [written] if "payload" in written else written.values():
+        if any("told" in part for part in parts.values()):
+            yield "told part"
     order = data.get("byte_order")
     yield f"byte order: {'each sender' if isinstance(order, dict) else order}"
     for frame in frames.values():

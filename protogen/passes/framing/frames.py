@@ -55,7 +55,7 @@ _ROLES: dict[str, frozenset[str]] = {
     "bits": frozenset({"type", "byte_order", "bits", "size", "unprotected"}),
     **{key: frozenset({"type", "byte_order", "size", key}) for key in MIRRORS},
     "virtual": _TYPE | {"virtual", "size", "default"},
-    "told": frozenset({"type", "byte_order", "told", "default", "set_by", "once"}),
+    "told": frozenset({"type", "told", "default", "set_by", "once"}),
     "literal": frozenset({"literal", "unprotected", "type"}),
     "id": _NUMBER | {"id", "size"},
     "counts": _NUMBER | {"counts", "over"},
@@ -304,6 +304,8 @@ class FrameBuilder:
             return None
         if is_written(item):
             return digits_type(self._context, (*self._loc, name), item, found)
+        if item.told:
+            return found  # It has no bytes.
         if item.algorithm is None and found.bits < found.byte_bits:
             text = f"a part takes whole bytes, and `{item.type}` is less than one"
             hint = f"make it `uint{found.byte_bits}`"

@@ -24,8 +24,8 @@ from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
 from protogen.problems.catalogue.switch_cases import SWITCH_CASE_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
-from protogen.problems.catalogue.trimming import TRIMMING_CODES
 from protogen.problems.catalogue.told_parts import TOLD_PART_CODES
+from protogen.problems.catalogue.trimming import TRIMMING_CODES
 from protogen.problems.catalogue.virtual_parts import VIRTUAL_PART_CODES
 from protogen.problems.catalogue.wire_counts import WIRE_COUNT_CODES
 

@@ -32,9 +32,9 @@ TOLD_PART_CODES: tuple[Code, ...] = (
         "A number that can't tell what frames are",
         """\
 What an identity with `told: true` is, a receiver learns from its program, or from frames that it
-takes: `set_by` names a part of frames that receivers hand on (an identity, a counter or a value), or
-MESSAGE.FIELD, a field that is an unsigned integer or an array of such. The part has to have room for
-all of its values.
+takes. `set_by` names a part of frames that receivers hand on (an identity, a counter or a value),
+or MESSAGE.FIELD, a field that is an unsigned integer or an array of such. The part has to have room
+for all of its values.
 """,
         _framed(", set_by: name.name"),
         _framed(", set_by: speed.speed").replace("type: uint8, told", "type: uint16, told"),

@@ -103,9 +103,7 @@ class Layout:
     @cached_property
     def shown(self) -> tuple[str, ...]:
         """The names of the parts that events show."""
-        apart = written_apart(self.parts)
-        sent = (part.name for part in apart if isinstance(part, IdentityPart | ValuePart))
-        return (*(part.name for part in self.spec.told), *sent)
+        return tuple(part.name for part in self._shown)
 
     def numbers_of(self, parts: Any) -> dict[str, int]:
         """The numbers of an event's parts, but for texts."""
@@ -147,13 +145,17 @@ class Layout:
     @cached_property
     def texts(self) -> tuple[tuple[int, Characters], ...]:
         """The parts that events show as texts, by their places among all that they show."""
-        apart = written_apart(self.parts)
-        shown = (part for part in apart if isinstance(part, IdentityPart | ValuePart))
         return tuple(
             (index, part.number)
-            for index, part in enumerate(shown)
+            for index, part in enumerate(self._shown)
             if isinstance(part.number, Characters)
         )
+
+    @cached_property
+    def _shown(self) -> tuple[ToldPart | IdentityPart | ValuePart, ...]:
+        apart = written_apart(self.parts)
+        sent = (part for part in apart if isinstance(part, IdentityPart | ValuePart))
+        return (*self.spec.told, *sent)
 
     def _empty_frame(self) -> bytes:
         if isinstance(self.spec.start, AfterEnd):

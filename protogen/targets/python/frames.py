@@ -88,7 +88,7 @@ def told_part(item: ToldPart) -> str:
         "once": "True" if item.once else None,
         "set_by": set_by if item.set_by else None,
     }
-    return call("_rt.ToldPart", text(item.name), number(item), **given)
+    return call("_rt.ToldPart", text(item.name), f"_rt.Number({item.type.bits})", **given)
 
 
 def virtual_part(plan: VirtualPlan) -> str:
