@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from itertools import islice
 from pathlib import Path
@@ -249,13 +249,13 @@ class ForgetsSign(Broken):
 
 
 class LosesFrames(Broken):
-    def events(self, sender: str, pieces: Sequence[bytes]) -> list[Seen]:
+    def events(self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]) -> list[Seen]:
         return []
 
 
 class MindsChunks(Broken):
-    def events(self, sender: str, pieces: Sequence[bytes]) -> list[Seen]:
-        return super().events(sender, pieces) if len(pieces) == 1 else []
+    def events(self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]) -> list[Seen]:
+        return super().events(sender, pieces, told) if len(pieces) == 1 else []
 
 
 class RefusesMuch(Broken):
@@ -275,8 +275,10 @@ class Crashes(Broken):
 
 def changes(**others: Any) -> type[Broken]:
     class Changes(Broken):
-        def events(self, sender: str, pieces: Sequence[bytes]) -> list[Seen]:
-            return [replace(seen, **others) for seen in super().events(sender, pieces)]
+        def events(
+            self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]
+        ) -> list[Seen]:
+            return [replace(seen, **others) for seen in super().events(sender, pieces, told)]
 
     return Changes
 
@@ -356,7 +358,9 @@ def test_an_engine_may_refuse_what_would_be_cut_elsewhere() -> None:
         def frame(self, sender: str, message: str, values: Values, parts: Values) -> bytes:
             raise Refused("payload: a decoder would end the frame elsewhere")
 
-        def events(self, sender: str, pieces: Sequence[bytes]) -> list[Seen]:
+        def events(
+            self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]
+        ) -> list[Seen]:
             return []
 
     protocol = compiled(CUT)

@@ -26,8 +26,10 @@ from protogen.model import (
     messages,
     numbers,
     origin,
+    parts,
     protocol,
     sizes,
+    transparency,
 )
 from protogen.model import types as model_types
 from protogen.model.messages import Message
@@ -66,8 +68,10 @@ _MODULES = (
     model_types,
     numbers,
     origin,
+    parts,
     protocol,
     sizes,
+    transparency,
 )
 
 
