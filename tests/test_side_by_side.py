@@ -45,11 +45,11 @@ def test_all_targets_print_what_each_prints_alone(begun: list[str]) -> None:
     targets = list(TARGETS.values())
     printed = module.emit_all(targets, protocols)
     assert printed == [target.emit(protocols) for target in targets]
-    assert begun == ["python", "c"]
+    assert begun == ["c"]
 
 
 def test_what_a_target_refuses_is_reported(begun: list[str]) -> None:
-    targets = [Refusing(), TARGETS["markdown"]]
+    targets = [TARGETS["markdown"], Refusing()]
     with pytest.raises(UserError, match="1 protocols are too many"):
         module.emit_all(targets, [protocol_of(SCHEMAS[0])])
     assert begun == ["refusing"]
