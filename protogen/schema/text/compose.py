@@ -9,7 +9,7 @@ inside of a text between brackets needs quotes, for one.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import msgspec
@@ -60,7 +60,7 @@ def compose(
     """
     composer = _Composer(text, file, problems)
     try:
-        composer.take(_events(text, loader))
+        composer.take(text, loader)
     except _GiveUpError:
         return None
     except yaml.MarkedYAMLError as error:
@@ -83,19 +83,6 @@ class _Anchored(msgspec.Struct, frozen=True):
     """Depth of mappings and lists inside each other in it."""
 
 
-def _events(text: str, loader: Loader) -> Iterator[Any]:
-    parser = loader(text)
-    try:
-        while (event := parser.get_event()) is not None:  # None is behind the stream's end.
-            yield event
-    except (ValueError, OverflowError) as error:
-        # The parser in Python takes any number for the code of a character.
-        problem = "found the escape of a character that does not exist"
-        raise yaml.MarkedYAMLError(problem=problem, problem_mark=parser.get_mark()) from error
-    finally:
-        parser.dispose()
-
-
 class _Composer:
     """Puts one document together, event by event."""
 
@@ -106,7 +93,10 @@ class _Composer:
         self._anchors: dict[str, _Anchored | None] = {}
         self._count = 0
         self._root: Node | None = None
-        self._handlers: dict[type, Callable[[Any], None]] = {
+
+    def take(self, text: str, loader: Loader) -> None:
+        """Take the events of a parser of the text."""
+        handlers: dict[type, Callable[[Any], None]] = {
             yaml.DocumentStartEvent: self._start_document,
             yaml.ScalarEvent: self._scalar,
             yaml.AliasEvent: self._alias,
@@ -115,14 +105,18 @@ class _Composer:
             yaml.MappingEndEvent: self._end,
             yaml.SequenceEndEvent: self._end,
         }
-
-    def take(self, events: Iterable[Any]) -> None:
-        """Take the events of the parser."""
-        handlers = self._handlers
-        for event in events:
-            handler = handlers.get(type(event))
-            if handler is not None:
-                handler(event)
+        parser = loader(text)
+        try:
+            while (event := parser.get_event()) is not None:  # None is behind the stream's end.
+                handler = handlers.get(type(event))
+                if handler is not None:
+                    handler(event)
+        except (ValueError, OverflowError) as error:
+            # The parser in Python takes any number for the code of a character.
+            problem = "found the escape of a character that does not exist"
+            raise yaml.MarkedYAMLError(problem=problem, problem_mark=parser.get_mark()) from error
+        finally:
+            parser.dispose()
 
     def finish(self) -> Node | None:
         """Return the root of the document, or None if there is no document or an empty one."""

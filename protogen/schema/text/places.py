@@ -62,8 +62,8 @@ class Places:
         start, end = event.start_mark, event.end_mark
         if event.style not in _BLOCK_STYLES:
             if event.anchor is None and event.tag is None:  # As nearly all, so in one step.
-                first, last = (start.line + 1, start.column + 1), (end.line + 1, end.column + 1)
-                return Span(self._file, *first, *last)
+                line, end_line = start.line + 1, end.line + 1
+                return Span(self._file, line, start.column + 1, end_line, end.column + 1)
             return self.span(self.begin(event), position_of(end))
         text = self._text[start.index : end.index].rstrip()
         return self.span(self.begin(event), end_of(text, position_of(start)))
