@@ -27,7 +27,7 @@ from protogen.passes.names.decisions import resolve_decisions
 from protogen.passes.names.distinct import check_distinct_names
 from protogen.passes.names.numbers import check_numbers
 from protogen.passes.names.reserved import resolve_reserved
-from protogen.passes.spec_hash import message_hash, spec_hash
+from protogen.passes.spec_hash import Hashes
 from protogen.passes.types.named_types import NamedTypes
 from protogen.passes.types.unused import check_unused
 
@@ -66,8 +66,9 @@ def resolve(context: Context) -> Protocol | None:
 
 def _assemble(context: Context, draft: Draft) -> Protocol:
     syntax = context.syntax
+    hashes = Hashes()
     messages = {
-        name: replace(message, spec_hash=message_hash(message))
+        name: replace(message, spec_hash=hashes.message(message))
         for name, message in draft.messages.items()
     }
     protocol = Protocol(
@@ -93,7 +94,7 @@ def _assemble(context: Context, draft: Draft) -> Protocol:
         reserved=draft.reserved,
         spec_hash="",
     )
-    return replace(protocol, spec_hash=spec_hash(protocol))
+    return replace(protocol, spec_hash=hashes.protocol(protocol))
 
 
 def _link(context: Context) -> Link:

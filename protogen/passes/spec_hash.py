@@ -41,16 +41,38 @@ _NAMED: tuple[type[Any], ...] = (Enum, Flags, Struct)
 """Types that count once; where they are used their names stand for them."""
 
 
-def spec_hash(protocol: Protocol) -> str:
-    """SHA-256 in hex of everything that changes bytes or what they mean."""
-    listed: list[Enum | Flags | Struct] = [*protocol.enums, *protocol.flags, *protocol.structs]
-    listed.sort(key=lambda item: item.name)
-    return _sha256(_BY_NAME.encode([_whole(protocol), *map(_whole, listed)]))
+class Hashes:
+    """Hashes of a protocol and of its messages.
 
+    What messages hold is in the hash of the protocol, too, but is looked at once.
+    """
 
-def message_hash(message: Message) -> str:
-    """SHA-256 in hex of a message: its identity, its layout and what its values mean."""
-    return _sha256(_IN_FULL.encode(message))
+    def __init__(self) -> None:
+        self._seen: dict[int, tuple[Any, Any]] = {}
+        """Values, by their addresses, with what stands for them in JSON."""
+        self._in_full = _encoder(self._plain)
+        self._by_name = _encoder(self._named)
+
+    def protocol(self, protocol: Protocol) -> str:
+        """SHA-256 in hex of everything that changes bytes or what they mean."""
+        listed: list[Enum | Flags | Struct] = [*protocol.enums, *protocol.flags, *protocol.structs]
+        listed.sort(key=lambda item: item.name)
+        return _sha256(self._by_name.encode([_whole(protocol), *map(self._plain, listed)]))
+
+    def message(self, message: Message) -> str:
+        """SHA-256 in hex of a message: its identity, its layout and what its values mean."""
+        return _sha256(self._in_full.encode(message))
+
+    def _named(self, value: Any) -> Any:
+        """What JSON does not have; a named type as its name."""
+        return value.name if isinstance(value, _NAMED) else self._plain(value)
+
+    def _plain(self, value: Any) -> Any:
+        """What JSON does not have; a named type as it is."""
+        known = self._seen.get(id(value))
+        if known is None:
+            known = self._seen[id(value)] = value, _plain(value)
+        return known[1]
 
 
 def _sha256(text: str) -> str:
@@ -98,11 +120,6 @@ def _getter(fields: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
     return lambda value: tuple(getattr(value, name) for name in fields)
 
 
-def _named(value: Any) -> Any:
-    """What JSON does not have; a named type as its name."""
-    return value.name if isinstance(value, _NAMED) else _plain(value)
-
-
 def _plain(value: Any) -> Any:
     """What JSON does not have: fractions, expressions, bytes, and data classes."""
     kind = type(value)
@@ -115,8 +132,3 @@ def _plain(value: Any) -> Any:
 def _encoder(plain: Callable[[Any], Any]) -> JSONEncoder:
     """An encoder of the model, which has no cycles; `plain` turns into JSON what is none."""
     return JSONEncoder(separators=(",", ":"), check_circular=False, default=plain)
-
-
-_IN_FULL = _encoder(_plain)
-_BY_NAME = _encoder(_named)
-"""Encoders in which named types stand as they are, and in which their names stand for them."""
