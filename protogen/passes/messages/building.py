@@ -35,8 +35,9 @@ def resolve_messages(context: Context, draft: Draft) -> None:
     """Fields, sizes and identity of each message whose senders all have a frame."""
     builder = FieldBuilder(context, draft.named)
     frames = {name: _frames_of(context, draft, name) for name in context.syntax.messages}
+    stated = {sender: payload_range(frame) for sender, frame in draft.frames.items()}
     begun = [
-        _Resolution(context, name, syntax, frames[name])
+        _Resolution(context, name, syntax, frames[name], stated)
         for name, syntax in context.syntax.messages.items()
         if frames[name]
     ]
@@ -77,14 +78,19 @@ class _Resolution:
     """One message on its way into the model."""
 
     def __init__(
-        self, context: Context, name: str, syntax: MessageSyntax, frames: Mapping[str, Frame]
+        self,
+        context: Context,
+        name: str,
+        syntax: MessageSyntax,
+        frames: Mapping[str, Frame],
+        stated: Mapping[str, SizeSet | None],
     ) -> None:
         self._context = context
         self._name = name
         self._syntax = syntax
         self._frames = frames
         """By sender."""
-        self._stated = [payload_range(frame) for frame in frames.values()]
+        self._stated = {sender: stated[sender] for sender in frames}
         """The payload sizes that each frame can carry."""
         self._loc: Loc = ("messages", name)
         self._fields: tuple[Field, ...] = ()
@@ -156,7 +162,7 @@ class _Resolution:
 
     def _capacity(self) -> int | None:
         """The greatest payload that one of the senders can send, where all frames bound it."""
-        bounds = [stated.greatest for stated in self._stated if stated is not None]
+        bounds = [stated.greatest for stated in self._stated.values() if stated is not None]
         return max(bounds) if len(bounds) == len(self._frames) else None
 
     def _unspecified(self) -> tuple[Field, ...]:
@@ -197,7 +203,7 @@ class _Resolution:
         """Leave the message to the other forms of frame where the length of one can't say it."""
         if self._context.syntax.forms is None:
             return
-        for sender, stated in zip(self._frames, self._stated, strict=True):
+        for sender, stated in self._stated.items():
             if stated is not None and not stated.meets(sizes):
                 draft.carried[sender] -= {self._name}
 
@@ -224,7 +230,7 @@ class _Resolution:
 
     def _sendable(self, sizes: SizeSet) -> SizeSet:
         """The sizes that some sender's length part can state; an encoder refuses the others."""
-        known = [stated for stated in self._stated if stated is not None]
+        known = [stated for stated in self._stated.values() if stated is not None]
         if len(known) < len(self._frames):
             return sizes
         low = min(allowed.least for allowed in known)
@@ -236,8 +242,8 @@ class _Resolution:
         Of several forms of frame, each size needs one.
         """
         written = self._context.frames
-        own = [frame for name, frame in self._frames.items() if written[name].endpoint == endpoint]
-        carried = [(frame, payload_range(frame)) for frame in own]
+        own = [name for name in self._frames if written[name].endpoint == endpoint]
+        carried = [(self._frames[name], self._stated[name]) for name in own]
         known = [(frame, sizes) for frame, sizes in carried if sizes is not None]
         if len(known) < len(own):
             return

@@ -8,24 +8,26 @@ from __future__ import annotations
 from typing import cast
 
 from protogen.passes.context import Context, Loc
-from protogen.passes.types.type_names import has_width, integer_width, is_builtin, type_hint
+from protogen.passes.types.type_names import COMMON_NAMES, integer_width, is_builtin, type_hint
 from protogen.problems import hint_for
 from protogen.schema.references import Reference, references
 from protogen.schema.scopes import keys_at
 from protogen.schema.syntax.names import Kind
 
+_BUILT_IN = frozenset(COMMON_NAMES)
+
 
 def check_references(context: Context) -> None:
     """Report each name of nothing that the schema declares, and the one that may be meant."""
     for found in references(context.data):
-        if found.missing is not None and not found.declarations(context.data):
+        if found.missing is None or (found.kind is Kind.TYPE and found.name in _BUILT_IN):
+            continue
+        if not found.declarations(context.data):
             _check(context, found, found.missing)
 
 
 def _check(context: Context, found: Reference, code: str) -> None:
     scope, name = found.scopes[0], getattr(found.name, "text", str(found.name))
-    if found.kind is Kind.TYPE and is_builtin(name) and has_width(name):
-        return
     declared = [str(key) for key in keys_at(context.data, scope)]
     text, hint = f"there is no {found.kind.value} `{name}`", hint_for(name, declared)
     match found.kind:
