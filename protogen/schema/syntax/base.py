@@ -43,7 +43,7 @@ _RATIONAL_PATTERN = (
 class Syntax(BaseModel):
     """Base of all syntax classes: unknown keys are errors, objects are immutable."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, defer_build=True)
 
 
 def written_as(form: Any) -> BeforeValidator:
