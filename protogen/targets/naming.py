@@ -57,7 +57,7 @@ class NameTable:
         The same thing may be named again, and is then called the same.
         """
         found = name
-        while self.things.setdefault(found, thing) != thing:
+        while (holder := self.things.setdefault(found, thing)) is not thing and holder != thing:
             found += "_"
         if found != name:
             self.note(thing, found)
