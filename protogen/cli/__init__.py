@@ -6,6 +6,7 @@ of any of them either: a command imports what it needs when it runs, so that `--
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import sys
@@ -112,4 +113,7 @@ def main() -> None:
     if isinstance(sys.stdout, io.TextIOWrapper):
         # A character that the terminal's encoding lacks is no reason to stop.
         sys.stdout.reconfigure(errors="backslashreplace")
-    app()
+    try:
+        app()
+    finally:
+        gc.freeze()  # At its end, Python would look for garbage in all that was made.

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from protogen.cli.collecting import without_garbage_collection
 from protogen.cli.console import echo_json
 from protogen.cli.exits import CLEAN, FINDINGS
 from protogen.cli.options import Quiet, SchemaPaths
@@ -32,14 +33,15 @@ def check(
     Every problem of every schema is reported. Exits with 0 if there is nothing to fix, 1 if there
     is.
     """
-    compilations = compile_files(chosen_schemas(schemas), "checking")
-    match format:
-        case "text":
-            _print_text(compilations, quiet=quiet)
-        case "json":
-            _print_json(compilations, quiet=quiet)
-        case "github":
-            _print_github(compilations)
+    with without_garbage_collection():
+        compilations = compile_files(chosen_schemas(schemas), "checking")
+        match format:
+            case "text":
+                _print_text(compilations, quiet=quiet)
+            case "json":
+                _print_json(compilations, quiet=quiet)
+            case "github":
+                _print_github(compilations)
     return FINDINGS if any(map(_has_findings, compilations)) else CLEAN
 
 

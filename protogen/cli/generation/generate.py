@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 from pathlib import Path
 from typing import Annotated
 
@@ -85,9 +84,7 @@ def generate(  # noqa: PLR0913 - each option is one argument
     given = Given(schemas, output, target, standalone, choice)
     mode = Mode(check, diff, quiet, depfile, use_project=not no_project)
     if not watch:
-        code = generate_once(given, mode, Reads())
-        gc.freeze()  # At its end, Python would look for garbage in all that was made.
-        return code
+        return generate_once(given, mode, Reads())
     if not mode.writes:
         raise UsageError("--watch writes; --check and --diff do not")
     from protogen.cli.generation.watching import generate_and_watch

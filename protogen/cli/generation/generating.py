@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import gc
 import os
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
 
+from protogen.cli.collecting import without_garbage_collection
 from protogen.cli.exits import CLEAN, FINDINGS, USAGE
 from protogen.cli.generation.jobs import Job, check, print_diff, say_current, write, write_depfile
 from protogen.cli.generation.plan import Given, Plan, plan
@@ -71,7 +70,7 @@ def generate_once(given: Given, mode: Mode, reads: Reads) -> int:
         if not mode.quiet and not mode.diff:
             say_current(record, keeper.root, checking=mode.check)
         return CLEAN
-    with _without_garbage_collection():
+    with without_garbage_collection():
         return _compile_and_act(planned, mode, keeper, reads)
 
 
@@ -107,19 +106,6 @@ def _keeper(planned: Plan, project: Project | None, mode: Mode) -> Keeper | None
     from protogen.project.record import Keeper
 
     return Keeper(project.folder, planned.options, planned.schemas, planned.pages)
-
-
-@contextmanager
-def _without_garbage_collection() -> Iterator[None]:
-    """The model only grows and holds no cycles: looking for garbage would find none."""
-    gc.disable()
-    try:
-        yield
-    finally:
-        # Python would look through all that is new; these two make it old without a look.
-        gc.freeze()
-        gc.unfreeze()
-        gc.enable()
 
 
 def _compile_and_act(planned: Plan, mode: Mode, keeper: Keeper | None, reads: Reads) -> int:
