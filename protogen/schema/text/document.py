@@ -24,7 +24,8 @@ _FORBIDDEN = re.compile(
 )
 _STAND_IN = "\N{REPLACEMENT CHARACTER}"
 _COMMENT = re.compile(r"(?:^| )#")
-_CONFLICT = re.compile(r"^<<<<<<< .*$", re.MULTILINE)
+_CONFLICT_MARK = "<<<<<<< "
+_CONFLICT = re.compile(rf"^{_CONFLICT_MARK}.*$", re.MULTILINE)
 _BYTE_ORDER_MARK = "\ufeff"
 _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
@@ -96,7 +97,7 @@ def parse_document(
     Never raises for any text.
     """
     text = text.removeprefix(_BYTE_ORDER_MARK)
-    conflict = _CONFLICT.search(text)
+    conflict = _CONFLICT.search(text) if _CONFLICT_MARK in text else None
     if conflict is not None:
         line = text.count("\n", 0, conflict.start()) + 1
         words = "a merge left a conflict here"
@@ -106,8 +107,8 @@ def parse_document(
     spoiled = Problems(_character_problems(text, file))
     problems.extend(spoiled)
     found = Problems()
-    readable = _FORBIDDEN.sub(_STAND_IN, text).replace("\t", " ")
-    root = compose(readable, file, found, loader=loader)
+    readable = _FORBIDDEN.sub(_STAND_IN, text) if spoiled else text
+    root = compose(readable.replace("\t", " "), file, found, loader=loader)
     problems.extend(found if not spoiled else _unrelated(found, spoiled))
     return None if root is None or spoiled else Document(root, file, text)
 
