@@ -13,6 +13,7 @@ from protogen.model.meanings import BitField, Enum, Flags, NamedBit
 from protogen.model.numbers import are_read_alike, are_spelled_alike
 from protogen.model.types import (
     Array,
+    Between,
     BitOrder,
     Counted,
     Delimited,
@@ -326,13 +327,17 @@ def _bytes(kind: Type) -> tuple[Extent, int] | None:
     return None
 
 
-def _end(extent: Extent) -> int | Operand | None:
+def _end(extent: Extent) -> int | str | Operand | None:
     """What ends bytes or elements where neither a number nor the payload does."""
     match extent:
         case Until():
             return extent.byte
         case Marked():
             return extent.mark
+        case Between():
+            return extent.characters.hex()
+        case Fill() if extent.tail is not None:
+            return f"{extent.tail.least} of {extent.tail.element} by {extent.tail.separator}"
     return None
 
 
@@ -364,11 +369,20 @@ def _amount(extent: Extent) -> str:
         case Counted():
             return f"{extent.least} to {extent.greatest}, as {extent.by.text} says"
         case Fill():
-            return f"{_bounds(extent)}, to the end"
+            return f"{_bounds(extent)}, to {'the end' if extent.tail is None else 'what follows'}"
+        case Between():
+            return f"{_bounds(extent)}, {_between(extent)}"
         case Until():
             return f"{_bounds(extent)}, in front of {extent.byte:02X}"
         case Marked():
             return f"{_bounds(extent)}, to the first whose {extent.mark.label} is not 0"
+
+
+def _between(extent: Between) -> str:
+    """Where a text ends, and what can't stand in it."""
+    excluded = bytes(it for it in range(0x20, 0x7F) if it not in extent.alphabet)
+    ends = "to the end" if extent.takes_rest else f"to the next {extent.separator:02X}"
+    return f"{ends}, without {excluded.hex(' ').upper()}" if excluded else ends
 
 
 def _bounds(extent: Delimited) -> str:

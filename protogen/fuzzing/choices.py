@@ -369,6 +369,8 @@ def _text_choices(step: BytesStep, lengths: Lengths) -> Choices:
     if not isinstance(step.type, Text):
         highest = SEVEN_BITS if step.type.byte_bits == 7 else 0xFF
         return bytes_choices(least, greatest, highest, step.count.until)
+    if step.count.between is not None:
+        return _characters_choices(step.count.between.characters.decode(), lengths)
     if isinstance(step.type.extent, Fixed):
         least = 0
     end = step.count.until
@@ -377,6 +379,18 @@ def _text_choices(step: BytesStep, lengths: Lengths) -> Choices:
     return Choices(
         _distinct([values[0][:least], *values]),
         lambda random: _any_text(random, _any_length(least, greatest, random), end),
+    )
+
+
+def _characters_choices(characters: str, lengths: Lengths) -> Choices:
+    """Texts of these characters."""
+    least, greatest = lengths
+    values = [it * length for it in (characters[0], characters[-1]) for length in lengths]
+    return Choices(
+        _distinct(values),
+        lambda random: "".join(
+            random.choice(characters) for _ in range(_any_length(least, greatest, random))
+        ),
     )
 
 

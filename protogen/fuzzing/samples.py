@@ -267,6 +267,9 @@ class _Sampler:
             return value
         is_text = isinstance(bare, BytesStep) and isinstance(bare.type, Text)
         self.size += isinstance(bare, BytesStep) and bare.count.until is not None
+        if isinstance(bare, BytesStep) and bare.count.between is not None:
+            self.size += bare.count.between.leads + len(value)
+            return value
         fixed = step.sizes.fixed
         self.size += fixed if fixed is not None else len(value) // (1 if is_text else 2)
         return value
@@ -335,7 +338,7 @@ class _Sampler:
     def _lengths(self, count: Count, size: int) -> tuple[int, int]:
         """The least and the greatest number of elements that have at least `size` bytes."""
         least, greatest = lengths_of(count, 0 if count.by is None else self._said(count, count.by))
-        if count.mark is not None and size:
+        if (count.mark is not None or count.tail is not None) and size:
             greatest = min(greatest, max(least, (self._sizes.greatest - self.size) // size))
         if count.fills and size:
             greatest = min(greatest, max(0, self._sizes.greatest - self.size) // size)
@@ -343,6 +346,9 @@ class _Sampler:
             least = min(greatest, max(least, needed))
         if count.until is not None:
             greatest = min(greatest, max(least, self._sizes.greatest - self.size - 1))
+        if count.between is not None:
+            room = self._sizes.greatest - self.size - count.between.leads
+            greatest = min(greatest, max(least, room))
         return least, greatest
 
     def _case(self, step: ChooseStep, chooser: Chooser) -> Any:

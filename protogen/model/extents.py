@@ -76,9 +76,23 @@ class Delimited:
         return SizeSet.between(self.least, self.greatest)
 
 
+class Tail(msgspec.Struct, frozen=True, kw_only=True):
+    """What stands behind an array that takes what is left, in bytes or in fields."""
+
+    separator: int | None
+    """The byte in front of each field, where fields are counted; None: bytes are."""
+    element: int
+    """Bytes or fields of an element."""
+    least: int
+    """Bytes or fields that are always behind the array; optional ones are fewer than an element."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fill(Delimited):
     """As many as the payload has left."""
+
+    tail: Tail | None = None
+    """What stands behind, if anything does: the elements end where less than one is left to it."""
 
     @property
     def label(self) -> str:
@@ -113,4 +127,31 @@ class Marked(Delimited):
         return f"until {self.mark.label}"
 
 
-Extent = Fixed | Counted | Fill | Until | Marked
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Between(Delimited):
+    """As many characters as stand in front of the next separator, or of the payload's end."""
+
+    separator: int
+    leads: bool
+    """True if the separator also stands in front."""
+    characters: bytes
+    """Those that a text can have; with the separator, it goes to the payload's end."""
+
+    @property
+    def takes_rest(self) -> bool:
+        """True if the text goes to the payload's end, separators included."""
+        return self.separator in self.characters
+
+    @property
+    def alphabet(self) -> bytes:
+        """The bytes that it can have on the wire."""
+        return bytes(sorted({*self.characters, self.separator}))
+
+    @property
+    def label(self) -> str:
+        """The number in the words of the schema language."""
+        place = f" behind {self.separator:02X}" if self.leads else ""
+        return f"{'fill' if self.takes_rest else f'{self.least}..{self.greatest}'}{place}"
+
+
+Extent = Fixed | Counted | Fill | Until | Marked | Between

@@ -5,7 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from protogen.copying import replace
-from protogen.model.types import Array, Field, Fill, Integer, Struct, Switch, Type, is_integer
+from protogen.model.types import (
+    Array,
+    Between,
+    Field,
+    Fill,
+    Integer,
+    Struct,
+    Switch,
+    Type,
+    is_integer,
+)
 
 
 def inner_types(type_: Type) -> tuple[Type, ...]:
@@ -45,12 +55,13 @@ def takes_rest(type_: Type) -> bool:
     """True if a value takes all that the payload has left."""
     match type_:
         case Struct():
-            return bool(type_.fields) and fills(type_.fields[-1])
+            return any(map(fills, type_.fields))
         case Switch():
             return type_.rest is not None or any(map(takes_rest, inner_types(type_)))
         case Integer():
             return type_.takes_rest
-    return isinstance(type_.extent, Fill)
+    extent = type_.extent
+    return extent.takes_rest if isinstance(extent, Between) else isinstance(extent, Fill)
 
 
 def fills(field: Field) -> bool:

@@ -35,6 +35,7 @@ from protogen.model.presence import Conditional, Trailing
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
+    Between,
     Case,
     Counted,
     Delimited,
@@ -165,7 +166,7 @@ class _Builder:
                     name=name,
                     field=field,
                     sizes=type_.sizes,
-                    checks=_seven_bit(type_) | _count_checks(type_.extent),
+                    checks=_seven_bit(type_) | _extent_checks(type_.extent),
                     is_refusable=isinstance(type_, Text)
                     or type_.byte_bits == 7
                     or not isinstance(type_.extent, Fixed),
@@ -258,7 +259,7 @@ class _Builder:
     ) -> RepeatStep:
         element = self._element(field, type_)
         packing = packing_of(type_)
-        checks = element.checks | _count_checks(type_.extent) | packing_checks(packing)
+        checks = element.checks | _extent_checks(type_.extent) | packing_checks(packing)
         return RepeatStep(
             name=name,
             field=field,
@@ -328,7 +329,9 @@ class _Builder:
             known=known,
             by=number if isinstance(number, Formula) else None,
             member=member,
-            fills=isinstance(extent, Fill),
+            fills=isinstance(extent, Fill) and extent.tail is None,
+            tail=extent.tail if isinstance(extent, Fill) else None,
+            between=extent if isinstance(extent, Between) else None,
             until=extent.byte if isinstance(extent, Until) else None,
             mark=self._mark(extent, element),
             least=counts.least,
@@ -413,7 +416,9 @@ def _seven_bit(type_: Integer | Float | Text | Octets | Switch) -> frozenset[Che
     return frozenset({Check.SEVEN_BIT}) if type_.byte_bits == 7 else _NOTHING
 
 
-def _count_checks(extent: Extent) -> frozenset[Check]:
+def _extent_checks(extent: Extent) -> frozenset[Check]:
+    if isinstance(extent, Between):
+        return frozenset({Check.CHARACTERS})
     return frozenset({Check.COUNT}) if isinstance(extent, Counted) else _NOTHING
 
 

@@ -24,12 +24,14 @@ from protogen.model.expressions import Expression, Operand, value_of
 from protogen.model.packing import Packing
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
+    Between,
     Field,
     Float,
     Integer,
     Octets,
     Struct,
     Switch,
+    Tail,
     Text,
     Type,
 )
@@ -38,6 +40,8 @@ from protogen.model.types import (
 class Check(Enum):
     """Something that can be wrong with bytes that are there in the right number."""
 
+    CHARACTERS = auto()
+    """A character of a text is none of those that it can have."""
     SEVEN_BIT = auto()
     """A byte has its most significant bit set."""
     PADDING = auto()
@@ -141,6 +145,10 @@ class Count(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
     """True if all that is left of the payload is taken."""
     until: int | None = None
     """The byte that ends what is taken, and stands behind it."""
+    tail: Tail | None = None
+    """What stands behind elements that take what is left; they end where that begins."""
+    between: Between | None = None
+    """What stands around a text among separators."""
     mark: Formula | None = None
     """What is not 0 in the last of the elements, as a formula over the members of one."""
     least: int
@@ -155,8 +163,9 @@ class Count(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
 
     @property
     def is_delimited(self) -> bool:
-        """True if the payload's end, a terminator or the last element says the number."""
-        return self.fills or self.until is not None or self.mark is not None
+        """True if what ends it says the number: a byte, the last element, the payload's end."""
+        ends = (self.until, self.mark, self.tail, self.between)
+        return self.fills or any(end is not None for end in ends)
 
 
 class Step(msgspec.Struct, frozen=True, kw_only=True, eq=False, dict=True):
@@ -373,7 +382,8 @@ AnyStep = (
 
 def _tells_its_end(step: AnyStep) -> bool:
     is_free = isinstance(step, IntegerStep) and step.type.is_free
-    return is_free or isinstance(step, RegionStep)
+    is_between = isinstance(step, BytesStep) and step.count.between is not None
+    return is_free or is_between or isinstance(step, RegionStep)
 
 
 class PayloadPlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):

@@ -14,7 +14,17 @@ from typing import ClassVar, Literal, TypeGuard
 import msgspec
 
 from protogen.model.expressions import Expression, names_in
-from protogen.model.extents import Counted, Delimited, Extent, Fill, Fixed, Marked, Until
+from protogen.model.extents import (
+    Between,
+    Counted,
+    Delimited,
+    Extent,
+    Fill,
+    Fixed,
+    Marked,
+    Tail,
+    Until,
+)
 from protogen.model.meanings import NamedValue
 from protogen.model.names import free_name
 from protogen.model.numbers import (
@@ -37,6 +47,7 @@ __all__ = [
     "NO_OFFSET",
     "UNSCALED",
     "Array",
+    "Between",
     "BitOrder",
     "ByteOrder",
     "Case",
@@ -55,6 +66,7 @@ __all__ = [
     "Scalar",
     "Struct",
     "Switch",
+    "Tail",
     "Text",
     "Type",
     "Until",
@@ -106,9 +118,10 @@ class _Bytes(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def sizes(self) -> SizeSet:
-        """Wire bytes, with those of the terminator."""
-        counts = self.extent.counts
-        return counts + SizeSet.exactly(1) if isinstance(self.extent, Until) else counts
+        """Wire bytes, with those of the terminator, or of the separator in front."""
+        counts, extent = self.extent.counts, self.extent
+        ends = isinstance(extent, Until) or (isinstance(extent, Between) and extent.leads)
+        return counts + SizeSet.exactly(1) if ends else counts
 
 
 class Text(_Bytes, frozen=True, kw_only=True):

@@ -135,6 +135,12 @@ _FIELD_RULES = (
         "What an element says ends an array of structs.",
         {"properties": {"until": {"not": _LAST_ELEMENT}}},
     ),
+    _where(
+        _with("without"),
+        "A text between separators can be without some characters.",
+        {"properties": {"type": {"not": {"enum": ["bytes", "char", "decimal", "hexadecimal"]}}}},
+    ),
+    _where(_any_of(_FORMS), "Only a text is without some characters.", _none_of(("without",))),
     {"$comment": "A size is told, or a terminator ends it.", "not": _with(*_LENGTHS)},
     {
         "$comment": "The size of what is always the same never changes.",

@@ -36,7 +36,18 @@ from protogen.model.payload_plan import (
 from protogen.model.payload_walks import PackedNumber, packed_numbers
 from protogen.model.reading.readings import integer_reading, physical, quoted, value_name
 from protogen.model.reading.wire import Unit
-from protogen.model.types import Field, Fixed, Float, Integer, NumberType, Scalar, Text, codec
+from protogen.model.types import (
+    Between,
+    Field,
+    Fixed,
+    Float,
+    Integer,
+    NumberType,
+    Scalar,
+    Tail,
+    Text,
+    codec,
+)
 from protogen.runtime.errors import ByteError
 from protogen.runtime.payload.bits import BitReader
 from protogen.runtime.payload.number import Number
@@ -133,6 +144,13 @@ class Cursor:
         units = self._units[self._position + behind :]
         return behind + next((i for i, it in enumerate(units) if it.byte == byte), len(units))
 
+    def elements(self, tail: Tail) -> int:
+        """Number of elements that are left in front of a tail."""
+        units = self._units[self._position :]
+        if tail.separator is not None:
+            units = [unit for unit in units if unit.byte == tail.separator]
+        return max(0, len(units) - tail.least) // tail.element
+
     def ends_with(self, data: bytes) -> bool:
         """True if the units that are left end with these bytes."""
         left = self._units[self._position :]
@@ -218,6 +236,8 @@ class _Reader:
             self._up_to_last(step, path, scope, step.count.mark)
             return
         count = _count(step.count, scope)
+        if step.count.tail is not None:
+            count = self._cursor.elements(step.count.tail)
         index = 0
         while not self._short and (self._cursor.left if count is None else index < count):
             element = replace(step.element, field=_element(step.field, index))
@@ -286,6 +306,11 @@ class _Reader:
             return self._size(step.type)
         if step.count.until is not None:
             return self._cursor.size_to(step.count.until, 0) + 1
+        if step.count.between is not None:
+            between = step.count.between
+            if between.takes_rest:
+                return None
+            return self._cursor.size_to(between.separator, between.leads)
         return _count(step.count, scope)
 
     def _size(self, type_: NumberType) -> int | None:
@@ -346,6 +371,8 @@ def _read(step: ScalarStep, row: Row) -> Row:
         return replace(row, fault="has a byte of more than 7 bits")
     if isinstance(step, BytesStep):
         row = row if step.count.until is None else replace(row, fault=_bounds_fault(step, row))
+        if step.count.between is not None:
+            row = replace(row, fault=_between_fault(step.count, step.count.between, row.bytes))
         return _text(step, row) if isinstance(step.type, Text) else _octets(step.field, row)
     try:
         value = codec(step.type).decode(row.bytes)
@@ -379,8 +406,21 @@ def _bounds_fault(step: BytesStep, row: Row) -> str:
     return ""
 
 
+def _between_fault(count: Count, between: Between, data: bytes) -> str:
+    """The reason that a text can't stand between separators."""
+    if between.leads and data[:1] != bytes((between.separator,)):
+        return "the separator in front is missing"
+    text = data[between.leads :]
+    if not count.least <= len(text) <= count.greatest:
+        return f"has {len(text)} characters, and not {count.least} to {count.greatest}"
+    wrong = text.translate(None, between.characters)
+    return f"{wrong[0]:02X} is no character of it" if wrong else ""
+
+
 def _text(step: BytesStep, row: Row) -> Row:
     text = row.bytes.decode("latin-1")
+    if step.count.between is not None:
+        text = text[step.count.between.leads :]
     if step.count.until is not None:
         text = text[:-1]
     if isinstance(step.type.extent, Fixed):

@@ -11,7 +11,17 @@ from collections.abc import Iterable, Sequence
 from protogen.model.constants import constant_bytes
 from protogen.model.messages import Message
 from protogen.model.nesting import holds_whole_bytes, inner_types
-from protogen.model.types import Field, Integer, Octets, Struct, Switch, Text, Type, is_text
+from protogen.model.types import (
+    Between,
+    Field,
+    Integer,
+    Octets,
+    Struct,
+    Switch,
+    Text,
+    Type,
+    is_text,
+)
 from protogen.passes.proofs.wire_code import EVERY_BYTE, SEVEN_BITS, ByteSet
 
 _NOTHING: ByteSet = frozenset()
@@ -29,7 +39,8 @@ def payload_alphabet(byte_bits: int, messages: Sequence[Message]) -> ByteSet:
 
 
 def _holds_text(type_: Type) -> bool:
-    return is_text(type_) or any(map(_holds_text, inner_types(type_)))
+    is_between = isinstance(type_, Text) and isinstance(type_.extent, Between)
+    return is_text(type_) or is_between or any(map(_holds_text, inner_types(type_)))
 
 
 def _of_fields(fields: Iterable[Field]) -> ByteSet:
@@ -47,6 +58,8 @@ def _of(type_: Type) -> ByteSet:
     match type_:
         case Integer() if type_.text is not None:
             return frozenset(type_.characters)
+        case Text(extent=Between() as extent):
+            return frozenset(extent.alphabet)
         case Integer(role="char", enum=enum) if enum is not None and enum.closed:
             return frozenset(item.value for item in enum.values)
         case Struct(packed=None):

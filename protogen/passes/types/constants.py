@@ -6,7 +6,7 @@ import math
 import struct
 
 from protogen.model.nesting import is_composite
-from protogen.model.types import Array, Constant, Fixed, Float, Integer, Octets, Text, Type
+from protogen.model.types import Array, Between, Constant, Fixed, Float, Integer, Octets, Text, Type
 from protogen.passes.context import Context
 from protogen.passes.types.declared import Effective
 from protogen.problems import hint_for
@@ -58,6 +58,13 @@ class _UnfitError(Exception):
         super().__init__(text)
         self.text = text
         self.hint = hint
+
+
+def _can_stand(key: str, written: str, between: Between) -> None:
+    """Check that a text between separators has none but its characters."""
+    wrong = next((it for it in written if ord(it) not in between.characters), None)
+    if wrong is not None:
+        raise _UnfitError(f"`{key}` has {wrong!r}, which can't stand between separators here")
 
 
 class _Reader:
@@ -154,6 +161,8 @@ class _Reader:
             raise _UnfitError(f"`{self._key}` ends with NUL, which is padding here")
         self._has_size(len(written), type_, padded=padded)
         self._goes_on(written.encode("ascii"), type_)
+        if isinstance(type_.extent, Between):
+            _can_stand(self._key, written, type_.extent)
         return written
 
     def _octets(self, written: bytes | tuple[int, ...], type_: Octets) -> bytes:

@@ -67,7 +67,10 @@ def _why_not(field: Field) -> tuple[str, str | None]:
 
 
 def _fill(context: Context, written: FillSyntax, loc: Loc, element: int, setting: Setting) -> Fill:
-    if not setting.delimited:
+    if written.fill is None:
+        text = "nothing says where this ends: only a text between separators does so by itself"
+        context.error("PG298", loc, text, "take all that is left: `fill: true`, or count it")
+    elif not setting.delimited:
         text = "the frame does not say where the payload ends, so nothing can fill it"
         context.error("PG118", loc, text, "give a count, or a length part to the frame")
     elif written.max is None and setting.room is None:

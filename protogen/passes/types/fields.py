@@ -47,7 +47,7 @@ from protogen.passes.types.packing import (
     packed_elements,
     packed_fields,
 )
-from protogen.passes.types.separators import character, check_separated, with_absent
+from protogen.passes.types.separators import character, check_separated, text_between, with_absent
 from protogen.passes.types.setting import Setting
 from protogen.passes.types.sized_arrays import (
     has_region,
@@ -56,6 +56,7 @@ from protogen.passes.types.sized_arrays import (
     is_sized_array,
     region_of,
 )
+from protogen.passes.types.tails import can_be_followed, in_front_of_tail
 from protogen.passes.types.terminators import until_of
 from protogen.passes.types.text_numbers import says_text, text_number, with_text
 from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
@@ -92,7 +93,7 @@ class FieldBuilder:
         filler = omitted = ""
         final = list(syntax)[-1:]
         for name, item in syntax.items():
-            if filler:
+            if filler and not can_be_followed(built[filler]):
                 self._behind(filler, (*loc, name))
             inner = setting.inside(name, behind, scope, first=not built, last=[name] == final)
             built[name] = self.field(name, item, (*loc, name), inner)
@@ -105,6 +106,10 @@ class FieldBuilder:
                 bits += bits_of(built[name].type)
             filler = filler or (name if fills(built[name]) else "")
             omitted = name if built[name].optional else ""
+        if filler and can_be_followed(built[filler]):
+            built[filler] = in_front_of_tail(
+                self._context, tuple(built.values()), filler, loc, setting
+            )
         return tuple(built.values())
 
     def field(self, name: str, item: FieldSyntax, loc: Loc, setting: Setting) -> Field:
@@ -262,7 +267,11 @@ class FieldBuilder:
         return in_elements(self._context, extent, size, item, within)
 
     def _string(self, item: Effective) -> Text | Octets:
-        extent, byte_bits = self._length(item), item.setting.layout.byte_bits
+        byte_bits = item.setting.layout.byte_bits
+        if item.setting.layout.separator is not None:
+            self._expansion.vary()
+            return Text(extent=text_between(self._context, item))
+        extent = self._length(item)
         if item.syntax.type == "ascii":
             return Text(extent=extent, byte_bits=byte_bits)
         return Octets(extent=extent, byte_bits=byte_bits)

@@ -16,6 +16,7 @@ from protogen.model.nesting import inner_types, is_composite, with_structs
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Array,
+    Between,
     Case,
     Counted,
     Extent,
@@ -191,11 +192,13 @@ def _extent(one: Extent, other: Extent) -> Extent | None:
                 greatest=max(one.greatest, other.greatest),
                 stated=one.stated and other.stated,
             )
-        case Fill(), Fill() if one.stated == other.stated:
+        case Fill(), Fill() if (one.tail, one.stated) == (other.tail, other.stated):
             return replace(one, greatest=max(one.greatest, other.greatest))
         case Marked(), Marked() if (one.mark, one.stated) == (other.mark, other.stated):
             return replace(one, greatest=max(one.greatest, other.greatest))
         case Until(), Until() if (one.byte, one.stated) == (other.byte, other.stated):
+            return replace(one, greatest=max(one.greatest, other.greatest))
+        case Between(), Between() if replace(one, greatest=other.greatest) == other:
             return replace(one, greatest=max(one.greatest, other.greatest))
     return one if one == other else None
 

@@ -7,13 +7,16 @@ from collections.abc import Mapping
 from protogen.copying import replace
 from protogen.model.meanings import Enum, NamedValue
 from protogen.model.numbers import FreeNumeral
-from protogen.model.types import Integer, NumberType, Type, is_integer
+from protogen.model.types import Between, Fixed, Integer, NumberType, Type, is_integer
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.declared import Effective
-from protogen.schema.syntax.fields import FieldSyntax
+from protogen.passes.types.extents import extent_of
+from protogen.schema.syntax.fields import FieldSyntax, Fill
 from protogen.schema.syntax.messages import MessageSyntax, Separator
 
 _TYPES = ("decimal", "hexadecimal", "char")
+_PRINTABLE = bytes(range(0x20, 0x7F))
+"""Characters that a text between separators can have."""
 
 
 def separator_of(context: Context, syntax: MessageSyntax, loc: Loc) -> Separator | None:
@@ -34,14 +37,17 @@ def separator_of(context: Context, syntax: MessageSyntax, loc: Loc) -> Separator
 def check_separated(context: Context, name: str, item: Effective) -> bool:
     """Report a field that no separator can stand beside; False where there is one."""
     syntax, setting = item.syntax, item.setting
+    if syntax.without is not None and (setting.layout.separator is None or syntax.type != "ascii"):
+        text = "only an ascii field between separators is without some characters"
+        context.error_at_key("PG298", item.at("without"), text, "leave `without` out")
     if setting.layout.separator is None:
         if syntax.empty is not None:
             text = "nothing is empty where no separator stands beside it"
             hint = "give the message a `separator`"
             context.error_at_key("PG228", item.at("empty"), text, hint)
         return True
-    is_text = syntax.type in _TYPES and syntax.const is None
-    if syntax.empty is not None and not is_text:
+    is_text = syntax.type in (*_TYPES, "ascii") and syntax.const is None
+    if syntax.empty is not None and (not is_text or syntax.type == "ascii"):
         text = f"`{name}` can't be empty: only decimal, hexadecimal and char can"
         context.error_at_key("PG228", item.at("empty"), text)
     if syntax.type is None or is_text:
@@ -51,16 +57,53 @@ def check_separated(context: Context, name: str, item: Effective) -> bool:
         hint = "put a single number in front of it, or let a separator stand there: `in_front`"
         context.error_at_key("PG226", item.chain[0][1], text, hint)
         return False
-    text = f"`{name}` can't be separated: only decimal, hexadecimal and closed char can"
+    kinds = "decimal, hexadecimal, ascii and closed char"
+    text = f"`{name}` can't be separated: only {kinds} can"
     hint = "leave `separator` out, or write the number as text"
     context.error_at_key("PG226", item.chain[0][1], text, hint)
     return False
 
 
+def text_between(context: Context, item: Effective) -> Between:
+    """The characters of a text that stands between separators, or behind the last one."""
+    written, setting, loc = item.syntax.size, item.setting, item.at("size")
+    separator = setting.layout.separator or 0
+    bounds = Fixed(count=0).counts
+    if not isinstance(written, Fill) or item.syntax.until is not None:
+        text = "a text between separators ends where the next one begins"
+        hint = "say how long it can be, `size: {max: 20}`, or take all that is left, `size: fill`"
+        key = "until" if item.syntax.until is not None else "size"
+        context.error_at_key("PG298", item.at(key), text, hint)
+    elif written.min and written.min == written.max:
+        bounds = Fixed(count=written.min).counts
+    else:
+        filled = written.model_copy(update={"fill": True})
+        bounds = extent_of(context, filled, loc, 1, setting).counts
+    fills = isinstance(written, Fill) and written.fill is not None
+    excluded = {*(item.syntax.without or ()), *(() if fills else (separator,))}
+    return Between(
+        separator=separator,
+        leads=setting.leads,
+        characters=bytes(character for character in _PRINTABLE if character not in excluded),
+        least=bounds.least,
+        greatest=bounds.greatest,
+        stated=isinstance(written, Fill) and written.max is not None,
+    )
+
+
 def is_for_separators(syntax: FieldSyntax, types: Mapping[str, FieldSyntax]) -> bool:
     """True if a declared type is a number that is written as text, or has nothing but texts."""
-    kinds = {item.type for item in (syntax.fields or {"": syntax}).values()}
+    items = (syntax.fields or {"": syntax}).values()
+    if any(_is_text_between(item) for item in items):
+        return True
+    kinds = {item.type for item in items}
     return not kinds.isdisjoint(_TYPES[:2]) and all(it in _TYPES or it in types for it in kinds)
+
+
+def _is_text_between(syntax: FieldSyntax) -> bool:
+    """True for a text that can stand nowhere else."""
+    is_open = isinstance(syntax.size, Fill) and syntax.size.fill is None
+    return syntax.type == "ascii" and (is_open or syntax.without is not None)
 
 
 def character(context: Context, item: Effective) -> Integer | None:

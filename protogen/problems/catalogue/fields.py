@@ -77,7 +77,7 @@ would be on the wire is anyone's guess. Keep the keys that say what you mean.
         """\
 A field with `count: fill` or `size: fill` takes all that is left of the payload. For a field behind
 it nothing is left, and a receiver could not find it. Move the field that fills to the end, or give
-it a number or a counting field.
+it a number or a counting field. Only an array of elements of one size may have fields behind it.
 """,
         with_fields("""
             text: {type: ascii, size: {fill: true, max: 32}}

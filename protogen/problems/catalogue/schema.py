@@ -22,6 +22,7 @@ from protogen.problems.catalogue.parts import PART_CODES
 from protogen.problems.catalogue.silences import SILENCE_CODES
 from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
 from protogen.problems.catalogue.switch_cases import SWITCH_CASE_CODES
+from protogen.problems.catalogue.tails import TAIL_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
 from protogen.problems.catalogue.told_parts import TOLD_PART_CODES
@@ -43,6 +44,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *SWITCH_CASE_CODES,
     *EXPRESSION_CODES,
     *OPTIONAL_FIELD_CODES,
+    *TAIL_CODES,
     *FRAME_CODES,
     *FRAMING_CODES,
     *FORM_CODES,

@@ -42,9 +42,10 @@ for each of its values.
         """\
 Fields with a `separator` are text that ends where the next separator begins. So each is a number
 that is written as text (`decimal`, `hexadecimal`) or a character whose values are known (`char`
-with `values` and `closed: true`), or a struct or an array of these. Where no separator stands in
-front of the first field, that is a single number or character: else its type would be another
-there than elsewhere. `separator: {byte: ",", in_front: true}` puts one there too.
+with `values` and `closed: true`), a text (`ascii`), or a struct or an array of these. Where no
+separator stands in front of the first field, that is a single number, character or text: else its
+type would be another there than elsewhere. `separator: {byte: ",", in_front: true}` puts one there
+too.
 """,
         with_message('separator: ","\nfields: {count: decimal, angle: uint16}'),
         with_message(

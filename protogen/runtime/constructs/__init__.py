@@ -41,6 +41,7 @@ from protogen.runtime.constructs.strings import (
     Octets,
     OctetsFill,
     OctetsUntil,
+    TextBetween,
 )
 from protogen.runtime.constructs.structs import (
     Cases,
@@ -49,6 +50,7 @@ from protogen.runtime.constructs.structs import (
     IfLeft,
     Region,
     Struct,
+    Tail,
     UpToLast,
     When,
     Whole,
@@ -86,6 +88,8 @@ __all__ = [
     "SevenBit",
     "SevenBitFloat",
     "Struct",
+    "Tail",
+    "TextBetween",
     "UpToLast",
     "When",
     "Whole",

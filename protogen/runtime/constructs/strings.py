@@ -129,6 +129,50 @@ class OctetsUntil(Piece):
             _check_seven_bits(data, path, offset)
 
 
+class _OctetsBetween(Piece):
+    """Bytes in front of a separator or the end, `least` to `greatest`, all among `characters`."""
+
+    def __init__(
+        self, separator: int, greatest: int, characters: bytes, leads: bool, least: int
+    ) -> None:
+        super().__init__()
+        self._separator = bytes((separator,))
+        self._front = self._separator if leads else b""
+        self._characters = characters
+        self._takes_rest = separator in characters
+        self._least = least
+        self._greatest = greatest
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> bytes:
+        start = stream.tell()
+        front = stream.read(len(self._front))
+        if front != self._front:
+            problem = "the separator in front is missing"
+            raise PayloadError("value" if front else "size", path, start, problem)
+        offset = stream.tell()
+        data = stream.read()
+        if not self._takes_rest:
+            data = data.partition(self._separator)[0]
+            stream.seek(offset + len(data))
+        self._check(data, path, offset)
+        return data
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> bytes:
+        data = _as_bytes(obj, path, stream)
+        self._check(data, path, stream.tell())
+        stream.write(self._front + data)
+        return data
+
+    def _check(self, data: bytes, path: str, offset: int) -> None:
+        if not self._least <= len(data) <= self._greatest:
+            problem = f"needs {self._least} to {self._greatest} characters, not {len(data)}"
+            raise PayloadError("size", path, offset, problem)
+        wrong = data.translate(None, self._characters)
+        if wrong:
+            place = offset + data.index(wrong[:1])
+            raise PayloadError("value", path, place, f"{wrong[0]:02X} is no character of it")
+
+
 def _as_bytes(obj: Any, path: str, stream: BinaryIO) -> bytes:
     if isinstance(obj, bytes | bytearray | memoryview):
         return bytes(obj)
@@ -201,3 +245,14 @@ def Latin1Until(  # noqa: N802
 ) -> Piece:
     """Text in front of a terminator, `least` to `greatest` characters; it stands behind them."""
     return _Text(OctetsUntil(byte, greatest, seven_bit, least))
+
+
+def TextBetween(  # noqa: N802
+    separator: int, greatest: int, characters: bytes, leads: bool = False, least: int = 0
+) -> Piece:
+    """Text in front of a separator or of the end, `least` to `greatest` of these characters.
+
+    Where the separator is one of them, the text goes to the end. With `leads` a separator stands in
+    front of it.
+    """
+    return _Text(_OctetsBetween(separator, greatest, characters, leads, least))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Mapping
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NamedTuple
 
 import construct  # type: ignore[import-untyped,unused-ignore]
 from construct import Construct, Container
@@ -97,16 +97,46 @@ class Counted(Around):
         return fixed_extent(self._count, path) * int(self.subcon._sizeof(context, path))
 
 
-class Fill(Around):
-    """Elements to the end, `least` to `greatest`. A tail that is no whole element is an error."""
+class Tail(NamedTuple):
+    """What stands behind elements, in bytes, or in fields with a `separator` in front of each."""
 
-    def __init__(self, element: Construct, greatest: int | None = None, least: int = 0) -> None:
+    element: int
+    """Bytes or fields of an element."""
+    least: int
+    """Bytes or fields that always stand behind."""
+    separator: int | None = None
+
+    def elements(self, stream: BinaryIO) -> int:
+        """The number of elements that the stream has left in front of the tail."""
+        offset = stream.tell()
+        data = stream.read()
+        stream.seek(offset)
+        left = len(data) if self.separator is None else data.count(self.separator)
+        return max(0, left - self.least) // self.element
+
+
+class Fill(Around):
+    """Elements to the end, or up to a tail, `least` to `greatest`.
+
+    At the end, what is no whole element is an error.
+    """
+
+    def __init__(
+        self,
+        element: Construct,
+        greatest: int | None = None,
+        least: int = 0,
+        tail: Tail | None = None,
+    ) -> None:
         super().__init__(element)
+        self._tail = tail
         self._least = least
         self._greatest = greatest
         self.flagbuildnone = False
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> list[Any]:
+        if self._tail is not None:
+            return self._in_front(self._tail.elements(stream), stream, context, path)
         elements: list[Any] = []
         while bytes_left(stream):
             self._check(len(elements) + 1, path, stream.tell())
@@ -117,6 +147,12 @@ class Fill(Around):
                 raise PayloadError("size", place, here, "an element of no bytes fills nothing")
         self._check_least(len(elements), path, stream.tell())
         return elements
+
+    def _in_front(self, count: int, stream: BinaryIO, context: Any, path: str) -> list[Any]:
+        self._check(count, path, stream.tell())
+        self._check_least(count, path, stream.tell())
+        parse = self.subcon._parsereport
+        return [parse(stream, context, f"{path} -> [{index}]") for index in range(count)]
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
         elements = _as_list(obj, path, stream)

@@ -151,8 +151,20 @@ class TextRule(SeveralRule[str]):
 
     `size` is a number: the text has at most so many characters, and NUL pads it. It is what earlier
     fields say: exactly as many. None: `least` to `greatest`. With `until` none of the characters
-    is that byte, which ends the text.
+    is that byte, which ends the text; with `characters` all are among those.
     """
+
+    def __init__(
+        self,
+        size: int | str | Formula | None = None,
+        greatest: int | None = None,
+        const: str | None = None,
+        least: int = 0,
+        until: int | None = None,
+        characters: bytes = b"",
+    ) -> None:
+        super().__init__(size, greatest, const, least, until)
+        self.characters = characters
 
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> str:
         """The text."""
@@ -167,9 +179,16 @@ class TextRule(SeveralRule[str]):
         else:
             self._check_count(len(text), scope, "characters")
             self._check_end(text.encode("latin-1"))
+            self._check_characters(text)
         if self.const is not None and text != self.const:
             raise EncodeError("", f"must be {self.const!r}")
         return text
+
+    def _check_characters(self, text: str) -> None:
+        """Refuse a character that can't stand between separators."""
+        wrong = next((it for it in text if self.characters and ord(it) not in self.characters), "")
+        if wrong:
+            raise EncodeError("", f"has {wrong!r}, which can't stand between separators here")
 
     def violations(self, value: str, scope: Scope) -> list[Violation]:
         """A NUL at the end that padding hides; what ASCII does not have, as code pages differ."""

@@ -211,6 +211,19 @@ ByteForm = Annotated[int, Field(ge=0, le=255)]
 ByteNumber = Annotated[int, BeforeValidator(_to_byte, json_schema_input_type=ByteForm | Character)]
 """One byte: a number from 0 to 255, or one character that stands for its code."""
 
+
+def _to_bytes(value: Any) -> Any:
+    if isinstance(value, list | tuple):
+        return tuple(value)
+    raise ValueError("expected a list of bytes")
+
+
+Bytes = Annotated[
+    tuple[ByteNumber, ...],
+    BeforeValidator(_to_bytes, json_schema_input_type=list[ByteForm | Character]),
+]
+"""Bytes by their numbers, or by the characters that stand for these."""
+
 BitNumber = Annotated[int, Field(ge=0, le=63)]
 """The number of a bit in the widest integer."""
 

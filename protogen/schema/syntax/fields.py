@@ -12,6 +12,7 @@ from protogen.schema.syntax.base import (
     BitRangeForm,
     ByteForm,
     ByteNumber,
+    Bytes,
     Character,
     Count,
     Name,
@@ -78,9 +79,13 @@ NamedBitsRef = Annotated[
 
 
 class Fill(Syntax):
-    """As many elements or bytes as the payload has left."""
+    """As many elements or bytes as the payload has left, or a separator lets there be."""
 
-    fill: OnlyTrue = Field(description="To the end of the payload.")
+    fill: OnlyTrue | None = Field(
+        None,
+        description="To the end of the payload. Only a text between separators can do without "
+        "it: it ends in front of the next one.",
+    )
     min: Count = Field(0, description="The least number of elements or bytes.")
     max: Count | None = Field(None, description="The greatest number of elements or bytes.")
 
@@ -231,6 +236,11 @@ class FieldSyntax(Syntax):
         description="In place of a size: an ascii or bytes field ends in front of this byte, "
         "which is on the wire and no part of the value. In place of a count: an array of structs "
         "ends with the element that says so.",
+    )
+    without: Bytes | None = Field(
+        None,
+        description="Characters that an ascii field between separators can't have, beside the "
+        "separator and those that can't be printed.",
     )
     packed: BitOrder | None = Field(
         None,

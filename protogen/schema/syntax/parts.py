@@ -13,6 +13,7 @@ from protogen.schema.syntax.base import (
     BitRangeForm,
     ByteForm,
     ByteNumber,
+    Bytes,
     Character,
     Count,
     Int,
@@ -365,20 +366,13 @@ class XorTransform(Syntax):
     xor: ByteNumber = Field(description="The constant.")
 
 
-def _to_bytes(value: Any) -> Any:
-    if isinstance(value, list | tuple):
-        return tuple(value)
-    raise ValueError("expected a list of bytes")
-
-
 class EscapeSyntax(Syntax):
     """One escape byte, and what becomes of the byte behind it."""
 
     byte: ByteNumber = Field(description="The escape byte.")
-    of: Annotated[
-        tuple[ByteNumber, ...],
-        BeforeValidator(_to_bytes, json_schema_input_type=list[ByteForm | Character]),
-    ] = Field(description="The bytes that have to be escaped; the escape byte is one of them.")
+    of: Bytes = Field(
+        description="The bytes that have to be escaped; the escape byte is one of them."
+    )
     transform: Annotated[
         Annotated[Literal["invert", "none"], Tag("text")] | Annotated[XorTransform, Tag("mapping")],
         Discriminator(_written_as_mapping),

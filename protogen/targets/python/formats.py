@@ -10,6 +10,7 @@ from protogen.model.numbers import FreeNumeral, Numeral
 from protogen.model.protocol import Protocol
 from protogen.model.types import (
     Array,
+    Between,
     Case,
     Counted,
     Delimited,
@@ -23,6 +24,7 @@ from protogen.model.types import (
     Octets,
     Struct,
     Switch,
+    Tail,
     Text,
     Type,
     Until,
@@ -162,7 +164,15 @@ def _string(type_: Text | Octets) -> str:
         case Until(byte=byte, greatest=greatest) as of:
             bounds = (f"0x{byte:02X}", str(greatest))
             return call(f"{kind}Until", *bounds, seven_bit=seven, least=least(of))
+        case Between() as of:
+            return call("_c.TextBetween", *between(of), least=least(of))
     return call(kind, extent(type_.extent), seven_bit=seven)
+
+
+def between(of: Between) -> tuple[str, ...]:
+    """Arguments that say what stands around a text, and which characters it can have."""
+    leads = ("leads=True",) if of.leads else ()
+    return f"0x{of.separator:02X}", str(of.greatest), octets_in_class(of.characters), *leads
 
 
 def extent(of: Extent) -> str:
@@ -187,12 +197,21 @@ def least(of: Delimited) -> str | None:
 def _array(type_: Array, names: Names) -> str:
     element = _checked(type_.element, names)
     if isinstance(type_.extent, Fill):
-        return call("_c.Fill", element, str(type_.extent.greatest), least=least(type_.extent))
+        bounds = (element, str(type_.extent.greatest))
+        return call("_c.Fill", *bounds, least=least(type_.extent), tail=_tail(type_.extent.tail))
     if isinstance(type_.extent, Marked):
         of = type_.extent
         return call("_c.UpToLast", element, formula(of.mark), str(of.greatest), least=least(of))
     counted = call("_c.Counted", extent(type_.extent), element)
     return counted if type_.packed is None else call("_c.Packed", text(type_.packed), counted)
+
+
+def _tail(of: Tail | None) -> str | None:
+    """What stands behind elements: where they end."""
+    if of is None:
+        return None
+    separator = None if of.separator is None else f"0x{of.separator:02X}"
+    return call("_c.Tail", str(of.element), str(of.least), separator=separator)
 
 
 def _switch(type_: Switch, names: Names) -> str:

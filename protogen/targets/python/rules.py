@@ -7,6 +7,7 @@ from fractions import Fraction
 from protogen.copying import replace
 from protogen.model.types import (
     Array,
+    Between,
     Case,
     Counted,
     Extent,
@@ -25,7 +26,7 @@ from protogen.model.types import (
 )
 from protogen.targets.python.formats import constant, is_empty, least
 from protogen.targets.python.formulas import formula
-from protogen.targets.python.literals import call, mapping, number, text
+from protogen.targets.python.literals import call, mapping, number, octets_in_class, text
 from protogen.targets.python.names import Names
 from protogen.targets.python.presence import where_present
 
@@ -125,6 +126,9 @@ def _extent(key: str, extent: Extent) -> dict[str, str | None]:
         case Fill() | Until():
             until = f"0x{extent.byte:02X}" if isinstance(extent, Until) else None
             return {"greatest": str(extent.greatest), "least": least(extent), "until": until}
+        case Between():
+            bounds = {"greatest": str(extent.greatest), "least": least(extent)}
+            return {**bounds, "characters": octets_in_class(extent.characters)}
         case Marked(mark=mark, greatest=greatest):
             bounds = {"greatest": str(greatest), "least": str(extent.least)}
             return {**bounds, "mark": formula(mark)}

@@ -26,6 +26,8 @@ from protogen.model.payload_plan import (
     RestStep,
     TrailingPresence,
 )
+from protogen.model.types import Between, Tail
+from protogen.targets.c.payload.between import count_elements, is_text, separator_of, text_size
 from protogen.targets.c.payload.number_checks import NumberChecker
 from protogen.targets.c.payload.walk import amount, out_of_bounds, times
 
@@ -49,6 +51,9 @@ class Checker(NumberChecker):
             return
         if step.count is not None and step.count.until is not None:
             self._up_to(step.count, step.count.until, seven=seven)
+            return
+        if step.count is not None and step.count.between is not None:
+            self._between(step.count, step.count.between)
             return
         self._begin(7 if seven else 8)
         if isinstance(count, int):
@@ -96,16 +101,37 @@ class Checker(NumberChecker):
             self._refuse(f"!{self.helpers.seven_bit()}({address}, {size})", "ENCODING")
         self._move(f"{size} + 1U")
 
+    def _between(self, count: Count, between: Between) -> None:
+        """The characters in front of the next separator, or of the end."""
+        self._settle()
+        if between.leads:
+            self._require(1)
+            self._refuse(f"{self._byte()} != {separator_of(between)}", "VALUE")
+            self._offset = 1
+        size, address = self.variable("length"), self._address()
+        found = text_size(self.helpers, between, address, self._left())
+        self.lines.add(f"const size_t {size} = {found};")
+        self._refuse(out_of_bounds(size, count.least, count.greatest, count.greatest + 1), "SIZE")
+        self._refuse(f"!{is_text(self.helpers, between, address, size)}", "VALUE")
+        self._move(f"{self._offset}U + {size}" if self._offset else size)
+
     # --- elements ---------------------------------------------------------------------------------
 
     def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Elements."""
-        element, size = step.element, step.element.known_size
         if step.count.fills:
             self._filling(step, place)
         elif step.count.mark is not None:
             self._up_to_last(step, place, step.count.mark)
-        elif size is not None and not element.can_be_wrong:
+        elif step.count.tail is not None:
+            self._counted(step, place, self._in_front(step.count, step.count.tail))
+        else:
+            self._counted(step, place, count)
+
+    def _counted(self, step: RepeatStep, place: str, count: int | str) -> None:
+        """Check so many elements."""
+        element, size = step.element, step.element.known_size
+        if size is not None and not element.can_be_wrong:
             self._run(count, size)
         elif isinstance(count, int) and self._is_seven_bit_run(element):
             self._seven_bit(count * (size or 0))
@@ -114,6 +140,17 @@ class Checker(NumberChecker):
             self._each_of(size, element, place, count)
         else:
             self._each(element, place, count)
+
+    def _in_front(self, count: Count, tail: Tail) -> str:
+        """The variable of the number of elements that stand in front of a tail."""
+        self._settle()
+        number, left = self.variable("count"), self.variable("left")
+        self.lines.add(f"size_t {number} = 0U;")
+        here = (self._address(), self._left(), left)
+        count_elements(self.helpers, self.lines, tail, number, here)
+        most = count.greatest + 1
+        self._refuse(out_of_bounds(number, count.least, count.greatest, most), "SIZE")
+        return number
 
     def _is_seven_bit_run(self, element: AnyStep) -> bool:
         is_seven_bit = isinstance(element, NumberStep) and element.checks == {Check.SEVEN_BIT}

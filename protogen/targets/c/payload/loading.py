@@ -22,8 +22,9 @@ from protogen.model.payload_plan import (
     RestStep,
     TrailingPresence,
 )
-from protogen.model.types import Float, NumberType
+from protogen.model.types import Between, Float, NumberType, Tail
 from protogen.targets.c.lines import Lines
+from protogen.targets.c.payload.between import count_elements, text_size
 from protogen.targets.c.payload.free_numerals import FreeDigits
 from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole
 from protogen.targets.c.payload.numerals import Digits
@@ -141,6 +142,8 @@ class Load(PlacedWalk):
             self._rest(place, str(count), step.count.greatest)
         elif step.count.until is not None:
             self._up_to(place, str(count), step.count, step.count.until)
+        elif step.count.between is not None:
+            self._between(place, str(count), step.count, step.count.between)
         else:
             self._copy(place, count)
 
@@ -160,6 +163,15 @@ class Load(PlacedWalk):
         self.lines.add(f"{member} = ({counting_type(count.greatest)}){found};")
         self.lines.add(f"{self.helpers.copy()}({place}, {self.address()}, {member});")
         self.skip(f"1U + {member}")
+
+    def _between(self, place: str, member: str, count: Count, between: Between) -> None:
+        """Take the characters in front of the next separator, or of the end."""
+        self.catch_up()
+        if between.leads:
+            self.skip(1)
+        found = text_size(self.helpers, between, self.address(), self._left())
+        self.lines.add(f"{member} = ({counting_type(count.greatest)})({found});")
+        self._copy(place, member)
 
     @contextmanager
     def inside(self, size: str, step: RegionStep) -> Iterator[None]:
@@ -190,6 +202,8 @@ class Load(PlacedWalk):
     def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Elements."""
         element, size = step.element, step.element.known_size
+        if step.count.tail is not None:
+            self._in_front(str(count), step.count.tail)
         if step.count.fills:
             self._filling(step, place, str(count))
         elif step.count.mark is not None:
@@ -204,6 +218,13 @@ class Load(PlacedWalk):
             self.skip(times(count, element.type.size))
         else:
             self.elements(step, place, count)
+
+    def _in_front(self, member: str, tail: Tail) -> None:
+        """Count the elements that stand in front of a tail."""
+        self.catch_up()
+        self.lines.add(f"{member} = 0U;")
+        here = (self.address(), self._left(), self.variable("left"))
+        count_elements(self.helpers, self.lines, tail, member, here)
 
     def _up_to_last(self, step: RepeatStep, place: str, member: str, mark: Formula) -> None:
         """Take elements up to the one that says that it is the last."""

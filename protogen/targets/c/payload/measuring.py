@@ -73,8 +73,10 @@ class Measure(Walk):
         self._add(len(step.data))
 
     def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
-        """A text, or bytes, and the terminator behind them."""
+        """A text, or bytes, with what ends them, or stands in front."""
         self._add(count)
+        if step.count.between is not None:
+            self._add(int(step.count.between.leads))
         if step.count.until is not None:
             self._add(1)
 

@@ -19,6 +19,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.model.types import Integer, NumberType
 from protogen.targets.c.lines import Lines
+from protogen.targets.c.payload.between import separator_of
 from protogen.targets.c.payload.free_numerals import FreeDigits
 from protogen.targets.c.payload.helpers import Helpers, is_plain, parted
 from protogen.targets.c.payload.numerals import Digits
@@ -114,7 +115,9 @@ class _Output(Walk):
             self._byte(byte)
 
     def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
-        """A text, or bytes, and the terminator behind them."""
+        """A text, or bytes, with what ends them, or stands in front."""
+        if step.count.between is not None and step.count.between.leads:
+            self._byte(separator_of(step.count.between))
         self._bytes(place, count)
         if step.count.until is not None:
             self._byte(hexadecimal(step.count.until))

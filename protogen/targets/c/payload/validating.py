@@ -23,6 +23,7 @@ from protogen.model.payload_plan import (
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Text, counting_bits
 from protogen.targets.c.lines import Lines
+from protogen.targets.c.payload.between import is_text
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.measuring import Measure
 from protogen.targets.c.payload.walk import Walk, amount, is_unfit, out_of_bounds
@@ -101,7 +102,9 @@ class Validate(Walk):
 
     def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
         """A text, or bytes."""
-        if isinstance(step.type, Text) or Check.SEVEN_BIT in step.checks:
+        if step.count.between is not None:
+            self._refuse(f"!{is_text(self.helpers, step.count.between, place, amount(count))}")
+        elif isinstance(step.type, Text) or Check.SEVEN_BIT in step.checks:
             self._refuse(f"!{self.helpers.seven_bit()}({place}, {amount(count)})")
         if step.count.until is not None:
             end = hexadecimal(step.count.until)

@@ -19,7 +19,7 @@ from protogen.model.payload_plan import (
     RepeatStep,
     TrailingPresence,
 )
-from protogen.model.types import Integer, NumberType, Text
+from protogen.model.types import Between, Integer, NumberType, Text
 from protogen.targets.markdown.text.words import code, hex_number, plural
 
 _ORDERS = {"little": "LE", "big": "BE"}
@@ -109,8 +109,7 @@ def _free_text(form: FreeNumeral) -> str:
 def _behind_separator(form: FreeNumeral) -> str:
     if form.separator is None or not form.leads:
         return ""
-    byte = form.separator
-    return f", behind {code(chr(byte) if 0x20 < byte < 0x7F else f'{byte:02X}')}"
+    return f", behind {_shown(form.separator)}"
 
 
 def _digits_of_free(form: FreeNumeral) -> str:
@@ -125,11 +124,27 @@ def _digits_of_free(form: FreeNumeral) -> str:
 
 def _end(count: Count, region: RegionStep | None) -> str:
     """Print what ends bytes or elements that nothing counts."""
+    if count.tail is not None:
+        return "up to what follows"
+    if count.between is not None:
+        return _between(count.between)
     if count.until is not None:
         return f"up to {code(f'{count.until:02X}')}"
     if count.mark is not None:
         return f"up to the first whose {code(count.mark.label)} is not 0"
     return f"to {end_of(region)}"
+
+
+def _between(between: Between) -> str:
+    """Print where a text ends, and which characters it can't have."""
+    end = "the end" if between.takes_rest else f"the next {_shown(between.separator)}"
+    excluded = [it for it in range(0x20, 0x7F) if it not in between.alphabet]
+    without = f", without {' '.join(map(_shown, excluded))}" if excluded else ""
+    return f"up to {end}{without}"
+
+
+def _shown(byte: int) -> str:
+    return code(chr(byte) if 0x20 < byte < 0x7F else f"{byte:02X}")
 
 
 def _extended(element: str, count: Count, noun: str, region: RegionStep | None) -> str:

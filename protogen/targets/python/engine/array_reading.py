@@ -16,6 +16,7 @@ from protogen.model.payload_plan import (
     RepeatStep,
 )
 from protogen.model.sizes import SizeSet
+from protogen.model.types import Tail
 from protogen.runtime.attributes import attribute
 from protogen.targets.python.engine.converting import Converter
 from protogen.targets.python.engine.layout import (
@@ -31,7 +32,7 @@ from protogen.targets.python.engine.lines import Lines
 from protogen.targets.python.engine.place import Place
 from protogen.targets.python.engine.raw import Raw, member_of
 from protogen.targets.python.formulas import in_python
-from protogen.targets.python.literals import tuple_of
+from protogen.targets.python.literals import octets_in_class, tuple_of
 
 
 class Run(msgspec.Struct):
@@ -91,7 +92,8 @@ class ArrayReader(Converter, Raw):
             return self._up_to_last(step, step.count.mark)
         element, size = step.element, step.element.sizes.fixed
         if not size:
-            return self._array_of_varying(step)
+            in_front = None if step.count.tail is None else self._array_count(step.count, 0)
+            return self._array_of_varying(step, in_front)
         together = isinstance(element, RecordStep) and common_order(element.steps) is not None
         if together and self._fills_message(step.count, size):
             assert isinstance(element, RecordStep)
@@ -124,11 +126,24 @@ class ArrayReader(Converter, Raw):
         return self.is_at_end
 
     def _array_count(self, number: Count, size: int) -> str:
+        if number.tail is not None:
+            return self._in_front(number, number.tail)
         if not number.fills:
             return self._count(number)
         count, left = self.lines.local("n"), self.lines.local("left")
         self.lines.add(f"{count}, {left} = divmod(len(data) - {self.place.grouped}, {size})")
         self.lines.refuse_if(f"{left} or {outside_of(number, count)}")
+        return count
+
+    def _in_front(self, number: Count, tail: Tail) -> str:
+        """The number of elements in front of a tail."""
+        count, left = self.lines.local("n"), f"len(data) - {self.place.grouped}"
+        if tail.separator is not None:
+            separator = octets_in_class(bytes((tail.separator,)))
+            left = f"data.count({separator}, {self.place.text})"
+        kept = f"{left} - {tail.least}" if tail.least else left
+        self.lines.add(f"{count} = max(0, {kept}) // {tail.element}")
+        self.lines.refuse_if(outside_of(number, count))
         return count
 
     def _elements(self, step: RepeatStep, size: int, count: str) -> str:

@@ -24,7 +24,7 @@ from protogen.model.payload_plan import (
     TrailingPresence,
 )
 from protogen.model.payload_walks import without_constant
-from protogen.model.types import Octets, Struct
+from protogen.model.types import Between, Octets, Struct
 from protogen.runtime.attributes import attribute
 from protogen.targets.python.engine.array_reading import ArrayReader, Run
 from protogen.targets.python.engine.layout import (
@@ -263,6 +263,8 @@ class _Reader(ArrayReader):
             self._move_to_end("len(data)")
         elif step.count.until is not None:
             self._up_to(value, step.count, step.count.until)
+        elif step.count.between is not None:
+            self._between(value, step.count, step.count.between)
         else:
             count = self._count(step.count)
             end = self.lines.local("end")
@@ -281,6 +283,29 @@ class _Reader(ArrayReader):
         self.lines.refuse_if(f"{end} < {f'{start} + {count.least}' if count.least else '0'}")
         self.lines.add(f"{value} = data[{start}:{end}]")
         self._move_to(f"{end} + 1")
+
+    def _between(self, value: str, count: Count, between: Between) -> None:
+        """Take the characters in front of the next separator, or of the end."""
+        start = self.place.text
+        separator = octets_in_class(bytes((between.separator,)))
+        if between.leads:
+            first = Place(self.place.variable, self.place.offset + 1).text
+            self.lines.refuse_if(f"data[{start}:{first}] != {separator}")
+            self.place.offset += 1
+            start = first
+        if between.takes_rest:
+            self.lines.add(f"{value} = data[{start}:]")
+        else:
+            end = self.lines.local("end")
+            self.lines.add(f"{end} = data.find({separator}, {start})")
+            self.lines.add(f"{value} = data[{start}:] if {end} < 0 else data[{start}:{end}]")
+        self.lines.refuse_if(outside_of(count, f"len({value})"))
+        characters = self.lines.constants.named("CHARACTERS", octets_in_class(between.characters))
+        self.lines.refuse_if(f"{value}.translate(None, {characters})")
+        if between.takes_rest:
+            self._move_to_end("len(data)")
+        else:
+            self._move_to(f"{start} + len({value})")
 
     def _written(self, step: IntegerStep) -> str:
         """Take a number out of the characters up to the next separator, or of all."""

@@ -26,7 +26,7 @@ from protogen.model.payload_plan import (
     TrailingPresence,
 )
 from protogen.model.payload_walks import without_constant
-from protogen.model.types import Field, Struct, Text, is_text
+from protogen.model.types import Between, Field, Struct, Text, is_text
 from protogen.runtime.attributes import attribute
 from protogen.targets.python.engine.layout import (
     array_code,
@@ -303,8 +303,17 @@ class _Writer(Raw):
             self._put(step, data)
         else:
             self._counted(data, step.count)
+            if step.count.between is not None:
+                self._between(data, step.count.between)
             self._bytes.piece(data)
             self._end(data, step.count)
+
+    def _between(self, data: str, between: Between) -> None:
+        """Refuse other characters than a text can have, and put the separator in front."""
+        characters = self.lines.constants.named("CHARACTERS", octets_in_class(between.characters))
+        self.lines.refuse_if(f"{data}.translate(None, {characters})")
+        if between.leads:
+            self._bytes.piece(octets_in_class(bytes((between.separator,))))
 
     def _octets(self, value: str, step: BytesStep) -> None:
         self.lines.refuse_if(f"type({value}) is not bytes")
