@@ -117,8 +117,6 @@ def _beginning(draft: Draft, sender: str) -> Iterator[ByteSet]:
             return
         if isinstance(part, _HELD) or (isinstance(start, StartSet) and part is frame.parts[0]):
             yield from part_bytes(part, EVERY_BYTE)
-        elif isinstance(part, NumberPart) and part.between is not None:
-            yield from part_bytes(part, EVERY_BYTE)  # A receiver takes no other characters.
         elif isinstance(part, BitsPart):
             yield from part_bytes(_held_bits(part), EVERY_BYTE)
         else:
