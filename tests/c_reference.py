@@ -18,6 +18,7 @@ from expression_oracle import worked_out
 from protogen.model.messages import Message
 from protogen.model.types import (
     Array,
+    Between,
     Counted,
     Extent,
     Field,
@@ -29,6 +30,7 @@ from protogen.model.types import (
     Octets,
     Struct,
     Switch,
+    Tail,
     Text,
     Type,
     Until,
@@ -179,7 +181,7 @@ class _Reader:
     def _count(self, extent: Extent, scope: Scope, *, constant: bool) -> int | None:
         if isinstance(extent, Fixed):
             return extent.count
-        if isinstance(extent, Fill | Until | Marked):
+        if isinstance(extent, Between | Fill | Until | Marked):
             return None
         count = worked_out(extent.by, scope)
         if not constant:
@@ -201,7 +203,23 @@ class _Reader:
             raise Wrong("encoding")
         return data
 
+    def _between(self, extent: Between) -> bytes:
+        """Characters in front of the next separator, or all where it may be one of them."""
+        if extent.leads and self._take(1)[0] != extent.separator:
+            raise Wrong("value")
+        left = self._payload[self.at :]
+        if extent.separator not in extent.characters:
+            left = left.split(bytes([extent.separator]))[0]
+        data = self._take(len(left))
+        if not extent.least <= len(data) <= extent.greatest:
+            raise Wrong("size")
+        if not set(data) <= set(extent.characters):
+            raise Wrong("value")
+        return data
+
     def _bytes(self, type_: Text | Octets, scope: Scope, *, constant: bool) -> bytes:
+        if isinstance(type_.extent, Between):
+            return self._between(type_.extent)
         if isinstance(type_.extent, Until):
             return self._up_to(type_, type_.extent)
         count = self._count(type_.extent, scope, constant=constant)
@@ -223,6 +241,11 @@ class _Reader:
         if isinstance(type_.extent, Marked):
             return self._up_to_last(type_.element, type_.extent, scope)
         assert isinstance(type_.extent, Fill)
+        if type_.extent.tail is not None:
+            count = self._in_front(type_.extent.tail)
+            if count not in type_.extent.counts:
+                raise Wrong("size")
+            return [self._value(type_.element, scope) for _ in range(count)]
         while self._left:
             if len(found) == type_.extent.greatest:
                 raise Wrong("size")
@@ -230,6 +253,12 @@ class _Reader:
         if len(found) < type_.extent.least:
             raise Wrong("size")
         return found
+
+    def _in_front(self, tail: Tail) -> int:
+        """Whole elements that are left if what has to stand behind them does."""
+        left = self._payload[self.at :]
+        units = len(left) if tail.separator is None else left.count(tail.separator)
+        return max(0, units - tail.least) // tail.element
 
     def _up_to_last(self, element: Type, extent: Marked, scope: Scope) -> list[Any]:
         """Elements up to the first that says that it is the last."""

@@ -15,6 +15,7 @@ from expression_oracle import worked_out
 
 from protogen.model.types import (
     Array,
+    Between,
     Extent,
     Field,
     Fill,
@@ -59,7 +60,7 @@ def _members(fields: Sequence[Field], field: Field) -> list[tuple[str, Any]]:
     if field.const is not None:
         return []
     found = [(flag_name(fields, field), ctypes.c_bool)] if field.optional else []
-    if isinstance(_extent(field.type), Fill | Until | Marked):
+    if isinstance(_extent(field.type), Between | Fill | Until | Marked):
         found.append((count_name(fields, field), _counting(_extent(field.type))))
     if has_room(field.type):
         found.append((field.name, _type(field.type)))
@@ -169,7 +170,7 @@ def fill(record: Any, fields: Sequence[Field], values: Mapping[str, Any], scope:
             inner[field.name] = value
         if field.const is not None:
             continue
-        if isinstance(_extent(field.type), Fill | Until | Marked):
+        if isinstance(_extent(field.type), Between | Fill | Until | Marked):
             size = len(value) // (2 if isinstance(field.type, Octets) else 1)
             _set(record, count_name(fields, field), size)
         if has_room(field.type):
@@ -252,7 +253,7 @@ def read(record: Any, fields: Sequence[Field], scope: Scope) -> Values:
             found[field.name] = _shown(field.type, field.const)
         else:
             count = 0
-            if isinstance(_extent(field.type), Fill | Until | Marked):
+            if isinstance(_extent(field.type), Between | Fill | Until | Marked):
                 count = getattr(record, count_name(fields, field))
             found[field.name] = _take(record, field.name, field.type, count, inner)
         if isinstance(field.type, Integer | Struct):
@@ -298,7 +299,7 @@ def _count(extent: Extent, count: int, scope: Scope) -> int:
     match extent:
         case Fixed(count=number):
             return number
-        case Fill() | Until() | Marked():
+        case Between() | Fill() | Until() | Marked():
             return count
         case _:
             return worked_out(extent.by, scope)

@@ -13,6 +13,7 @@ _DIGITS = {
     "base16-upper": frozenset(b"0123456789ABCDEF"),
     "base16-lower": frozenset(b"0123456789abcdef"),
 }
+_PRINTABLE = frozenset(range(0x20, 0x7F))
 _WRITTEN = ("digits", "code", "fraction", "case")
 
 Types = Mapping[str, Any]
@@ -76,6 +77,8 @@ def _of_field(item: dict[str, Any], types: Types, *, last: bool) -> frozenset[in
         return EVERY
     if "fields" in item:
         return _of_fields(item["fields"], types, last=last and "count" not in item)
+    if "without" in item:
+        return _PRINTABLE - frozenset(map(_code, item["without"]))
     return _of_value(item)
 
 

@@ -29,6 +29,7 @@ from protogen.model.parts import (
 from protogen.model.transparency import Base16, Cobs, Encoding, Escape, Insertion, Substitution
 from protogen.model.types import (
     Array,
+    Between,
     Extent,
     Field,
     Fixed,
@@ -78,12 +79,14 @@ def value_bytes(type_: Type, value: Any, scope: Scope) -> bytes:
 
 
 def _ended(extent: Extent, data: bytes) -> bytes:
-    """Bytes with what fills them up, or ends them."""
+    """Bytes with what fills them up, ends them, or stands in front."""
     match extent:
         case Fixed():
             return data.ljust(extent.count, b"\0")
         case Until():
             return data + bytes([extent.byte])
+        case Between(leads=True):
+            return bytes([extent.separator]) + data
     return data
 
 

@@ -15,6 +15,7 @@ from schema_fuzzing.setting import NOTHING, Built, Size
 _SEPARATORS = (",", ";", " ", "|", 0x09, 0xFF)
 _CHARACTERS = {"left": "L", "right": "R", "comma": ",", "bar": "|", "high": 0xFF, "low": 1}
 _GREATEST_COUNT = 3
+_GREATEST_TEXT = 6
 
 
 @st.composite
@@ -78,14 +79,18 @@ class _Scope:
     def __post_init__(self) -> None:
         self._fields: dict[str, Any] = {}
         self._size = NOTHING
+        self._element_fields = 0
+        """Fields of an element of the array in front, where that ends where these begin."""
 
     def built(self) -> Built:
         return Built(self._fields, self._size)
 
     def leave_out(self, most: int, *, first: bool) -> None:
         """Have some fields at the end left out, where each is a number behind a separator."""
+        if self._element_fields:
+            most = min(most, self._element_fields - 1)
         known = list(self._fields)
-        for name in reversed(known[0 if first else 1 :][-most:]):
+        for name in reversed(known[0 if first else 1 :][-most:] if most else []):
             written = self._fields[name]
             data = {"type": written} if isinstance(written, str) else written
             if "count" in data or "fields" in data:
@@ -97,20 +102,43 @@ class _Scope:
         """Add a field, with what counts it, if there is room."""
         if self.budget < 2:
             return
-        kinds = ["number"] * 3 + ["character"] * 2
-        if self.leads:
+        kinds = ["number"] * 3 + ["character"] * 2 + ["text"] * 2
+        if last and not self.depth:
+            kinds.append("rest")
+        if self.leads and not self._element_fields:
+            kinds += ["tail"] * 2 * (not last and not self.depth and self.budget > 4)
             kinds += ["array", "struct"] * (self.depth < 2) + ["fill"] * (last and not self.depth)
         kind = self.draw(st.sampled_from(kinds))
         if kind == "array":
             self._array()
         elif kind == "struct":
             self._put(self._struct(self.budget))
+        elif kind == "rest" and not self._element_fields:
+            self._put(self._text(self.budget, only=kind))
+        elif kind == "tail":
+            self._in_front_of_tail()
         elif kind == "fill":
             element = self._element(self.budget)
             most = self.draw(st.integers(1, self.budget // element.size.greatest))
             self._put(_extended(element, {"fill": True, "max": most}, Size(0, most)))
         else:
-            self._put(self._text(self.budget, only=kind))
+            only = "text" if kind == "rest" else kind
+            self._put(self._text(self.budget, only=only))
+
+    def _in_front_of_tail(self) -> None:
+        """An array to the end, behind which fields stand all the same."""
+        budget = self.budget - 2  # What stands behind has room.
+        fields = self.draw(st.integers(1, max(1, min(3, budget // 2))))
+        texts = [self._text(budget // fields) for _ in range(fields)]
+        size = sum((text.size for text in texts), NOTHING)
+        names = ("one", "two", "three")
+        inner = {name: it.data for name, it in zip(names, texts, strict=False)}
+        element = replace(texts[0], data={"fields": inner}, size=size)
+        if fields == 1 and texts[0].data["type"] != "ascii":
+            element = texts[0]
+        most = self.draw(st.integers(1, budget // size.greatest))
+        self._put(_extended(element, {"fill": True, "max": most}, Size(0, most)))
+        self._element_fields = fields
 
     def _put(self, built: Built) -> str:
         name: str = self.draw(fresh(FIELDS, self._fields))
@@ -122,12 +150,23 @@ class _Scope:
 
     def _text(self, budget: int, only: str = "") -> Built:
         """A number or a character, with the separator in front."""
-        kind = only or self.draw(st.sampled_from(["number", "character"]))
-        found = self._character() if kind == "character" else self._number(budget)
+        kind = only or self.draw(st.sampled_from(["number", "character", "text"]))
+        if kind in ("text", "rest"):
+            found = self._characters(budget, fills=kind == "rest")
+        else:
+            found = self._character() if kind == "character" else self._number(budget)
         return replace(found, size=found.size + Size(self.leads, self.leads), fills=False)
 
     def _number(self, budget: int) -> Built:
         return self.draw(written_numbers(budget - self.leads, may_be_empty=True))
+
+    def _characters(self, budget: int, *, fills: bool) -> Built:
+        """A text of some characters, or of all that is left, separators included."""
+        most = self.draw(st.integers(1, min(_GREATEST_TEXT, budget - self.leads)))
+        least = self.draw(st.integers(0, most - fills))
+        size = {**({"fill": True} if fills else {}), "min": least, "max": most}
+        without = self.draw(st.lists(st.sampled_from("$*aZ~ "), unique=True))
+        return Built({"type": "ascii", "size": size, "without": without}, Size(least, most))
 
     def _character(self) -> Built:
         known = [
@@ -167,4 +206,6 @@ class _Scope:
 
 
 def _extended(element: Built, count: Any, size: Size) -> Built:
+    if element.data.get("type") == "ascii":  # There is no array of texts, but one of structs.
+        element = replace(element, data={"fields": {"text": element.data}})
     return Built({**element.data, "count": count}, element.size * size)

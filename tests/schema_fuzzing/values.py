@@ -21,6 +21,7 @@ from protogen.model.parts import ChoicePart, CounterPart, IdentityPart, ValuePar
 from protogen.model.protocol import Sender
 from protogen.model.types import (
     Array,
+    Between,
     Counted,
     Extent,
     Field,
@@ -293,6 +294,9 @@ def _string(draw: st.DrawFn, type_: Text | Octets, scope: Scope) -> str:
     size = draw(_size(type_.extent, scope))
     if isinstance(type_, Octets):
         return _without_end(type_.extent, draw(_octets(size, type_.byte_bits))).hex()
+    if isinstance(type_.extent, Between):
+        characters = st.sampled_from(type_.extent.characters.decode())
+        return draw(st.text(characters, min_size=size, max_size=size))
     if not isinstance(type_.extent, Fixed):
         return _without_end(type_.extent, draw(_text(size, size)).encode()).decode()
     return draw(_text(0, size)).rstrip("\0")
