@@ -266,6 +266,40 @@ class TestTerminators:
         }
 
 
+class TestTextsAndTails:
+    """What becomes of messages with texts between separators, and with fields behind a list."""
+
+    def pair(self, folder: Path, *forms: str) -> list[Protocol]:
+        before = "  order: {id: 2, from: host, fields: {mode: mode}}\n"
+        after = '  order: {id: 2, from: host, separator: ",", fields: {FORM}}\n'
+        return [
+            compiled(folder / f"{index}.yaml", SCHEMA.replace(before, after.replace("FORM", form)))
+            for index, form in enumerate(forms)
+        ]
+
+    @pytest.mark.parametrize(
+        ("form", "rule"),
+        [
+            ("{max: 4}, without: [' ', a]", "field-encoding"),
+            ("{max: 3}, without: [a]", "field-count"),
+            ("{min: 1, max: 4}, without: [a]", "field-count"),
+        ],
+    )
+    def test_frames_show_what_changed(self, form: str, rule: str, tmp_path: Path) -> None:
+        texts = [f"name: {{type: ascii, size: {it}}}" for it in ("{max: 4}, without: [a]", form)]
+        old, new = self.pair(tmp_path, *texts)
+        found = [item for item in findings(old, new)[1] if item.category.value == "WIRE"]
+        assert {item.rule.name for item in found} == {rule}
+        assert all(item.witnesses for item in found)
+
+    def test_what_stands_behind_a_list_is_no_change_of_the_list(self, tmp_path: Path) -> None:
+        number = "type: decimal, digits: {max: 2}"
+        base = f"n: {{{number}}}, list: {{{number}, count: {{fill: true, max: 3}}}}"
+        old, new = self.pair(tmp_path, base, f"{base}, end: {{type: decimal, range: [0, 9]}}")
+        found = [item for item in findings(old, new)[1] if item.category.value == "WIRE"]
+        assert {item.rule.name for item in found} == {"field-added"}
+
+
 class TestLastElements:
     """What becomes of messages with lists whose last element says so."""
 

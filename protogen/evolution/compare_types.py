@@ -62,7 +62,8 @@ class TypeComparison:
             case _ if type(old) is not type(new) and _bytes(old) == _bytes(new) is not None:
                 yield self._report("field-kind", path, named(old.label, new.label))
             case Array(), Array():
-                yield from self._extents(_with_new_names(old, new), new.extent, path)
+                extent = _without_tail(_with_new_names(old, new))
+                yield from self._extents(extent, _without_tail(new.extent), path)
                 yield from self._packing(old, new, path)
                 yield from self.compare(old.element, new.element, path)
             case Struct(), Struct():
@@ -336,8 +337,6 @@ def _end(extent: Extent) -> int | str | Operand | None:
             return extent.mark
         case Between():
             return extent.characters.hex()
-        case Fill() if extent.tail is not None:
-            return f"{extent.tail.least} of {extent.tail.element} by {extent.tail.separator}"
     return None
 
 
@@ -352,6 +351,11 @@ def _with_new_names(old: Array, new: Array) -> Extent:
         names.append(found.name if found is not None else name)
         element = found.type if found is not None else element
     return replace(old.extent, mark=replace(old.extent.mark, path=tuple(names)))
+
+
+def _without_tail(extent: Extent) -> Extent:
+    """The extent without what stands behind: changes of that are those of its own fields."""
+    return replace(extent, tail=None) if isinstance(extent, Fill) else extent
 
 
 def _packed(order: BitOrder | None) -> str:
@@ -369,7 +373,7 @@ def _amount(extent: Extent) -> str:
         case Counted():
             return f"{extent.least} to {extent.greatest}, as {extent.by.text} says"
         case Fill():
-            return f"{_bounds(extent)}, to {'the end' if extent.tail is None else 'what follows'}"
+            return f"{_bounds(extent)}, to the end"
         case Between():
             return f"{_bounds(extent)}, {_between(extent)}"
         case Until():
