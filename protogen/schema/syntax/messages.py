@@ -204,8 +204,8 @@ class MessageSyntax(Syntax):
     byte_order: ByteOrder | None = Field(None, description="Byte order of its fields.")
     separator: Separated | None = Field(
         None,
-        description="A byte that stands between the fields, which are text: decimal, hexadecimal "
-        "and closed char, and structs and arrays of them.",
+        description="A byte that stands between the fields, which are text: decimal, hexadecimal, "
+        "ascii and closed char, and structs and arrays of them.",
     )
     fields: Annotated[
         Annotated[Literal["unspecified"], Tag("text")]
