@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import sys
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import msgspec
@@ -51,7 +51,9 @@ def proof_of(name: str) -> Proof:
 
 def render_page() -> str:
     """Return the page that lists the schemas."""
-    return _HEAD + _table() + "".join(_section(name, _protocol(name)) for name in library_names())
+    protocols = {name: load(FOLDER / f"{name}.yaml") for name in library_names()}
+    sections = (_section(name, protocol) for name, protocol in protocols.items())
+    return "".join((_HEAD, _table(protocols), *sections))
 
 
 def with_table(readme: str) -> str:
@@ -66,12 +68,8 @@ def with_table(readme: str) -> str:
     return re.sub(f"(?s)(?<={_BEGIN}).*(?={_END})", lambda _: text, readme)
 
 
-def _protocol(name: str) -> Protocol:
-    return load(FOLDER / f"{name}.yaml")
-
-
-def _table() -> str:
-    rows = [_row(name, _protocol(name), proof_of(name)) for name in library_names()]
+def _table(protocols: Mapping[str, Protocol]) -> str:
+    rows = [_row(name, protocol, proof_of(name)) for name, protocol in protocols.items()]
     return "\n".join(("| Schema | Protocol | Messages | Agrees with | Said |", _RULE, *rows, ""))
 
 
