@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import product
-from pathlib import Path
 
 import pytest
+from compiled import ROOT, protocol_of
 
-from protogen.api import load
 from protogen.model.frame_places import Place, Run, Side
 from protogen.model.frame_plan import EndRule, FramePlan, StartRule, Store
 from protogen.model.parts import LiteralPart, PayloadPart
 from protogen.model.transparency import Base16, Escape, Substitution
 
-ROOT = Path(__file__).parent.parent
-
 
 def plan_of(schema: str, sender: str) -> FramePlan:
-    return load(ROOT / "schemas" / f"{schema}.yaml").sender(sender).plan
+    return protocol_of(ROOT / "schemas" / f"{schema}.yaml").sender(sender).plan
 
 
 def head(offset: int) -> Place:
@@ -154,7 +151,7 @@ def everything() -> Iterator[tuple[str, FramePlan]]:
         for path in sorted((ROOT / folder).rglob("*.yaml")):
             if path.parent.name == "shared":
                 continue
-            for sender in load(path).senders:
+            for sender in protocol_of(path).senders:
                 yield f"{path.stem}-{sender.name}", sender.plan
 
 

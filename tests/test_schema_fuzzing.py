@@ -145,11 +145,10 @@ def drawn_from(number: int) -> list[Schema]:
 
 
 @pytest.mark.usefixtures("fixed_draws")
-def test_nearly_every_draw_is_valid_and_every_shape_is_drawn(compile_text: Compile) -> None:
+def test_every_shape_is_drawn() -> None:
+    """Whether drawn schemas are valid is asked where they are tried, of each."""
     drawn = [schema for number in range(FIXED_SEEDS) for schema in drawn_from(number)]
-    compilations = (compile_text(to_yaml(schema.data)) for schema in drawn)
-    compiled = sum(compilation.protocol is not None for compilation in compilations)
-    assert compiled >= 0.9 * len(drawn) >= 0.8 * FIXED_SEEDS * DRAWS_OF_A_SEED
+    assert len(drawn) >= 0.8 * FIXED_SEEDS * DRAWS_OF_A_SEED
     found = Counter(shape for schema in drawn for shape in set(schema.shapes))
     for shape, count in sorted(found.items()):
         sys.stdout.write(f"{count:6} {shape}\n")

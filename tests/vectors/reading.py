@@ -170,12 +170,12 @@ def _check_cover(where: str, size: int, events: tuple[ExpectedEvent, ...]) -> No
         raise ValueError(f"{where}: the events do not cover the {size} bytes: {ends}")
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(yaml.CSafeLoader):
     """Reads scalars as YAML 1.2 does: `on`, `off`, `yes` and `no` are texts."""
 
 
 def _resolvers() -> Iterator[tuple[str, list[Any]]]:
-    for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items():
+    for first, resolvers in yaml.CSafeLoader.yaml_implicit_resolvers.items():
         yield first, [item for item in resolvers if item[0] != "tag:yaml.org,2002:bool"]
 
 
