@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import subprocess
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache
-from hashlib import sha256
 from itertools import chain, zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,6 +15,7 @@ import c_reference
 import pytest
 from c_library import FLAGS
 from compiled import protocol_of
+from program_store import kept
 from tooling import require_compiler
 
 from protogen.copying import replace
@@ -55,15 +53,8 @@ def build(driver: Driver, folder: Path, command: Sequence[str | Path], *machine:
 def build_once(driver: Driver, folder: Path, command: Sequence[str | Path], *machine: str) -> Path:
     """Result of `build`, unless the same was compiled before, by whichever worker."""
     driver.write(folder)
-    texts = (path.read_bytes() for path in sorted(folder.iterdir()))
-    others = ((MACHINES / name).read_bytes() for name in machine)
-    words = (str(word).encode() for word in command)
-    digest = sha256(b"\0".join([*words, *texts, *others])).hexdigest()
-    kept = Path(os.environ["XDG_CACHE_HOME"], "programs", digest)
-    if not kept.exists():
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        shutil.move(build(driver, folder, command, *machine), kept)
-    return kept
+    sources = [*sorted(folder.glob("*.[ch]")), *(MACHINES / name for name in machine)]
+    return kept(command, sources, lambda: build(driver, folder, command, *machine))
 
 
 @cache

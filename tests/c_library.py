@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from c_structs import Values, fill, read, structure_of
+from program_store import kept
 from tooling import require_tool
 
 from protogen.model.messages import Message
@@ -133,11 +134,9 @@ class CLibrary:
         write_sources(protocol, folder, payloads_only=True)
         shim = folder / f"{protocol.name}_shim.c"
         shim.write_text(shim_of(protocol, self.module), encoding="utf-8")
-        library = folder / f"{protocol.name}.so"
-        compiler = require_tool("cc")
-        command = [compiler, *FLAGS, *flags, "-fPIC", "-shared", "-o", str(library), str(shim)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
+        command = [require_tool("cc"), *FLAGS, *flags, "-fPIC", "-shared"]
+        sources = sorted(folder.iterdir())
+        library = kept(command, sources, lambda: _compiled(command, shim))
         self._library = ctypes.CDLL(str(library))
         self._codecs = {m.name: _Codec(self._library, m, self._view(m)) for m in protocol.messages}
 
@@ -146,6 +145,15 @@ class CLibrary:
 
     def __getitem__(self, message: str) -> _Codec:
         return self._codecs[message]
+
+
+def _compiled(command: Sequence[str], source: Path) -> Path:
+    library = source.with_suffix(".so")
+    done = subprocess.run(
+        [*command, "-o", library, source], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return library
 
 
 class _Codec:
