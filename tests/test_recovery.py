@@ -35,8 +35,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from recovery_oracle import Fate, fates, is_protected
 
+from protogen.model.frame_plan import StartRule
 from protogen.runtime.errors import EncodeError
-from protogen.runtime.framing.frame import AfterEnd, FrameSpec, StartMark
+from protogen.runtime.framing.frame import AfterEnd, FrameSpec
 from protogen.runtime.framing.starts import starts_of
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
@@ -274,7 +275,7 @@ def test_a_torrent_of_noise_fills_no_memory(path: Path) -> None:
 WITH_STARTS = [
     (path, sender)
     for path, sender in senders()
-    if isinstance(spec_of(path, sender).start, StartMark)
+    if protocol_of(path).sender(sender).plan.start in (StartRule.LITERAL, StartRule.SET)
 ]
 
 
