@@ -24,23 +24,24 @@ settings.register_profile("thorough", settings.get_profile("default"), max_examp
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
 
 SLOW = (
-    "test_c_lint.py",
-    "test_evolution_random.py",
     "test_c_proof.py",
-    "test_c_schemas.py",
-    "test_lower_bounds.py",
-    "test_c_machines.py",
     "test_schema_fuzzing.py",
+    "test_evolution_random.py",
+    "test_lower_bounds.py",
+    "test_c_schemas.py",
+    "test_c_machines.py",
+    "test_c_fuzz.py",
+    "test_docs.py",
+    "test_convert_fleet.py",
+    "test_c_lint.py",
     "test_native.py",
     "test_native_parts.py",
-    "test_convert_fleet.py",
     "test_c_decoder.py",
     "test_c_feed.py",
-    "test_c_fuzz.py",
     "test_c_codecs.py",
-    "test_docs.py",
 )
-"""The files that take longest, most of it in single tests."""
+"""The files that take longest. Those of single long tests are first: left for last, a worker would
+end long after the others."""
 
 
 @pytest.hookimpl(tryfirst=True)
