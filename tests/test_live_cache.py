@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from cli_support import run
 
 from protogen import program
 from protogen.cli.wire import codec
@@ -56,6 +57,15 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+def fill(folder: Path) -> str:
+    """Compile the schema in `folder` for the cache; returns what the command prints of a frame."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        result = run("decode", "link.yaml", "--sender", "board", "--hex", "01 7B C0")
+    assert result.exit_code == 0, result.output
+    return result.stdout
+
+
 def kept(folder: Path) -> list[Path]:
     """The files of the cache."""
     return sorted((folder / "cache" / "protogen" / "schemas").iterdir())
@@ -70,7 +80,7 @@ def test_the_second_run_does_not_compile(folder: Path) -> None:
 
 
 def test_a_schema_that_changed_is_compiled(folder: Path) -> None:
-    decode(folder)
+    fill(folder)
     file = folder / "link.yaml"
     times = (file.stat().st_atime_ns, file.stat().st_mtime_ns)
     file.write_text(STATUS.replace("volts", "celsi"), encoding="utf-8")
@@ -81,7 +91,7 @@ def test_a_schema_that_changed_is_compiled(folder: Path) -> None:
 
 
 def test_an_error_is_told_though_the_schema_was_good(folder: Path) -> None:
-    decode(folder)
+    fill(folder)
     (folder / "link.yaml").write_text(STATUS.replace("{type: uint8}}", "{type: nonsense}}"))
     result = decode(folder)
     assert result.returncode == 1
@@ -91,7 +101,7 @@ def test_an_error_is_told_though_the_schema_was_good(folder: Path) -> None:
 def test_the_base_of_a_dialect_that_changed(folder: Path) -> None:
     (folder / "link.yaml").rename(folder / "base.yaml")
     (folder / "link.yaml").write_text("protocol: dialect\nextends: base.yaml\n", encoding="utf-8")
-    decode(folder)
+    fill(folder)
     assert decode(folder).stderr == "False\n"
     (folder / "base.yaml").write_text(STATUS.replace("volts", "celsi"), encoding="utf-8")
     result = decode(folder)
@@ -110,19 +120,19 @@ def test_another_program_compiles(folder: Path, monkeypatch: pytest.MonkeyPatch)
 
 @pytest.mark.parametrize("damage", [b"", b"protogen", None])
 def test_damaged_contents_are_not_used(folder: Path, damage: bytes | None) -> None:
-    first = decode(folder)
+    first = fill(folder)
     (file,) = kept(folder)
     data = file.read_bytes()
     file.write_bytes(data[:-1] + bytes([data[-1] ^ 1]) if damage is None else damage)
     result = decode(folder)
-    assert result.stdout == first.stdout
+    assert result.stdout == first
     assert result.stderr == "True\n"
     assert decode(folder).stderr == "False\n"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="the folders of a user are the user's there")
 def test_what_others_could_have_written_is_not_used(folder: Path) -> None:
-    decode(folder)
+    fill(folder)
     (file,) = kept(folder)
     file.chmod(0o620)
     assert decode(folder).stderr == "True\n"
@@ -137,7 +147,7 @@ def test_without_a_folder_it_compiles(folder: Path) -> None:
 
 
 def test_the_same_name_in_another_folder_is_another_schema(folder: Path) -> None:
-    decode(folder)
+    fill(folder)
     other = folder / "other"
     other.mkdir()
     (other / "link.yaml").write_text(STATUS.replace("volts", "amps"), encoding="utf-8")
