@@ -34,8 +34,8 @@ C99 = {
     "arm-none-eabi-gcc": ("-std=c99", "-Os", "-mcpu=cortex-m0", "-mthumb"),
 }
 OPTIMISING = ("gcc", "avr-gcc")
-"""Compilers that warn of more when they optimise, one for each width of `int`. The one for Arm is
-the same GCC with the same widths as the first, so it only has to take the types."""
+"""Compilers that warn of more when they optimise, one for each width of `int`. The one for Arm, whose
+pointers are narrower than those of the first, only has to take the types."""
 COMPILED = ("-S", "-o", "unit.s")
 """Up to machine code as text, for what GCC only says when it optimises."""
 PARSED = ("-fsyntax-only",)
@@ -175,7 +175,7 @@ def test_clang_tidy_finds_nothing(path: Path, tmp_path: Path) -> None:
 
 
 WITHOUT_EXTENSIONS = ("-U__GNUC__", "-U__clang__")
-"""Only the empty handlers are behind these, which are alike in all schemas."""
+"""Behind these are empty handlers and hints on which way is taken, alike in all schemas."""
 
 
 def deviations(made: Generated, *options: str) -> dict[str, str]:
