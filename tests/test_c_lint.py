@@ -34,7 +34,7 @@ C99 = {
     "arm-none-eabi-gcc": ("-std=c99", "-Os", "-mcpu=cortex-m0", "-mthumb"),
 }
 OPTIMISING = ("gcc", "avr-gcc")
-"""Compilers that warn of more when they optimise, one for each width of `int`. The one for Arm, whose
+"""Compilers that warn of more when they optimise, one for each width of `int`. That for Arm, whose
 pointers are narrower than those of the first, only has to take the types."""
 COMPILED = ("-S", "-o", "unit.s")
 """Up to machine code as text, for what GCC only says when it optimises."""
