@@ -16,7 +16,7 @@ from tooling import require_module
 
 from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values
-from protogen.fuzzing.trips import Case, cases
+from protogen.fuzzing.trips import Case, cases, told_before
 from protogen.library import FOLDER
 from protogen.model.frame_plan import EndRule
 from protogen.runtime.attributes import arguments
@@ -93,12 +93,14 @@ def endpoint_of(name: str, case: Case) -> str:
 
 def compare_frames(name: str, peer: Peer, drawn: Iterable[Case]) -> None:
     """Each makes the frames that the other makes, and reads in them what the other put in."""
-    engine = engine_of(name)
+    engine, protocol = engine_of(name), protocol_of(FOLDER / f"{name}.yaml")
     for case in drawn:
         ours = encoded(name, case)
         theirs = peer.frame(case)
         assert ours == theirs, case
-        (event,) = engine.events(case.sender, [theirs])
+        (event,) = engine.events(
+            case.sender, [theirs], told_before(protocol.sender(case.sender), case)
+        )
         assert (event.message, event.values) == (case.message, case.values)
         assert peer.values(case, ours) == case.values, case
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cache
 from itertools import islice
 from pathlib import Path
@@ -17,7 +17,7 @@ from cli_support import ROOT, SINK, compiled, run
 
 from protogen.compiler import compile_file
 from protogen.copying import replace
-from protogen.fuzzing.engine import Refused, Seen
+from protogen.fuzzing.engine import NOTHING_TOLD, Refused, Seen, Told
 from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
 from protogen.fuzzing.trips import case_count, cases, same, smallest, try_case
@@ -249,12 +249,12 @@ class ForgetsSign(Broken):
 
 
 class LosesFrames(Broken):
-    def events(self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]) -> list[Seen]:
+    def events(self, sender: str, pieces: Sequence[bytes], told: Told = NOTHING_TOLD) -> list[Seen]:
         return []
 
 
 class MindsChunks(Broken):
-    def events(self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]) -> list[Seen]:
+    def events(self, sender: str, pieces: Sequence[bytes], told: Told = NOTHING_TOLD) -> list[Seen]:
         return super().events(sender, pieces, told) if len(pieces) == 1 else []
 
 
@@ -276,7 +276,7 @@ class Crashes(Broken):
 def changes(**others: Any) -> type[Broken]:
     class Changes(Broken):
         def events(
-            self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]
+            self, sender: str, pieces: Sequence[bytes], told: Told = NOTHING_TOLD
         ) -> list[Seen]:
             return [replace(seen, **others) for seen in super().events(sender, pieces, told)]
 
@@ -359,7 +359,7 @@ def test_an_engine_may_refuse_what_would_be_cut_elsewhere() -> None:
             raise Refused("payload: a decoder would end the frame elsewhere")
 
         def events(
-            self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]
+            self, sender: str, pieces: Sequence[bytes], told: Told = NOTHING_TOLD
         ) -> list[Seen]:
             return []
 

@@ -4,16 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import pytest
-from library_support import cases_of, compare_frames, compare_recovery, encoded, peer_module
+from compiled import module_at, protocol_of
+from library_support import (
+    FRAMES,
+    cases_of,
+    compare_frames,
+    compare_recovery,
+    encoded,
+    peer_module,
+)
 
 from protogen.copying import replace
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
+from protogen.library import FOLDER
 
 ALL_SENSORS = 100
+PACKETS = {
+    message.name: message.identity[0]
+    for message in protocol_of(FOLDER / "roomba.yaml").messages
+    if message.name.startswith("answer_")
+}
+"""Answers, and the packets that they are."""
 COMMANDS = {
     "start": "Start",
     "safe": "Safe",
@@ -111,6 +126,34 @@ class Stream:
                 continue
             if numbers:
                 yield data[begin : line.at]
+
+
+class Answers:
+    """Answers of single packets as pyroombaadapter has them in a stream."""
+
+    def __init__(self, stream: Stream) -> None:
+        self._stream = stream
+
+    def is_known(self, case: Case) -> bool:
+        """True for a packet that it knows."""
+        return PACKETS[case.message] in self._stream.single
+
+    def _streamed(self, case: Case) -> Case:
+        packet = {"id": PACKETS[case.message], "value": case.values}
+        return replace(case, values={"packets": [packet]})
+
+    def frame(self, case: Case) -> bytes:
+        return self._stream.frame(self._streamed(case))[3:-1]
+
+    def values(self, case: Case, frame: bytes) -> Values:
+        packet = bytes((19, len(frame) + 1, PACKETS[case.message])) + frame
+        streamed = packet + bytes((-sum(packet) % 256,))
+        return cast(
+            Values, self._stream.values(self._streamed(case), streamed)["packets"][0]["value"]
+        )
+
+    def found(self, endpoint: str, data: bytes) -> Iterator[bytes]:
+        return iter(())
 
 
 class Host:
@@ -234,6 +277,54 @@ def test_both_read_the_same_in_all_sensors() -> None:
                 assert as_pycreate2(packet["value"]) == numbers(decode(data))
                 compared += 1
     assert compared > 50
+
+
+def test_both_make_and_read_the_same_answers(stream: Stream) -> None:
+    answers = Answers(stream)
+    both = [*cases_of("roomba", PACKETS), *cases_of("roomba", PACKETS, seed=2)]
+    drawn = list(filter(answers.is_known, both))
+    assert len(drawn) >= FRAMES
+    compare_frames("roomba", answers, drawn)
+
+
+def test_what_it_asks_for_is_read_as_it_reads_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its question tells our decoder what the answer is."""
+    api: Any = peer_module("pycreate2.create2api")
+    monkeypatch.setattr(api.time, "sleep", lambda _: None)
+    module = module_at(FOLDER / "roomba.yaml")
+    asked, answers = module.Decoder("host"), module.Decoder("answers")
+    commands = api.SerialCommandInterface()
+    for case in cases_of("roomba", ["answer_group_7_to_58"]):
+        answer = encoded("roomba", case)
+        line = Line(answer)
+        commands.ser = SimpleNamespace(write=line.write, read=line.read, is_open=True)
+        theirs = api.Create2.get_sensors(SimpleNamespace(SCI=commands))
+        commands.ser.is_open = False  # it would close it
+        (question,) = asked.feed(line.written)
+        answers.hear(question)
+        (event,) = answers.feed(answer)
+        assert event.message.to_dict() == case.values
+        assert as_pycreate2(case.values) == numbers(theirs)
+
+
+def test_packets_have_its_sizes() -> None:
+    sizes = peer_module("pycreate2.OI").RESPONSE_SIZES
+    ours = {
+        PACKETS[case.message]: len(encoded("roomba", case)) for case in cases_of("roomba", PACKETS)
+    }
+    together = {32: 1, 33: 2}  # It has 3 bytes for each of them, which both have together.
+    assert ours == sizes | together
+
+
+def test_a_list_of_packets_is_answered_in_its_order() -> None:
+    module = module_at(FOLDER / "roomba.yaml")
+    asked, answers = module.Decoder("host"), module.Decoder("answers")
+    # 149: two packets, 29 and 13. Then 537 and 0, and a byte that nobody asked for.
+    for event in asked.feed(bytes.fromhex("95 02 1D 0D")):
+        answers.hear(event)
+    found = [*answers.feed(bytes.fromhex("02 19 00 13")), *answers.flush()]
+    assert [item.message.value for item in found[:2]] == [537, 0]
+    assert [item.kind for item in found] == ["message", "message", "invalid"]
 
 
 def numbers(sensors: Any) -> list[int]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from protogen.fuzzing.c_calls import OK, RANGE, CEvent, Encoded, Step
 from protogen.fuzzing.c_driver import Driver
 from protogen.fuzzing.c_library import CLibrary
 from protogen.fuzzing.c_values import Unfit
-from protogen.fuzzing.engine import Refused, Seen
+from protogen.fuzzing.engine import NOTHING_TOLD, Refused, Seen, Told
 from protogen.fuzzing.samples import Values
 
 _WHY = ("", "size", "value", "encoding", "out of range", "no space")
@@ -49,7 +49,7 @@ class CEngine:
             raise Refused(_WHY[RANGE]) from None
         return frame
 
-    def events(self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]) -> list[Seen]:
+    def events(self, sender: str, pieces: Sequence[bytes], told: Told = NOTHING_TOLD) -> list[Seen]:
         """Feed the pieces to a new decoder, which is told this first, and flush it."""
         telling: list[Step] = [("tell", data) for data in self._calls.told(sender, told)]
         steps: list[Step] = [("feed", piece) for piece in pieces]

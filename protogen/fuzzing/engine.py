@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Protocol
 
 import msgspec
 
 from protogen.fuzzing.samples import Values
+
+Told = Mapping[str, int]
+"""Values of identity parts that are not sent, by their names."""
+NOTHING_TOLD: Told = MappingProxyType({})
 
 
 class Refused(Exception):  # noqa: N818 - an answer, not an error of the program
@@ -41,5 +46,5 @@ class Engine(Protocol):
     def frame(self, sender: str, message: str, values: Values, parts: Values) -> bytes:
         """Encode a whole frame. Raises Refused."""
 
-    def events(self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]) -> list[Seen]:
+    def events(self, sender: str, pieces: Sequence[bytes], told: Told = NOTHING_TOLD) -> list[Seen]:
         """Feed the pieces to a new decoder, which is told this first, and flush it."""

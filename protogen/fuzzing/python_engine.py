@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
-from protogen.fuzzing.engine import Refused, Seen
+from protogen.fuzzing.engine import NOTHING_TOLD, Refused, Seen, Told
 from protogen.fuzzing.samples import Values
 from protogen.runtime.attributes import arguments
 from protogen.runtime.codec import Protocol
@@ -53,7 +53,7 @@ class PythonEngine:
         except EncodeError as error:
             raise Refused(str(error)) from None
 
-    def events(self, sender: str, pieces: Sequence[bytes], told: Mapping[str, int]) -> list[Seen]:
+    def events(self, sender: str, pieces: Sequence[bytes], told: Told = NOTHING_TOLD) -> list[Seen]:
         """Feed the pieces to a new decoder, which is told this first, and flush it."""
         endpoint = self._codec.sender(sender).name
         decoder = Decoder(self._codec.forms(endpoint), self._engine)
