@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from random import Random
+from struct import pack
 from typing import Any
 
 import pytest
-from library_support import cases_of, compare_frames, compare_recovery, peer_module
+from compiled import module_at
+from library_support import FRAMES, cases_of, compare_frames, compare_recovery, peer_module
 
 from protogen.copying import replace
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
+from protogen.library import FOLDER
 
 PEER = "pytrinamic"
 SIZE = 9
@@ -103,6 +107,9 @@ REPLIES = {
     "positions_reached": 128,
     "refused": None,
 }
+STORED = ["stored_command", "stored_head", "stored_value"]
+"""What answers `read_memory`."""
+READ_MEMORY = 134
 COMMAND_OF_REPLY = {"application_status": 135, "firmware_version": 136, "positions_reached": 138}
 
 
@@ -132,12 +139,26 @@ class PyTrinamic:
         if case.message == "version_text":
             text = f"{values['module']:04}V{values['version']:03}"
             return bytes((parts["host"], *text.encode()))
+        if case.message in STORED:
+            return self._stored(parts["host"], case.message, values)
         status = parts.get("status", REPLIES[case.message])
         command = parts.get("command", COMMAND_OF_REPLY.get(case.message))
         value = next(iter(values.values()))
+        if case.message == "application_status":
+            value = (values["state"] << 24) + values["next"]
         if case.message == "firmware_version":
             value = (values["module"] << 16) + (values["major"] << 8) + values["minor"]
         reply = self._tmcl.TMCLReply(parts["host"], parts["address"], status, command, value)
+        return bytes(reply.to_buffer())
+
+    def _stored(self, host: int, message: str, values: Values) -> bytes:
+        if message == "stored_command":
+            return bytes(self._tmcl.TMCLReply(host, *values.values()).to_buffer())
+        value = values.get("value")
+        if value is None:
+            *_, unused, motor, type_, opcode = values.values()
+            value = (unused << 24) + (motor << 16) + (type_ << 8) + opcode
+        reply = self._tmcl.TMCLReply(host, values["address"], 100, READ_MEMORY, value)
         return bytes(reply.to_buffer())
 
     def _command(self, case: Case, values: list[int]) -> bytes:
@@ -159,11 +180,22 @@ class PyTrinamic:
             module, version = reply.version_string().split("V")
             return {"module": int(module), "mark": ord("V"), "version": int(version)}
         assert reply.is_checksum_correct()
+        if case.message in STORED:
+            return self._stored_in(case, reply)
+        if case.message == "application_status":
+            return dict(zip(case.values, divmod(reply.value, 1 << 24), strict=True))
         if case.message == "firmware_version":
             version = self._tmcl.GetInfo.FWVersion(reply.value)
             major, minor = divmod(version.minor, 256)
             return {"module": version.major, "major": major, "minor": minor}
         return {next(iter(case.values)): self._signed(case, reply.value)}
+
+    def _stored_in(self, case: Case, reply: Any) -> Values:
+        """What its example that fetches a program makes of replies, and the rest of them."""
+        found = [reply.module_address, reply.status, reply.command, self._signed(case, reply.value)]
+        if case.message == "stored_head":
+            found[3:] = [reply.value >> shift & 0xFF for shift in (24, 16, 8, 0)]
+        return dict(zip(case.values, found, strict=True))
 
     def _signed(self, case: Case, value: int) -> int:
         is_signed = list(case.values)[-1] in SIGNED
@@ -179,6 +211,43 @@ class PyTrinamic:
                 at += SIZE
             else:
                 at += 1
+
+
+class Samples:
+    """Samples in bulk, as pytrinamic asks for them and reads them. It makes none."""
+
+    def __init__(self) -> None:
+        self._crc32: Any = peer_module("pytrinamic.helpers").crc32
+        self._reader: Any = peer_module("pytrinamic.rd").Rd
+        interface = peer_module("pytrinamic.connections.tmcl_interface").TmclInterface
+
+        class Module(interface):  # type: ignore[misc, valid-type]
+            samples = b""
+
+            def _send(self, host_id: int, module_id: int, data: bytes) -> None:
+                assert bytes(data[1:3]) == bytes((142, 22))
+
+            def _recv(self, host_id: int, module_id: int) -> bytes:
+                count = len(self.samples) // 4 - 1
+                content = bytes((host_id, module_id, 100, 142)) + count.to_bytes(4, "big")
+                return content + bytes((sum(content) % 256,))
+
+            def _recv_bulk(self, incoming_bytes: int, host_id: int, module_id: int) -> bytes:
+                return self.samples[:incoming_bytes]
+
+        self._module = Module()
+
+    def frame(self, case: Case) -> bytes:
+        samples = case.values["samples"]
+        data = pack(f"<{len(samples)}I", *samples)
+        return data + pack("<I", self._crc32(data))
+
+    def values(self, case: Case, frame: bytes) -> Values:
+        self._module.samples = frame
+        return {"samples": self._reader(self._module, 1).get_bulk_samples(0)}
+
+    def found(self, endpoint: str, data: bytes) -> Iterator[bytes]:
+        return iter(())
 
 
 SIGNED = ("value", "velocity", "position", "operand")
@@ -200,6 +269,38 @@ def test_both_make_and_read_the_same_commands(pytrinamic: PyTrinamic) -> None:
 
 def test_both_make_and_read_the_same_replies(pytrinamic: PyTrinamic) -> None:
     compare_frames("tmcl", pytrinamic, cases_of("tmcl", REPLIES))
+
+
+def test_both_make_and_read_the_same_instructions_of_a_program(pytrinamic: PyTrinamic) -> None:
+    compare_frames("tmcl", pytrinamic, cases_of("tmcl", STORED))
+
+
+def test_a_question_tells_what_its_answer_is(pytrinamic: PyTrinamic) -> None:
+    module = module_at(FOLDER / "tmcl.yaml")
+    # Reply to 2, command 5, type 4, motor 134, value 100. It looks like a refusal: status 4.
+    answer = bytes.fromhex("02 05 04 86 00 00 00 64 F5")
+    for question, name in [
+        (module.ReadMemory(part=0, address=7), "stored_command"),
+        (module.ReadMemory(part=2, address=7), "refused"),
+        (module.GetAxisParameter(parameter=4, motor=0), "refused"),
+    ]:
+        decoder = module.Decoder("module")
+        (asked,) = module.Decoder("host").feed(module.encode(question))
+        decoder.hear(asked)
+        (event,) = decoder.feed(answer)
+        assert name == event.message.NAME
+
+
+def test_it_reads_the_samples_that_we_make() -> None:
+    dice = Random(1)
+    counts = [8192, *(dice.randint(1, 16) for _ in range(FRAMES))]
+    drawn = [
+        Case(
+            "samples", "bulk_samples", {"samples": [dice.getrandbits(32) for _ in range(count)]}, {}
+        )
+        for count in counts
+    ]
+    compare_frames("tmcl", Samples(), drawn)
 
 
 def test_it_reads_the_version_as_a_text(pytrinamic: PyTrinamic) -> None:
