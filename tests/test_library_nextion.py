@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator
+from pathlib import Path
+from random import Random
 from struct import pack, unpack
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from compiled import protocol_of
+from compiled import module_at, protocol_of
 from library_support import FRAMES, cases_of, compare_frames, compare_recovery, peer_module
 
 from protogen.copying import replace
@@ -58,6 +61,8 @@ LAYOUTS = {
     **{name: (code, "") for name, code in (RESULTS | EVENTS).items()},
 }
 """Codes, and the data behind them: it makes none."""
+LOADING = ["data", "block_taken", "go_on_at"]
+"""What is sent while a display is loaded."""
 MARK = b"omok "
 
 
@@ -165,6 +170,58 @@ class Nextion:
             yield message + self._protocol.EOL
 
 
+class Rate(int):
+    """A speed that can be formatted twice: its upload does so, and fails with any other."""
+
+    def __getitem__(self, name: str) -> int:
+        return self
+
+
+class Upload:
+    """Its function that loads a display, on a line that keeps what it writes.
+
+    It reads an answer of one byte and knows no other.
+    """
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self._client: Any = peer_module("nextion.client")
+        self._protocol: Any = peer_module("nextion.protocol").BasicProtocol
+        self._answers: list[bytes] = []
+        self.blocks: list[bytes] = []
+        monkeypatch.setattr(self._client.asyncio, "sleep", self._nothing)
+        monkeypatch.setattr(
+            self._client.serial_asyncio, "create_serial_connection", self._connected
+        )
+
+    async def _nothing(self, *given: Any, **named: Any) -> None:
+        return None
+
+    async def _connected(self, *given: Any, **named: Any) -> tuple[None, Any]:
+        return None, SimpleNamespace(write=self._write)
+
+    def _write(self, data: bytes, eol: bool) -> None:
+        assert not eol
+        self.blocks.append(data)
+
+    async def _answer(self, timeout: float) -> bytes:
+        return self._answers.pop(0)
+
+    def load(self, data: bytes, path: Path, answers: list[bytes]) -> None:
+        """Load a file into a display that answers so."""
+        path.write_bytes(data)
+        self._answers, self.blocks = list(answers), []
+        asyncio.run(self._load(path))
+        assert not self._answers
+
+    async def _load(self, path: Path) -> None:
+        client = self._client.Nextion("", Rate(115200))
+        client._connection = SimpleNamespace(close=self._nothing)
+        client.set = self._nothing
+        client._write_command_raw = lambda command: None
+        client._read_packet = self._answer
+        await client.upload_firmware(path.open("rb"))
+
+
 def swapped(value: int) -> int:
     return int(unpack("<H", pack(">H", value))[0])
 
@@ -192,7 +249,7 @@ def drawn() -> list[Case]:
 
 def test_the_messages_are_those_of_the_schema() -> None:
     messages = {message.name for message in protocol_of(FOLDER / "nextion.yaml").messages}
-    assert messages == {"instruction", *LAYOUTS}
+    assert messages == {"instruction", *LAYOUTS, *LOADING}
 
 
 def test_both_make_the_same_instructions(nextion: Nextion) -> None:
@@ -205,6 +262,43 @@ def test_both_make_the_same_instructions(nextion: Nextion) -> None:
 
 def test_it_reads_the_messages_that_we_make(nextion: Nextion, drawn: list[Case]) -> None:
     compare_frames("nextion", nextion, drawn)
+
+
+def test_blocks_of_files_and_their_answers_are_the_same(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Each block that it writes is a frame of ours, and it takes each answer that we make."""
+    module, upload, dice = module_at(FOLDER / "nextion.yaml"), Upload(monkeypatch), Random(1)
+    taken = module.encode(module.BlockTaken())
+    assert [item.message.NAME for item in module.Decoder("upload").feed(taken * 2)] == [
+        "block_taken",
+        "block_taken",
+    ]
+    blocks = 0
+    for size in [*(4096 * count + 1 for count in range(2)), *dice.choices(range(1, 64), k=FRAMES)]:
+        file = dice.randbytes(size)
+        upload.load(file, tmp_path / "file.tft", [taken] * (1 + -(-size // 4096)))
+        receiver = module.Decoder("data")
+        read = b""
+        for block in upload.blocks:
+            (event,) = (*receiver.feed(block), *receiver.idle())
+            assert module.encode(event.message) == block
+            read += event.message.data
+            blocks += 1
+        assert read == file
+    assert blocks >= FRAMES
+
+
+def test_another_answer_than_the_one_byte_ends_its_loading(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    module, upload = module_at(FOLDER / "nextion.yaml"), Upload(monkeypatch)
+    newer = module.encode(module.GoOnAt(offset=0x110000))
+    assert newer == bytes.fromhex("08 00 00 11 00")
+    (event,) = module.Decoder("upload").feed(newer)
+    assert event.message.offset == 0x110000
+    with pytest.raises(OSError, match="0800001100"):
+        upload.load(b"tft", tmp_path / "file.tft", [b"\x05", newer])
 
 
 def test_no_frame_is_lost_that_it_finds(nextion: Nextion, drawn: list[Case]) -> None:
