@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from importlib import import_module
 from random import Random
@@ -16,7 +16,7 @@ from tooling import require_module
 
 from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import Values
-from protogen.fuzzing.trips import Case, cases, told_before
+from protogen.fuzzing.trips import Case, cases, told_of
 from protogen.library import FOLDER
 from protogen.model.frame_plan import EndRule
 from protogen.runtime.attributes import arguments
@@ -91,16 +91,19 @@ def endpoint_of(name: str, case: Case) -> str:
     return protocol_of(FOLDER / f"{name}.yaml").sender(case.sender).endpoint
 
 
+def told_before(name: str, case: Case) -> dict[str, int]:
+    """What a receiver of a case is told, where its frame does not say what it is."""
+    return told_of(protocol_of(FOLDER / f"{name}.yaml").sender(case.sender), case)
+
+
 def compare_frames(name: str, peer: Peer, drawn: Iterable[Case]) -> None:
     """Each makes the frames that the other makes, and reads in them what the other put in."""
-    engine, protocol = engine_of(name), protocol_of(FOLDER / f"{name}.yaml")
+    engine = engine_of(name)
     for case in drawn:
         ours = encoded(name, case)
         theirs = peer.frame(case)
         assert ours == theirs, case
-        (event,) = engine.events(
-            case.sender, [theirs], told_before(protocol.sender(case.sender), case)
-        )
+        (event,) = engine.events(case.sender, [theirs], told_before(name, case))
         assert (event.message, event.values) == (case.message, case.values)
         assert peer.values(case, ours) == case.values, case
 
@@ -115,18 +118,34 @@ def compare_recovery(
     """
     dice = Random(name)
     drawn = [case for case in drawn if endpoint_of(name, case) == endpoint]
+    dice.shuffle(drawn)
     frames = [encoded(name, case) for case in drawn]
-    dice.shuffle(frames)
-    bursts = [
-        damaged(burst, dice)
-        for burst in (frames if ends_idle(name, drawn[0]) else [b"".join(frames)])
-    ]
+    bursts = [(told, damaged(burst, dice)) for told, burst in bursts_of(name, drawn)]
     sent = Counter(frames)
     ours = Counter(found(name, endpoint, bursts, shared)) & sent
-    theirs = Counter(frame for burst in bursts for frame in peer.found(endpoint, burst)) & sent
+    theirs = Counter(frame for _, burst in bursts for frame in peer.found(endpoint, burst)) & sent
     assert theirs <= ours, [frame.hex(" ") for frame in theirs - ours]
     assert len(frames) / 10 < ours.total() < len(frames)
     assert theirs
+
+
+Burst = tuple[dict[str, int], bytes]
+"""What a receiver is told, and the bytes behind that."""
+
+
+def bursts_of(name: str, drawn: Sequence[Case]) -> list[Burst]:
+    """Frames one behind another, of which a receiver is told the same.
+
+    Where only a silence ends a frame, each is alone.
+    """
+    alone = ends_idle(name, drawn[0])
+    bursts: dict[tuple[object, ...], Burst] = {}
+    for index, case in enumerate(drawn):
+        told = told_before(name, case)
+        key = (index if alone else None, *told.items())
+        _, before = bursts.get(key, (told, b""))
+        bursts[key] = told, before + encoded(name, case)
+    return list(bursts.values())
 
 
 def damaged(data: bytes, dice: Random) -> bytes:
@@ -140,13 +159,14 @@ def ends_idle(name: str, case: Case) -> bool:
     return plan.end_rule is EndRule.IDLE
 
 
-def found(name: str, endpoint: str, bursts: Iterable[bytes], shared: bytes) -> Iterator[bytes]:
+def found(name: str, endpoint: str, bursts: Iterable[Burst], shared: bytes) -> Iterator[bytes]:
     """Yield the frames of known messages that we find, in all forms of the endpoint.
 
     There is a silence behind each burst.
     """
     decoder = module_at(FOLDER / f"{name}.yaml").Decoder(endpoint, engine="construct")
-    for burst in bursts:
+    for told, burst in bursts:
+        decoder.tell(**told)
         for event in (*decoder.feed(burst), *decoder.idle()):
             if event.kind == "message":
                 yield event.raw if event.raw.startswith(shared) else shared + event.raw

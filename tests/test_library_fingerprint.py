@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from struct import pack
 from typing import Any
 
 import pytest
+from compiled import module_at
 from library_support import cases_of, compare_frames, compare_recovery, peer_module
 
 from protogen.copying import replace
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
+from protogen.library import FOLDER
 
 PEER = "r503"
 NO_ANSWER = 99
@@ -66,16 +68,55 @@ REGISTERS: dict[int, Callable[[Any, int], Any]] = {
 }
 VALUES = {BAUD: (1, 2, 4, 6, 12), SECURITY: (1, 2, 3, 4, 5), PACKET_SIZE: (0, 1, 2, 3)}
 """What it writes to each register."""
-ANSWERS = {
+PACKED = {
     "answer": ">",
-    "number": ">H",
+    "matched": ">H",
     "found": ">HH",
-    "identified": ">BHH",
     "parameters": ">HHHHIHH",
-    "content": ">32s",
+    "random": ">I",
+    "noted": ">32s",
+    "template_count": ">H",
+    "index": ">32s",
+    "enrolled": ">BB",
+    "identified": ">BHH",
+    "algorithm": ">32s",
+    "firmware": ">32s",
     "product": ">16s4s8sBB8sHHHH",
 }
-"""How it unpacks each behind the code."""
+"""How it unpacks each answer behind the code."""
+ANSWERS: dict[str, Callable[[Any, Values], Any]] = {
+    "matched": lambda sensor, v: int.from_bytes(sensor.match()[1], "big"),
+    "found": lambda sensor, v: named("page score", sensor.search()[1:]),
+    "parameters": lambda sensor, v: dict(zip(v["values"], sensor.read_sys_para(), strict=True)),
+    "random": lambda sensor, v: sensor.get_random_code(),
+    "noted": lambda sensor, v: sensor.read_notepad(0)[1].hex(),
+    "template_count": lambda sensor, v: sensor.read_valid_template_num(),
+    "index": lambda sensor, v: table(sensor.read_index_table()),
+    # It looks at neither what is behind the code, nor at the step.
+    "enrolled": lambda sensor, v: named("step page", sensor.ser_send(3, 0x31)[5]),
+    "identified": lambda sensor, v: (
+        named("step", [v["at"]["step"]]) | named("page score", sensor.auto_identify())
+    ),
+    "algorithm": lambda sensor, v: text(sensor.get_alg_ver()[1].decode()),
+    "firmware": lambda sensor, v: text(sensor.get_fw_ver()[1].decode()),
+    "product": lambda sensor, v: product(list(sensor.read_prod_info_decode().values())),
+}
+"""What it reads behind the code, by the method that asks for it."""
+
+
+def named(names: str, values: Iterable[int]) -> Values:
+    return dict(zip(names.split(), values, strict=True))
+
+
+def table(places: list[int]) -> str:
+    """Bytes with a bit for each place."""
+    return sum(1 << place for place in places).to_bytes(32, "little").hex()
+
+
+def product(found: list[Any]) -> Values:
+    texts = dict(zip(("model", "batch", "serial"), map(text, found[:3]), strict=True))
+    sensor = {"hardware": {"major": found[3], "minor": found[4]}, "sensor": text(found[5])}
+    return texts | sensor | named("width height template library", found[6:])
 
 
 class Port:
@@ -110,8 +151,9 @@ class R503:
         sensor = self._sensor(port, case.parts["address"])
         if case.message in COMMANDS:
             COMMANDS[case.message](sensor, case.values)
-        elif case.message in ANSWERS:
-            content = pack(ANSWERS[case.message], *packed(case.values))
+        elif case.message in PACKED:
+            values = list(packed(case.values))
+            content = pack(PACKED[case.message], *values) if values else b""
             sensor.ser_send(len(content) + 3, case.values["code"], pid=7, pkg=content)
         else:
             data = bytes.fromhex(case.values["data"])
@@ -122,33 +164,16 @@ class R503:
         if case.message in COMMANDS:
             return case.values  # it reads no command
         sensor = self._sensor(Port(frame), case.parts["address"])
-        if case.message not in ANSWERS:
+        if case.message not in PACKED:
             done = self.frame(Case(case.sender, "answer", {"code": 0}, case.parts))
             sensor.ser.data = done + frame
             (data,) = sensor.up_char()
             return {"data": data.hex()}
-        found = self._answer(case, sensor)
-        return dict(zip(case.values, (sensor.read_msg(frame)[4], *found), strict=True))
-
-    def _answer(self, case: Case, sensor: Any) -> list[Any]:
-        match case.message:
-            case "answer":
-                return []
-            case "number":
-                return [sensor.read_valid_template_num()]
-            case "found":
-                return list(sensor.search()[1:])
-            case "identified":
-                step = case.values["step"]  # it does not look at it
-                return [step, *sensor.auto_identify()]
-            case "parameters":
-                return list(sensor.read_sys_para())
-            case "content":
-                return [sensor.read_notepad(0)[1].hex()]
-            case _:
-                found = list(sensor.read_prod_info_decode().values())
-                hardware = {"major": found[3], "minor": found[4]}
-                return [*map(text, found[:3]), hardware, text(found[5]), *found[6:]]
+        code, rest = sensor.read_msg(frame)[4:6]
+        values = dict.fromkeys(case.values) | {"code": code}
+        if rest is not None:
+            values[list(values)[1]] = ANSWERS[case.message](sensor, case.values)
+        return values
 
     def found(self, endpoint: str, data: bytes) -> Iterator[bytes]:
         """What it reads at each header, if the checksum that it finds is right."""
@@ -170,8 +195,8 @@ def packed(values: Values) -> Iterator[Any]:
         if isinstance(value, dict):
             yield from packed(value)
         elif isinstance(value, str):
-            yield bytes.fromhex(value) if name == "content" else value.encode()
-        elif name != "code":
+            yield bytes.fromhex(value) if name in ("content", "places") else value.encode()
+        elif name != "code" and value is not None:
             yield value
 
 
@@ -201,10 +226,17 @@ def as_sent(case: Case) -> Case:
 
 def is_read(case: Case) -> bool:
     """False where it takes the code for none, or drops zeros inside of a text."""
-    texts = [value for value in case.values.values() if isinstance(value, str)]
     return case.values.get("code") != NO_ANSWER and all(
-        each.isascii() and "\0" not in each for each in texts
+        each.isascii() and "\0" not in each for each in texts_in(case.values)
     )
+
+
+def texts_in(values: Values) -> Iterator[str]:
+    for value in values.values():
+        if isinstance(value, dict):
+            yield from texts_in(value)
+        elif isinstance(value, str):
+            yield value
 
 
 def test_both_make_the_same_commands(r503: R503) -> None:
@@ -212,7 +244,7 @@ def test_both_make_the_same_commands(r503: R503) -> None:
 
 
 def test_both_make_and_read_the_same_answers(r503: R503) -> None:
-    compare_frames("fingerprint", r503, filter(is_read, cases_of("fingerprint", ANSWERS)))
+    compare_frames("fingerprint", r503, filter(is_read, cases_of("fingerprint", PACKED)))
 
 
 def test_both_make_and_read_the_same_data(r503: R503) -> None:
@@ -222,3 +254,15 @@ def test_both_make_and_read_the_same_data(r503: R503) -> None:
 @pytest.mark.parametrize("endpoint", ["host", "sensor"])
 def test_no_frame_is_lost_that_it_finds(r503: R503, endpoint: str) -> None:
     compare_recovery("fingerprint", endpoint, r503, cases_of("fingerprint"))
+
+
+def test_a_command_tells_what_its_answer_is() -> None:
+    """The same bytes are a number behind GetRandomCode, and a place behind Search."""
+    answer = bytes.fromhex("EF 01 FF FF FF FF 07 00 07 00 00 05 00 64 00 77")
+    random = bytes.fromhex("EF 01 FF FF FF FF 01 00 03 14 00 18")
+    search = bytes.fromhex("EF 01 FF FF FF FF 01 00 08 04 01 00 00 00 C8 00 D6")
+    decoder = module_at(FOLDER / "fingerprint.yaml").Decoder()
+    events = decoder.feed(answer + random + answer + search + answer)
+    assert [event.kind for event in events] == ["unknown", *["message"] * 4]
+    assert events[2].message.number == 0x00050064
+    assert (events[4].message.best.page, events[4].message.best.score) == (5, 100)

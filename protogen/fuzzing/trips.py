@@ -110,7 +110,7 @@ def _trip(engine: Engine, sender: Sender, case: Case) -> Outcome:
     return Outcome(case, problem=problem, frame=frame)
 
 
-def told_before(sender: Sender, case: Case) -> dict[str, int]:
+def told_of(sender: Sender, case: Case) -> dict[str, int]:
     """What the receiver of a case has to be told before its frame."""
     message = next(item for item in sender.messages if item.name == case.message)
     identity = dict(zip(sender.frame.identity, message.identity, strict=True))
@@ -120,7 +120,7 @@ def told_before(sender: Sender, case: Case) -> dict[str, int]:
 def _wrong_with_events(
     engine: Engine, sender: Sender, case: Case, payload: bytes, frame: bytes
 ) -> str:
-    told = told_before(sender, case)
+    told = told_of(sender, case)
     events = engine.events(case.sender, [frame], told)
     single = engine.events(case.sender, [bytes((byte,)) for byte in frame], told)
     if not same_events(events, single):
