@@ -7,11 +7,13 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
+from compiled import module_at
 from library_support import cases_of, compare_frames, compare_recovery, peer_module
 
 from protogen.copying import replace
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
+from protogen.library import FOLDER
 
 PEER = "nfcpy"
 BAUD = (9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600, 1288000)
@@ -96,6 +98,11 @@ ANSWERS = {
     "communicated": 0x43,
     "deselected": 0x45,
     "jumped_for_psl": 0x47,
+    "targets_a": 0x4B,
+    "targets_a_without_ats": 0x4B,
+    "targets_f": 0x4B,
+    "targets_b": 0x4B,
+    "targets_jewel": 0x4B,
     "passive_targets": 0x4B,
     "speed_set": 0x4F,
     "activated": 0x51,
@@ -281,3 +288,22 @@ def test_it_reads_the_answers_that_we_make(nfcpy: Nfcpy) -> None:
 
 def test_no_frame_is_lost_that_it_finds(nfcpy: Nfcpy) -> None:
     compare_recovery("pn532", "chip", nfcpy, cases_of("pn532", [*ANSWERS, "acknowledge"]))
+
+
+def test_a_command_tells_of_what_kind_targets_are() -> None:
+    """Without one, an answer has bytes; the kind and the parameters of the chip tell the rest."""
+    module = module_at(FOLDER / "pn532.yaml")
+    decoder = module.Decoder()
+    card = bytes.fromhex("00 00 FF 0C F4 D5 4B 01 01 00 04 08 04 90 1F 2A A4 51 00")
+    jewel = bytes.fromhex("00 00 FF 0A F6 D5 4B 01 01 00 0C 01 02 03 04 C8 00")
+
+    def names(data: bytes) -> list[str]:
+        return [event.message.NAME for event in decoder.feed(data)]
+
+    assert names(card) == ["passive_targets"]
+    for kind, answer, name in ((0, card, "targets_a"), (4, jewel, "targets_jewel")):
+        asked = module.encode(module.ListPassiveTargets(max=1, kind=kind, data=b""))
+        assert names(asked + answer) == ["list_passive_targets", name]
+    asked = module.encode(module.ListPassiveTargets(max=1, kind=0, data=b""))
+    no_rats = module.encode(module.SetParameters(flags=4))
+    assert names(no_rats + asked + card)[2:] == ["targets_a_without_ats"]
