@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import pytest
 from compiled import module_at
-from library_support import cases_of, compare_frames, compare_recovery, peer_module
+from library_support import (
+    cases_of,
+    compare_frames,
+    compare_recovery,
+    engine_of,
+    peer_module,
+    told_before,
+)
 
 from protogen.copying import replace
 from protogen.fuzzing.samples import Values
@@ -278,16 +285,32 @@ def is_read(case: Case) -> bool:
     return len(flat(case.values)) != 253
 
 
+def drawn(messages: Iterable[str], *, bare: bool = False) -> Iterator[Case]:
+    """Cases in frames with zeros at both ends, or in those without."""
+    drawn = map(as_sent, cases_of("pn532", messages))
+    return (case for case in drawn if ("bare" in case.sender) is bare)
+
+
 def test_both_make_the_same_commands(nfcpy: Nfcpy) -> None:
-    compare_frames("pn532", nfcpy, map(as_sent, cases_of("pn532", COMMANDS)))
+    compare_frames("pn532", nfcpy, drawn(COMMANDS))
 
 
 def test_it_reads_the_answers_that_we_make(nfcpy: Nfcpy) -> None:
-    compare_frames("pn532", nfcpy, filter(is_read, cases_of("pn532", [*ANSWERS, "syntax_error"])))
+    compare_frames("pn532", nfcpy, filter(is_read, drawn([*ANSWERS, "syntax_error"])))
+
+
+@pytest.mark.parametrize("messages", [COMMANDS, ANSWERS], ids=["commands", "answers"])
+def test_frames_without_zeros_are_those_between_zeros(nfcpy: Nfcpy, messages: Any) -> None:
+    engine = engine_of("pn532")
+    for case in drawn(messages, bare=True):
+        ours = engine.frame(case.sender, case.message, case.values, case.parts)
+        assert b"\0" + ours + b"\0" == nfcpy.frame(case)
+        (event,) = engine.events(case.sender, [ours], told_before("pn532", case))
+        assert (event.message, event.values) == (case.message, case.values)
 
 
 def test_no_frame_is_lost_that_it_finds(nfcpy: Nfcpy) -> None:
-    compare_recovery("pn532", "chip", nfcpy, cases_of("pn532", [*ANSWERS, "acknowledge"]))
+    compare_recovery("pn532", "chip", nfcpy, drawn([*ANSWERS, "acknowledge"]))
 
 
 def test_a_command_tells_of_what_kind_targets_are() -> None:
@@ -307,3 +330,24 @@ def test_a_command_tells_of_what_kind_targets_are() -> None:
     asked = module.encode(module.ListPassiveTargets(max=1, kind=0, data=b""))
     no_rats = module.encode(module.SetParameters(flags=4))
     assert names(no_rats + asked + card)[2:] == ["targets_a_without_ats"]
+
+
+@pytest.mark.parametrize("engine", ["fast", "construct"])
+def test_zeros_at_both_ends_may_be_left_out(engine: str) -> None:
+    """With them, without, and with more of them, one behind another."""
+    module = module_at(FOLDER / "pn532.yaml")
+    acknowledge, again = bytes.fromhex("00 00 FF 00 FF 00"), bytes.fromhex("00 00 FF FF 00 00")
+    version = bytes.fromhex("00 00 FF 06 FA D5 03 32 01 06 07 E8 00")
+    long = module.encode(module.DataExchanged(status=0, data=bytes(range(255))))
+    error = bytes.fromhex("00 00 FF 01 FF 7F 81 00")
+
+    def found(frames: list[bytes]) -> list[bytes]:
+        decoder = module.Decoder("chip", engine)
+        events = [*decoder.feed(b"".join(frames)), *decoder.flush()]
+        return [event.raw for event in events if event.kind == "message"]
+
+    whole = [acknowledge, version, again, long, error]
+    bare = [frame[1:-1] for frame in whole]
+    for frames in (whole, bare, [*whole, *bare], [*bare, *whole]):
+        assert found(frames) == frames
+    assert found([b"\0" + frame + b"\0" for frame in whole]) == whole
