@@ -23,6 +23,9 @@ from protogen.model.expressions import (
 from protogen.model.payload_plan import Formula
 from protogen.model.types import Integer
 
+WIDEST = Integer(bits=64, signed=True)
+"""The type of numbers of which nothing is known."""
+
 
 def type_for(hull: Interval) -> Integer:
     """The narrowest type for numbers within bounds; none is narrower than every `int`."""

@@ -10,7 +10,7 @@ from protogen.model.extents import Fixed
 from protogen.model.frame_plan import FramePlan
 from protogen.model.messages import Message
 from protogen.model.presence import Trailing
-from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Text, Type
+from protogen.model.types import Array, Field, NumberType, Octets, Struct, Text, Type
 
 
 def with_appended(
@@ -55,12 +55,10 @@ def _may_be_zeros(field: Field) -> bool:
 
 
 def _takes_zeros(type_: Type) -> bool:
+    if isinstance(type_, NumberType):
+        named = () if type_.enum is None else [item.value for item in type_.enum.values]
+        return type_.text is None and (not type_.is_closed or 0 in named)
     match type_:
-        case Integer():
-            named = () if type_.enum is None else [item.value for item in type_.enum.values]
-            return type_.text is None and (not type_.is_closed or 0 in named)
-        case Float():
-            return True
         case Text() | Octets():
             return isinstance(type_.extent, Fixed)
         case Array():

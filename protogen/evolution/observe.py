@@ -20,7 +20,7 @@ from protogen.model.protocol import Protocol
 from protogen.model.reading.dissect import Cursor, Row, dissect
 from protogen.model.reading.readings import physical, value_name
 from protogen.model.reading.wire import plain
-from protogen.model.types import Field, Integer
+from protogen.model.types import Field, NumberType
 from protogen.runtime.decoder import Decoder
 from protogen.runtime.framing.extraction import payload_of
 from protogen.runtime.values import as_dict
@@ -169,7 +169,7 @@ def _meaning(row: Row) -> Hashable:
     if not isinstance(row.subject, Field) or isinstance(row.value, str):
         return row.value
     plain = str(row.value) if row.value != row.value else row.value  # Not a number is no other.
-    if isinstance(row.value, float) or not isinstance(row.value_type, Integer):
+    if isinstance(row.value, float) or not isinstance(row.value_type, NumberType):
         return plain, quantity(row.subject, row.value)
     names = frozenset(_names(row.subject, row.value_type, row.value))
     return plain, None if _is_special(row) else quantity(row.subject, row.value), names
@@ -180,7 +180,7 @@ def _is_special(row: Row) -> bool:
     return isinstance(row.subject, Field) and row.value in {v.value for v in row.subject.special}
 
 
-def _names(field: Field, kind: Integer, raw: int) -> Iterator[str]:
+def _names(field: Field, kind: NumberType, raw: int) -> Iterator[str]:
     """The names of the value, of bits that are set, and of runs that are not 0."""
     name = value_name(field, kind, raw)
     if name is not None:

@@ -353,6 +353,9 @@ class Float(_Number, frozen=True, kw_only=True, dict=True, cache_hash=True):
     bit_fields: ClassVar[tuple[()]] = ()
     named_types: ClassVar[tuple[()]] = ()
     is_closed: ClassVar[bool] = False
+    text: ClassVar[None] = None
+    within: ClassVar[None] = None
+    is_text: ClassVar[bool] = False
 
     @property
     def greatest(self) -> Fraction:
@@ -397,7 +400,7 @@ Codec = Number | WrittenNumeral | WrittenFreely
 
 def codec(type_: NumberType) -> Codec:
     """Codec of a number's raw value; of a float it is that of its bits."""
-    form = type_.text if isinstance(type_, Integer) else None
+    form = type_.text
     if isinstance(form, FreeNumeral):
         between = None
         if form.separator is not None:
@@ -407,8 +410,7 @@ def codec(type_: NumberType) -> Codec:
         )
     if form is not None:
         return WrittenNumeral(type_.bits, form.alphabet, form.size, type_.signed)
-    within = type_.within if isinstance(type_, Integer) else None
-    if within is not None:
-        seven_bit = type_.byte_bits == 7
+    if type_.within is not None:
+        within, seven_bit = type_.within, type_.byte_bits == 7
         return BitsNumber(type_.bits, within.low, within.size, type_.byte_order, seven_bit)
     return Number(type_.bits, type_.signed, type_.byte_order, seven_bit=type_.byte_bits == 7)

@@ -25,7 +25,7 @@ from protogen.model.extents import (
     Tail,
     Until,
 )
-from protogen.model.meanings import NamedValue
+from protogen.model.meanings import BitField, NamedValue
 from protogen.model.names import free_name
 from protogen.model.numbers import (
     ByteOrder,
@@ -405,6 +405,16 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
         if not isinstance(type_, Integer) and isinstance(type_, Array):
             type_ = self.element
         return type_ if isinstance(type_, Integer) else None
+
+    @property
+    def is_bool(self) -> bool:
+        """True if the value is false or true."""
+        return isinstance(self.type, Integer) and self.type.role == "bool"
+
+    @property
+    def bit_fields(self) -> tuple[BitField, ...]:
+        """The runs of bits of the number that have names."""
+        return self.type.bit_fields if isinstance(self.type, Integer) else ()
 
     @property
     def is_stored(self) -> bool:

@@ -10,7 +10,7 @@ from functools import lru_cache
 from protogen.model.messages import Message
 from protogen.model.origin import About, Source
 from protogen.model.protocol import Link, Protocol
-from protogen.model.types import Array, Field, Integer, Marked
+from protogen.model.types import Array, Field, Marked
 from protogen.targets.escape import paragraphs
 
 
@@ -82,12 +82,7 @@ def range_of(item: Field) -> str:
     """Raw values that an encoder allows, such as `0..255`."""
     if item.ranged or item.integer is None:
         return f"{item.least}..{item.greatest}"
-    return _range_of_bits(item.integer)
-
-
-@lru_cache(maxsize=1024)
-def _range_of_bits(type_: Integer) -> str:
-    return f"{type_.least}..{type_.greatest}"
+    return f"{item.integer.least}..{item.integer.greatest}"
 
 
 def specials_of(item: Field) -> list[str]:

@@ -9,7 +9,7 @@ from typing import Any
 from protogen.model.expressions import Expression, value_of
 from protogen.model.expressions import reached as reached_in
 from protogen.model.presence import Conditional, Trailing
-from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Type
+from protogen.model.types import Array, Field, Float, Octets, Struct, Switch, Type
 
 Scope = ChainMap[str, Any]
 """The values of the fields in front, which choose the cases of switches."""
@@ -80,8 +80,8 @@ def reached(values: Any, path: Sequence[str]) -> Any:
     return values
 
 
-def constant_of(item: Field, type: Type) -> Any:
+def constant_of(item: Field) -> Any:
     """The value of a constant field."""
     if isinstance(item.const, tuple):
         return list(item.const)
-    return bool(item.const) if isinstance(type, Integer) and type.role == "bool" else item.const
+    return bool(item.const) if item.is_bool else item.const

@@ -206,7 +206,7 @@ def _values(
 ) -> Values:
     """The values of a column, or of the arrays in it, of which these dimensions are left."""
     if column is None and item.const is not None:
-        return Same(constant_of(item, type), len(held))
+        return Same(constant_of(item), len(held))
     match type:
         case Struct(fields=fields):
             inner = members_of(column)

@@ -37,6 +37,7 @@ from protogen.model.types import (
     Fixed,
     Float,
     Integer,
+    NumberType,
     Octets,
     Struct,
     Switch,
@@ -407,19 +408,19 @@ def _meanings(raw: Column, item: Field | None) -> Iterator[Column]:
     if item is None:
         return
     leaf = item.type.element if isinstance(item.type, Array) else item.type
-    if not isinstance(leaf, Integer | Float):
+    if not isinstance(leaf, NumberType):
         return
     if item.scaled or (item.unit and item.special and leaf is item.type):
         yield _physical_column(raw, item, leaf)
     names = _names(item, leaf)
-    if names and isinstance(item.type, Integer):
+    if names and leaf is item.type:
         naming = Naming(names)
         texts = tuple(dict.fromkeys(names.values()))
         facts = {"of": raw.name}
         yield Column(f"{raw.name}_name", Names(texts), raw.path, naming, nullable=True, facts=facts)
 
 
-def _physical_column(raw: Column, item: Field, leaf: Integer | Float) -> Column:
+def _physical_column(raw: Column, item: Field, leaf: NumberType) -> Column:
     special = frozenset(named.value for named in item.special)
     meaning = Physical(item.scale, item.offset, special, isinstance(leaf, Float))
     element = column_type(leaf) if meaning.is_plain else FLOAT64
@@ -431,12 +432,10 @@ def _physical_column(raw: Column, item: Field, leaf: Integer | Float) -> Column:
     return Column(name, type, raw.path, meaning, raw.nullable or bool(special), facts)
 
 
-def _names(item: Field, leaf: Integer | Float) -> dict[int, str]:
-    enum = leaf.enum if isinstance(leaf, Integer) else None
-    named = enum.values if enum is not None else ()
-    if enum is None:
+def _names(item: Field, leaf: NumberType) -> dict[int, str]:
+    if leaf.enum is None:
         return {}
-    return {entry.value: entry.name for entry in (*named, *item.special)}
+    return {entry.value: entry.name for entry in (*leaf.enum.values, *item.special)}
 
 
 def facts_of(item: Field, type: Type) -> dict[str, str]:
@@ -447,12 +446,12 @@ def facts_of(item: Field, type: Type) -> dict[str, str]:
         facts |= {"scale": str(item.scale), "offset": str(item.offset)}
     if item.special:
         facts["special"] = json.dumps({named.name: named.value for named in item.special})
-    if isinstance(leaf, Integer):
-        facts |= _integer_facts(leaf)
+    if isinstance(leaf, NumberType):
+        facts |= _names_of(leaf)
     return {key: value for key, value in facts.items() if value}
 
 
-def _integer_facts(type: Integer) -> dict[str, str]:
+def _names_of(type: NumberType) -> dict[str, str]:
     facts = {}
     if type.enum is not None:
         facts["values"] = json.dumps({named.name: named.value for named in type.enum.values})

@@ -39,7 +39,7 @@ from protogen.convert.ros2.names import (
     package_name,
 )
 from protogen.model.names import free_name
-from protogen.model.types import Array, Field, Integer, Struct, Switch, Type
+from protogen.model.types import Array, Field, NumberType, Struct, Switch, Type
 
 # --- types of ROS ---------------------------------------------------------------------------------
 
@@ -265,19 +265,15 @@ def _constants(
 
 def _values(item: Field | None) -> tuple[tuple[str, int], ...]:
     """The names of a field's raw values, and of its bits."""
-    if item is None:
-        return ()
-    leaf = item.type
-    while isinstance(leaf, Array):
-        leaf = leaf.element
-    if not isinstance(leaf, Integer) or leaf.role == "bool":
+    leaf = None if item is None else item.integer
+    if item is None or leaf is None or leaf.role == "bool":
         return ()
     named = [(it.name, it.value) for it in leaf.enum.values] if leaf.enum else []
     named += [(it.name, it.value) for it in item.special]
     return (*named, *_masks(leaf))
 
 
-def _masks(type: Integer) -> Iterator[tuple[str, int]]:
+def _masks(type: NumberType) -> Iterator[tuple[str, int]]:
     if type.flags is None:
         return
     size = next(bits for bits in (8, 16, 32, 64) if type.bits <= bits)

@@ -69,7 +69,7 @@ class _Values(CdrPrinter):
     ) -> list[Step]:
         """A value, or the arrays in it, of which these dimensions are left."""
         if column is None and item.const is not None:
-            return self.constant(kind, constant_of(item, type))
+            return self.constant(kind, constant_of(item))
         match type:
             case Struct(fields=fields):
                 assert isinstance(kind, Message)
@@ -358,7 +358,7 @@ class _Row(_Values):
         assert shown is not None
         meaning = shown.derived if isinstance(shown.derived, Physical) else None
         if column is None and item.const is not None:
-            value = constant_of(item, type)
+            value = constant_of(item)
             return self._constant_found(member, value if meaning is None else meaning.of(value))
         if meaning is not None and column is not None:
             return self._physical(member, meaning, type, column, at)

@@ -165,7 +165,7 @@ class Cell:
     def value(self, item: Field, type: Type, column: Column | None, at: Spot) -> Iterator[Step]:
         """The cell of a value that was reached."""
         if column is None and item.const is not None:
-            value, derived = constant_of(item, type), self.column.derived
+            value, derived = constant_of(item), self.column.derived
             shown = value if derived is None else derived.of(value)
             yield literal(cell_text(self.column.type, shown))
         elif column is None or isinstance(type, Array):

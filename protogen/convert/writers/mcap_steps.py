@@ -136,7 +136,7 @@ class _Member(Cell):
         """The member of a value that was reached."""
         name, derived = self.column.name, self.column.derived
         if column is None and item.const is not None:
-            value = constant_of(item, type)
+            value = constant_of(item)
             text = present_json(value if derived is None else derived.of(value))
             yield from () if text == "null" else _member(name, iter([literal(text)]))
         elif column is None or isinstance(type, Array):

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from math import prod
 from typing import Any
 
-from protogen.c_language.expressions import CPrinter
+from protogen.c_language.expressions import WIDEST, CPrinter
 from protogen.c_language.numbers import number as number_in_c
 from protogen.capture.schema import Column, Dimension, Number, Record
 from protogen.capture.schema import Text as TextShape
@@ -35,7 +35,6 @@ from protogen.model.types import (
     Extent,
     Field,
     Fixed,
-    Integer,
     Octets,
     Struct,
     Switch,
@@ -167,7 +166,7 @@ class ValueSteps(ABC):
     ) -> Iterator[Step]:
         """A value, or the arrays in it, of which these dimensions are left."""
         if column is None and item.const is not None:
-            yield literal(self.constant(type, constant_of(item, type)))
+            yield literal(self.constant(type, constant_of(item)))
             return
         match type:
             case Struct(fields=fields):
@@ -286,7 +285,7 @@ class _RowPrinter(CPrinter):
     """Prints expressions over numbers of a row, all of them as the widest integer."""
 
     def __init__(self, scope: Scope) -> None:
-        super().__init__(Integer(bits=64, signed=True))
+        super().__init__(WIDEST)
         self._scope = scope
 
     def whole(self, operand: Operand) -> str:

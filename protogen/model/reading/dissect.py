@@ -41,7 +41,6 @@ from protogen.model.types import (
     Field,
     Fixed,
     Float,
-    Integer,
     NumberType,
     Scalar,
     Tail,
@@ -315,7 +314,7 @@ class _Reader:
 
     def _size(self, type_: NumberType) -> int | None:
         """Bytes of a number; None: as many as there are."""
-        form = type_.text if isinstance(type_, Integer) else None
+        form = type_.text
         if not isinstance(form, FreeNumeral):
             return type_.size
         return None if form.separator is None else self._cursor.size_to(form.separator, form.leads)

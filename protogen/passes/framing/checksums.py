@@ -17,7 +17,7 @@ from protogen.model.checksums import (
     variants,
 )
 from protogen.model.parts import ChecksumPart, Part, PartType
-from protogen.model.types import ByteOrder, Integer
+from protogen.model.types import ByteOrder
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.framing.bit_names import are_whole, holders_of
 from protogen.passes.framing.part_digits import no_byte_order, too_few_digits
@@ -100,7 +100,7 @@ class Checksums:
             about=about(item.doc, item.source, self._context.find_key(loc)),
         )
 
-    def bits(self, loc: Loc, item: PartBits, type_: Integer) -> ChecksumPart | None:
+    def bits(self, loc: Loc, item: PartBits, type_: PartType) -> ChecksumPart | None:
         """The checksum, or some bits of one, that bits of a part are; None where it is none."""
         rule = self._rule(loc, item)
         if rule is None:
@@ -120,7 +120,7 @@ class Checksums:
             about=about(item.doc, item.source, self._context.find_key(loc)),
         )
 
-    def _takes(self, loc: Loc, item: PartBits, algorithm: ChecksumSpec, type_: Integer) -> bool:
+    def _takes(self, loc: Loc, item: PartBits, algorithm: ChecksumSpec, type_: PartType) -> bool:
         """True if as many bits of the result are meant as these bits are; else it is reported."""
         name, width, place = loc[-1], algorithm.width, (*loc, "takes")
         if item.takes is None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import Counter
 
 from protogen.model.origin import About
-from protogen.model.parts import ChoicePart, LiteralPart
-from protogen.model.types import Integer, codec
+from protogen.model.parts import ChoicePart, LiteralPart, PartType
+from protogen.model.types import codec
 from protogen.passes.context import Context, Loc
 from protogen.schema.syntax.parts import LiteralChoice, Part
 
@@ -49,7 +49,7 @@ def _choice(
     if item.type not in (None, "ascii"):
         text = f"literals are no `{item.type}`"
         context.error("PG190", (*loc[:-1], "type"), text, "write `type: ascii`, or leave it out")
-    type_ = Integer(
+    type_ = PartType(
         bits=8 * len(words[0]),
         byte_order="big" if len(words[0]) > 1 else "little",
         role="number" if item.type is None else "ascii",

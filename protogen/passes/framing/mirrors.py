@@ -6,8 +6,7 @@ from collections.abc import Mapping
 
 from protogen.model.numbers import BitPlace
 from protogen.model.origin import About
-from protogen.model.parts import LengthPart, MirrorBits, NumberPart, Part, varying_bits
-from protogen.model.types import Integer
+from protogen.model.parts import LengthPart, MirrorBits, NumberPart, Part, PartType, varying_bits
 from protogen.passes.context import Context, Loc
 from protogen.passes.framing.bit_names import holders_of
 from protogen.problems import hint_for
@@ -25,10 +24,10 @@ def mirror_key(item: PartSyntax | PartBits) -> str | None:
     return next((key for key in MIRRORS if getattr(item, key) is not None), None)
 
 
-def whole_type(type_: Integer) -> Integer:
+def whole_type(type_: PartType) -> PartType:
     """The type of all bits of a part, as bits of it."""
     place = BitPlace(low=0, size=type_.size)
-    return Integer(
+    return PartType(
         bits=type_.bits, byte_bits=type_.byte_bits, byte_order=type_.byte_order, within=place
     )
 
@@ -51,7 +50,7 @@ class Mirrors:
                 self._numbers |= {item.name: item for item in (part, *varying_bits(part))}
 
     def read(
-        self, loc: Loc, item: PartSyntax | PartBits, type_: Integer, text: About
+        self, loc: Loc, item: PartSyntax | PartBits, type_: PartType, text: About
     ) -> MirrorBits | None:
         """The bits of this type that follow from another number; None where that is no such."""
         key = mirror_key(item)
@@ -140,5 +139,5 @@ def _no_number(name: str, item: PartSyntax | PartBits) -> tuple[str, str | None]
     return next(found, ""), None
 
 
-def _bits(type_: Integer) -> str:
+def _bits(type_: PartType) -> str:
     return "1 bit" if type_.bits == 1 else f"{type_.bits} bits"

@@ -16,10 +16,10 @@ from protogen.model.parts import (
     IdentityPart,
     LengthPart,
     NumberPart,
+    PartType,
     ValuePart,
     place_mask,
 )
-from protogen.model.types import Integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.framing.checksums import Checksums
 from protogen.passes.framing.lengths import Lengths
@@ -48,7 +48,7 @@ class Others(NamedTuple):
 
 
 def bits_part(
-    context: Context, loc: Loc, item: Part, type_: Integer, text: About, others: Others
+    context: Context, loc: Loc, item: Part, type_: PartType, text: About, others: Others
 ) -> BitsPart | None:
     """The part whose bits these are; None where something about them is wrong."""
     before = context.tally.errors
@@ -84,7 +84,7 @@ def bits_part(
 class _Reader:
     """The named bits of one part, read one after another."""
 
-    def __init__(self, context: Context, loc: Loc, type_: Integer, others: Others) -> None:
+    def __init__(self, context: Context, loc: Loc, type_: PartType, others: Others) -> None:
         self._context = context
         self._loc = loc
         self._type = type_
@@ -94,7 +94,7 @@ class _Reader:
         self.members: list[BitsMember] = []
         self.fixed = 0
         self.constants: list[FixedBits] = []
-        self.mirrors: list[tuple[Loc, PartBits, Integer, About]] = []
+        self.mirrors: list[tuple[Loc, PartBits, PartType, About]] = []
         """Bits that follow from others, which may stand behind them in the schema."""
         self.sums: list[ChecksumPart] = []
 
@@ -126,7 +126,7 @@ class _Reader:
         else:
             self._member(loc, item, type_)
 
-    def _constant(self, loc: Loc, item: PartBits, type_: Integer) -> None:
+    def _constant(self, loc: Loc, item: PartBits, type_: PartType) -> None:
         """Bits that are the same in each frame."""
         const = item.const or 0
         self._check_alone(loc, item, "const", "PG260")
@@ -139,7 +139,7 @@ class _Reader:
         given = about(item.doc, item.source, self._context.find_key(loc))
         self.constants.append(FixedBits(name=str(loc[-1]), about=given, type=type_, value=const))
 
-    def _mirror(self, loc: Loc, item: PartBits, type_: Integer) -> None:
+    def _mirror(self, loc: Loc, item: PartBits, type_: PartType) -> None:
         """Bits that follow from others; those of this part are known when all of it was read."""
         own = mirror_key(item)
         assert own is not None
@@ -154,7 +154,7 @@ class _Reader:
                 text = f"`{key}` does not go together with `{own}`"
                 self._context.error(code, (*loc, key), text, f"remove `{key}`")
 
-    def _member(self, loc: Loc, item: PartBits, type_: Integer) -> None:
+    def _member(self, loc: Loc, item: PartBits, type_: PartType) -> None:
         """Bits that are a part of their own."""
         role = next((key for key in _ROLES if getattr(item, key) is not None), None)
         others = _ROLES.get(role or "", ())
@@ -196,7 +196,7 @@ class _Reader:
         kind = ValuePart if item.counter is None else CounterPart
         self.members.append(kind(**given, default=self._default(loc, item, part)))
 
-    def _sum(self, loc: Loc, item: PartBits, type_: Integer) -> None:
+    def _sum(self, loc: Loc, item: PartBits, type_: PartType) -> None:
         """Bits that are a checksum, or some bits of one."""
         found = self._checksums.bits(loc, item, type_)
         if found is not None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
-from protogen.model.parts import NumberPart
-from protogen.model.types import ByteOrder, Integer
+from protogen.model.parts import NumberPart, PartType
+from protogen.model.types import ByteOrder
 from protogen.passes.context import Context, Loc
 from protogen.schema.hints import number_hint
 from protogen.schema.syntax.parts import Part
@@ -13,7 +13,7 @@ from protogen.schema.syntax.parts import Part
 _LAST_OF_ASCII = 0x7F
 
 
-def text_type(context: Context, loc: Loc, item: Part, byte_bits: Literal[7, 8]) -> Integer | None:
+def text_type(context: Context, loc: Loc, item: Part, byte_bits: Literal[7, 8]) -> PartType | None:
     """Type of a part that is a text; None where it can't be one."""
     before = context.tally.errors
     if item.type != "ascii":
@@ -33,10 +33,10 @@ def text_type(context: Context, loc: Loc, item: Part, byte_bits: Literal[7, 8]) 
         return None
     order: ByteOrder = "big" if item.size > 1 else "little"
     bits = byte_bits * item.size
-    return Integer(bits=bits, byte_bits=byte_bits, byte_order=order, role="ascii")
+    return PartType(bits=bits, byte_bits=byte_bits, byte_order=order, role="ascii")
 
 
-def text_bounds(context: Context, loc: Loc, item: Part, type_: Integer) -> tuple[int, int]:
+def text_bounds(context: Context, loc: Loc, item: Part, type_: PartType) -> tuple[int, int]:
     """The least and the greatest text: all characters are the first, or the last, that may be."""
     if item.range is None:
         return type_.least, type_.greatest
@@ -82,5 +82,5 @@ def _wrong(part: NumberPart, value: int | str) -> tuple[str, str] | None:
     return None
 
 
-def _as_text(type_: Integer, value: str) -> str:
+def _as_text(type_: PartType, value: str) -> str:
     return f"type: ascii, size: {max(type_.size, len(value))}"

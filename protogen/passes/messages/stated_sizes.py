@@ -14,7 +14,7 @@ from protogen.model.types import (
     Delimited,
     Extent,
     Field,
-    Integer,
+    NumberType,
     Octets,
     Struct,
     Text,
@@ -55,12 +55,12 @@ def _size_of(field: Field, count: _Count, choose: _Choose) -> int:
 
 
 def _size(type_: Type, count: _Count, choose: _Choose) -> int:
-    fixed = type_.sizes.fixed
-    if fixed is not None:
-        return fixed
+    sizes = type_.sizes
+    if sizes.fixed is not None:
+        return sizes.fixed
+    if isinstance(type_, NumberType):
+        return choose((sizes.least, sizes.greatest))
     match type_:
-        case Integer():
-            return choose((type_.sizes.least, type_.sizes.greatest))
         case Text() | Octets():
             return count(type_.extent) + len(type_.terminator)
         case Array():

@@ -11,7 +11,7 @@ from operator import or_
 
 from protogen.copying import replace
 from protogen.model.frame import Frame
-from protogen.model.numbers import Integer, Numeral
+from protogen.model.numbers import Numeral
 from protogen.model.parts import (
     BitsPart,
     ChecksumPart,
@@ -19,6 +19,7 @@ from protogen.model.parts import (
     LiteralPart,
     NumberPart,
     Part,
+    PartType,
     TypedPart,
     place_mask,
     place_of,
@@ -133,7 +134,7 @@ def _bits_in(part: BitsPart, item: NumberPart, value: int | None, low: int) -> B
     return frozenset(number & own for number in range(every + 1))
 
 
-def _any_bits_in(type_: Integer, low: int, width: int) -> ByteSet:
+def _any_bits_in(type_: PartType, low: int, width: int) -> ByteSet:
     """What any value of some bits can make of the byte that has the bits from `low` on."""
     own = place_mask(type_) >> low & (1 << width) - 1
     return frozenset(number & own for number in range(1 << width))

@@ -18,8 +18,6 @@ from protogen.model.types import (
     Extent,
     Field,
     Fixed,
-    Float,
-    Integer,
     NumberType,
     Octets,
     Struct,
@@ -188,7 +186,7 @@ class FieldBuilder:
         named = with_absent(self._context, with_names(self._context, found, item), item)
         return self._registered(named, item)
 
-    def _registered(self, type_: Integer | Float, item: Effective) -> Integer | Float:
+    def _registered(self, type_: NumberType, item: Effective) -> NumberType:
         """The number, with the names under which its values are registered."""
         if not is_integer(type_) or not type_.named_types:
             return type_

@@ -126,7 +126,7 @@ def character(context: Context, item: Effective) -> Integer | None:
 
 def with_absent(context: Context, found: NumberType, item: Effective) -> NumberType:
     """The number, with a name for having no text where it is a character."""
-    form = found.text if is_integer(found) else None
+    form = found.text
     if not isinstance(form, FreeNumeral) or form.separator is None or not is_integer(found):
         return found
     _check_separator(context, found, form, item)

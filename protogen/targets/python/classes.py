@@ -349,9 +349,7 @@ def _named_default(type_: Integer, value: int, names: Names) -> str:
 
 def _views(field: Field, scope: _Scope) -> list[Attribute]:
     views = [_physical(field, scope.own)] if field.scaled else []
-    if isinstance(field.type, Integer):
-        views += [_bits(field, item, scope) for item in field.type.bit_fields]
-    return views
+    return views + [_bits(field, item, scope) for item in field.bit_fields]
 
 
 def _physical(field: Field, names: RecordNames) -> Attribute:

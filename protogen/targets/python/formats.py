@@ -78,7 +78,7 @@ def constant(field: Field) -> str:
             return text(field.const)
         case tuple():
             return str(list(field.const))
-        case int() if isinstance(field.type, Integer) and field.type.role == "bool":
+        case int() if field.is_bool:
             return str(bool(field.const))
     return repr(field.const)
 

@@ -8,7 +8,7 @@ from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.messages import Message
 from protogen.model.names import unit_suffix
 from protogen.model.protocol import Protocol, Sender
-from protogen.model.types import Field, Integer, Struct
+from protogen.model.types import Field, Struct
 from protogen.runtime.attributes import ARGUMENTS, ATTRIBUTES
 from protogen.targets.kept import Kept
 from protogen.targets.naming import (
@@ -125,8 +125,7 @@ class RecordNames:
         self._runs = {
             (field.name, item.name): self._run(field, item)
             for field in fields
-            if isinstance(field.type, Integer)
-            for item in field.type.bit_fields
+            for item in field.bit_fields
         }
 
     def reading(self, field: Field) -> str:

@@ -10,8 +10,8 @@ from protogen.c_language.numbers import hexadecimal, unsigned_type
 from protogen.model.frame_plan import FramePlan
 from protogen.model.identities import Identities, Identity
 from protogen.model.messages import Message
+from protogen.model.parts import PartType
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Integer
 from protogen.targets.c.payload.messages import MessageView
 
 
@@ -137,7 +137,7 @@ def is_among(plan: FramePlan, identities: Identities) -> str:
     return " && ".join(found) if len(found) > 1 else "".join(found)
 
 
-def in_run(value: str, run: tuple[int, int], type_: Integer) -> str:
+def in_run(value: str, run: tuple[int, int], type_: PartType) -> str:
     """The condition that a number is one of a run of values; empty if every one of its type is."""
     first, last = run
     if first == last:

@@ -13,8 +13,8 @@ import msgspec
 
 from protogen.c_language.numbers import hexadecimal, unsigned_type
 from protogen.model.frame_places import Place, Side
-from protogen.model.parts import BitsPart, ChecksumPart, MirrorBits, place_of
-from protogen.model.types import Integer, NumberType
+from protogen.model.parts import BitsPart, ChecksumPart, MirrorBits, PartType, place_of
+from protogen.model.types import NumberType
 
 
 class Index(msgspec.Struct, frozen=True):
@@ -123,7 +123,7 @@ def _byte_of(value: str, shift: int, mask: str) -> str:
     return f"(uint8_t)({shifted}{mask})" if shift or mask else f"(uint8_t){value}"
 
 
-def bits_of(type_: Integer, number: str, carrier_bits: int) -> str:
+def bits_of(type_: PartType, number: str, carrier_bits: int) -> str:
     """The bits that an integer has in another one, as a number in the type that holds them."""
     low = place_of(type_)
     moved = f"({number} >> {low})" if low else number
@@ -167,7 +167,7 @@ def _byte_of_bits(part: BitsPart, names: Mapping[str, str], low: int) -> str:
     return f"(uint8_t)({joined} & {byte(own)})" if width == 7 else joined
 
 
-def _bits_in_byte(type_: Integer, number: str, low: int, width: int) -> list[str]:
+def _bits_in_byte(type_: PartType, number: str, low: int, width: int) -> list[str]:
     """What bits of a part make of its byte with the bits from `low` on; nothing of some."""
     shift = place_of(type_) - low
     if not -type_.bits < shift < width:
@@ -176,7 +176,7 @@ def _bits_in_byte(type_: Integer, number: str, low: int, width: int) -> list[str
     return [f"(uint8_t)({number} {operator} {abs(shift)})" if shift else number]
 
 
-def bits_put(type_: Integer, number: str) -> tuple[tuple[int, str], ...]:
+def bits_put(type_: PartType, number: str) -> tuple[tuple[int, str], ...]:
     """The bytes, by their places in the part, that hold its bits of a number; the others are 0."""
     width = type_.byte_bits
     places = range(type_.size) if type_.byte_order == "little" else range(type_.size - 1, -1, -1)

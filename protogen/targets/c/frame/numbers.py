@@ -15,9 +15,9 @@ from protogen.model.parts import (
     LiteralPart,
     MirrorBits,
     NumberPart,
+    PartType,
     ToldPart,
 )
-from protogen.model.types import Integer
 from protogen.targets.c.frame.expressions import byte, less_absent
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of
@@ -210,7 +210,7 @@ def _bits(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberView
 def _is_other(plan: FramePlan, mirror: MirrorBits, numbers: PartNumbers) -> str:
     """The condition that bits do not follow from their number, on the same side of the payload."""
 
-    def value(type_: Integer, placed: PlacedPart) -> str:
+    def value(type_: PartType, placed: PlacedPart) -> str:
         less = less_absent(placed.place, "decoder->payload")
         return numbers.value(type_, "content", placed.offset, less)
 

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from protogen.c_language.numbers import unsigned_type
 from protogen.model.frame_plan import FramePlan
 from protogen.model.numbers import Numeral
-from protogen.model.parts import BitsPart, NumberPart, TypedPart
-from protogen.model.types import Integer, storage_bits
+from protogen.model.parts import BitsPart, NumberPart, PartType, TypedPart
+from protogen.model.types import storage_bits
 from protogen.targets.c.frame import expressions
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.numerals import Digits
@@ -20,7 +20,7 @@ class PartNumbers:
     def __init__(self, helpers: Helpers) -> None:
         self._helpers = helpers
 
-    def value(self, type_: Integer, at: str, offset: int, less: str = "") -> str:
+    def value(self, type_: PartType, at: str, offset: int, less: str = "") -> str:
         """The value of the bytes from `at[offset]` on, with bits that have to be zero.
 
         `less` is C that is put behind each index.
@@ -31,17 +31,17 @@ class PartNumbers:
             return self.bits(type_, at, f"{offset}{less}")
         return expressions.number_of(type_, at, offset, less)
 
-    def bits(self, type_: Integer, at: str, index: str) -> str:
+    def bits(self, type_: PartType, at: str, index: str) -> str:
         """The value of bits of the bytes from `at[index]` on."""
         number = self.whole(type_.whole, at, index)
         return expressions.bits_of(type_, number, storage_bits(type_.whole.bits))
 
-    def whole(self, type_: Integer, at: str, offset: int | str, less: str = "") -> str:
+    def whole(self, type_: PartType, at: str, offset: int | str, less: str = "") -> str:
         """The number of all bits of some bytes, whose bits are parts."""
         place = f"{at}[{offset}{less}]"
         return place if type_.size == 1 else f"{self._helpers.load(type_)}(&{place})"
 
-    def shown(self, type_: Integer, at: str, offset: int, less: str) -> str:
+    def shown(self, type_: PartType, at: str, offset: int, less: str) -> str:
         """The same value, in the type of a member that holds it."""
         value = self.value(type_, at, offset, less)
         if type_.within is not None:
@@ -49,7 +49,7 @@ class PartNumbers:
         is_wider = type_.text is None and storage_bits(type_.byte_bits * type_.size) > type_.width
         return f"({unsigned_type(type_.bits)})({value})" if is_wider else value
 
-    def fault(self, type_: Integer, at: str, offset: int, less: str) -> str:
+    def fault(self, type_: PartType, at: str, offset: int, less: str) -> str:
         """The condition that no value has these bytes; empty where each has one."""
         if isinstance(type_.text, Numeral):
             address = _address(at, offset, less)
@@ -58,7 +58,7 @@ class PartNumbers:
             return ""
         return f"({expressions.number_of(type_, at, offset, less)} >> {type_.bits}) != 0U"
 
-    def bytes_of(self, type_: Integer, value: str) -> tuple[str, ...]:
+    def bytes_of(self, type_: PartType, value: str) -> tuple[str, ...]:
         """The bytes of an unsigned `value`, in wire order."""
         if isinstance(type_.text, Numeral):
             return Digits.of(type_).characters(self._helpers, value)

@@ -7,9 +7,8 @@ from collections.abc import Iterator
 import msgspec
 
 from protogen.c_language.numbers import unsigned_type
-from protogen.model.parts import CounterPart, IdentityPart, ValuePart
+from protogen.model.parts import CounterPart, IdentityPart, PartType, ValuePart
 from protogen.model.protocol import Protocol
-from protogen.model.types import Integer
 from protogen.targets.c.spelling import Names
 from protogen.targets.naming import OWN
 
@@ -50,14 +49,14 @@ def claim_texts(names: Names, protocol: Protocol) -> None:
             names.claim(OWN, word)
 
 
-def comment_of(type_: Integer) -> str:
+def comment_of(type_: PartType) -> str:
     """What is said of a member that is a text."""
     if not type_.is_text or type_.size == 1:
         return ""
     return f"{type_.size} characters, the first one in the highest byte."
 
 
-def _types(protocol: Protocol) -> Iterator[Integer]:
+def _types(protocol: Protocol) -> Iterator[PartType]:
     for sender in protocol.senders:
         for part in sender.frame.parts:
             if isinstance(part, IdentityPart | CounterPart | ValuePart):

@@ -23,7 +23,7 @@ from protogen.c_language.numbers import (
 from protogen.copying import replace
 from protogen.model.expressions import ArithmeticOperator
 from protogen.model.payload_plan import FloatStep
-from protogen.model.types import Float, Integer, NumberType, is_text, storage_bits
+from protogen.model.types import Float, NumberType, is_text, storage_bits
 from protogen.targets.c.lines import Lines, function
 from protogen.targets.c.spelling import Names
 
@@ -207,7 +207,7 @@ class Helpers:
 
     # --- arithmetic -------------------------------------------------------------------------------
 
-    def floored(self, operator: ArithmeticOperator, type_: Integer) -> str:
+    def floored(self, operator: ArithmeticOperator, type_: NumberType) -> str:
         """The function that divides by a number above 0, rounding down, or gives what remains."""
         kind = integer_type(type_)
         body = [f"return ({kind})({floored(operator, 'number', 'by')});"]

@@ -15,7 +15,7 @@ from protogen.c_language.numbers import constant, hexadecimal, integer_type, uns
 from protogen.model.packing import BytePart, Packing
 from protogen.model.payload_plan import AnyStep, Check, RepeatStep
 from protogen.model.payload_walks import PackedNumber, packed_numbers
-from protogen.model.types import Integer
+from protogen.model.types import NumberType
 from protogen.targets.c.payload.helpers import Helpers, is_whole
 
 Placed = tuple[PackedNumber, str]
@@ -81,7 +81,7 @@ def _joined(terms: list[str]) -> str:
     return terms[0] if len(terms) == 1 else " | ".join(map(_in_brackets, terms))
 
 
-def _moved_up(part: BytePart, byte: str, type_: Integer) -> str:
+def _moved_up(part: BytePart, byte: str, type_: NumberType) -> str:
     """Bits of a byte at their place in the number."""
     moved = f"{byte} >> {part.at}" if part.at else byte
     if not part.ends_byte:
@@ -142,7 +142,7 @@ def _byte(terms: list[str], known: int) -> str:
     return f"(uint8_t)({' | '.join(terms + constants)})"
 
 
-def _moved_down(part: BytePart, place: str, type_: Integer) -> str:
+def _moved_down(part: BytePart, place: str, type_: NumberType) -> str:
     """Bits of a number at their place in a byte; the cast to a byte cuts off those above it."""
     is_raw = not type_.signed and type_.role != "bool"
     moved = place if is_raw else f"({unsigned_type(type_.bits)}){place}"

@@ -17,7 +17,7 @@ from protogen.model.payload_plan import (
     RepeatStep,
     RestStep,
 )
-from protogen.model.types import Integer, NumberType
+from protogen.model.types import NumberType
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.between import separator_of
 from protogen.targets.c.payload.free_numerals import FreeDigits
@@ -83,7 +83,7 @@ class _Output(Walk):
             type_ = step.type.unsigned
         if isinstance(step, IntegerStep) and step.type.is_free:
             self._text(FreeDigits.of(step.type), step, place)
-        elif isinstance(type_, Integer) and type_.text is not None:
+        elif type_.text is not None:
             self._digits(Digits.of(type_), place)
         elif type_.size == 1:
             self._byte(_byte_of(type_, place))

@@ -19,7 +19,7 @@ from protogen.model.payload_plan import (
     RepeatStep,
     TrailingPresence,
 )
-from protogen.model.types import Between, Integer, NumberType, Text
+from protogen.model.types import Between, NumberType, Text
 from protogen.targets.markdown.text.words import code, hex_number, plural
 
 _ORDERS = {"little": "LE", "big": "BE"}
@@ -79,12 +79,12 @@ def _packed(step: RecordStep | RepeatStep) -> str:
 @lru_cache(maxsize=1024)
 def number_text(kind: NumberType) -> str:
     """Print a number's type with its byte order, or with how it is written as text."""
-    form = kind.text if isinstance(kind, Integer) else None
+    form = kind.text
     if isinstance(form, FreeNumeral):
         return f"{code(form.name)}, {_free_text(form)}"
     if form is not None:
         return f"{code(kind.name)} as text, {_digits_text(form)}"
-    is_plain = kind.size == 1 or (isinstance(kind, Integer) and (kind.is_text or kind.within))
+    is_plain = kind.size == 1 or kind.is_text or kind.within is not None
     return code(kind.name) if is_plain else f"{code(kind.name)} {_ORDERS[kind.byte_order]}"
 
 

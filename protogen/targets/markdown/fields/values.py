@@ -10,7 +10,7 @@ import msgspec
 
 from protogen.model.meanings import Enum, Flags, NamedBit, NamedValue
 from protogen.model.origin import NOTHING, About
-from protogen.model.types import Constant, Field, Integer, NumberType
+from protogen.model.types import Constant, Field, NumberType
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.fields.paths import Path
 from protogen.targets.markdown.text.words import (
@@ -136,16 +136,16 @@ def _bounds_text(field: Field) -> str:
     if not field.ranged and (named or field.const is not None or is_plain):
         return ""
     if integer is not None and not field.ranged:
-        raw = _own_bounds(integer)
+        raw = _own_bounds(integer.least, integer.greatest)
     else:
         raw = bounds(field.least, field.greatest)
     return f"{raw} ({_physical_bounds(field)})" if field.scaled else raw
 
 
 @lru_cache(maxsize=256)
-def _own_bounds(type_: Integer) -> str:
+def _own_bounds(least: int, greatest: int) -> str:
     """Print what the bits of an integer can hold."""
-    return bounds(Fraction(type_.least), Fraction(type_.greatest))
+    return bounds(Fraction(least), Fraction(greatest))
 
 
 def _physical_bounds(field: Field) -> str:

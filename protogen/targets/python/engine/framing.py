@@ -15,12 +15,12 @@ from protogen.model.parts import (
     MirrorBits,
     NumberPart,
     Part,
+    PartType,
     PayloadPart,
     ValuePart,
     VirtualPart,
     place_of,
 )
-from protogen.model.types import Integer
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.checksums import (
     FOLDED,
@@ -454,6 +454,6 @@ def _is_packed(part: Part) -> bool:
     return isinstance(part, NumberPart | BitsPart) and _is_plain(part.type)
 
 
-def _is_plain(type_: Integer) -> bool:
+def _is_plain(type_: PartType) -> bool:
     is_whole = type_.text is None and type_.within is None
     return type_.byte_bits == 8 and type_.bits in (8, 16, 32, 64) and is_whole

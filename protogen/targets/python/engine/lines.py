@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from protogen.model.types import Integer, NumberType
+from protogen.model.types import NumberType
 from protogen.targets.python.formats import numeral
 from protogen.targets.python.names import Names
 from protogen.targets.python.wrapping import WIDTH, wrapped
@@ -32,7 +32,7 @@ class Constants:
 
     def number(self, type_: NumberType) -> str:
         """The name of what reads and writes an integer that `struct` does not know."""
-        if isinstance(type_, Integer) and type_.text is not None:
+        if type_.text is not None:
             return self.named("NUMBER", numeral(type_))
         seven = type_.byte_bits == 7
         arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'

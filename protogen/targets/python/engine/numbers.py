@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from protogen.model.framing import are_run
-from protogen.model.parts import BitsPart, TypedPart
-from protogen.model.types import Integer
+from protogen.model.parts import BitsPart, PartType, TypedPart
 from protogen.targets.python import frames as tables
 from protogen.targets.python.engine.frames import EngineFrame
 from protogen.targets.python.engine.layout import UNSIGNED, byte_order
@@ -84,6 +83,6 @@ class FrameFunction:
         return ", ".join(self.number(source, part, base) for part in self.plan.identity) or "()"
 
     @staticmethod
-    def has_padding(type_: Integer) -> bool:
+    def has_padding(type_: PartType) -> bool:
         """True if some bits of the bytes have to be clear, or the bytes be digits."""
         return type_.bits % 8 != 0 or type_.byte_bits == 7 or type_.text is not None
