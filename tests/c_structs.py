@@ -83,8 +83,14 @@ def _unsigned(greatest: int) -> Any:
 def count_name(fields: Sequence[Field], field: Field) -> str:
     return _free(
         f"{field.name}_{'count' if isinstance(field.type, Array) else 'size'}",
-        {other.name for other in fields},
+        {other.name for other in fields} | _numbers_around(fields),
     )
+
+
+def _numbers_around(fields: Sequence[Field]) -> set[str]:
+    """The numbers of records around that fields ask for."""
+    asked = {path.split(".")[0] for field in fields for path in field.needs}
+    return asked - {field.name for field in fields}
 
 
 def flag_name(fields: Sequence[Field], field: Field) -> str:

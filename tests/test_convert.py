@@ -34,6 +34,25 @@ DOCUMENT_SENDERS = [
 ]
 
 
+COUNTS = """\
+protocol: counts
+endpoints: {robot: Robot, host: Host}
+frame:
+  length: {type: uint8, counts: payload}
+  payload: {}
+  sum: {type: uint8, algorithm: sum-8, covers: [length, payload]}
+messages:
+  m:
+    from: robot
+    fields:
+      data_size: {type: uint8}
+      inner:
+        fields:
+          kind: {type: uint8, when: data_size == 3}
+          data: {type: bytes, size: {fill: true, max: 9}}
+"""
+
+
 @pytest.fixture(scope="module")
 def sink(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("schema") / "sink.yaml"
@@ -194,6 +213,18 @@ def test_json_lines_are_those_of_decode(path: Path, sender: str, tmp_path: Path)
     assert lines == decoded.output
     back = start("encode", str(path), "--format", "raw", input=lines.encode())
     assert back.stdout == capture.read_bytes()
+
+
+def test_a_number_around_is_told_from_a_count_of_the_same_name(tmp_path: Path) -> None:
+    """The rows have a count of `data`, which is not the `data_size` that `kind` asks for."""
+    schema = tmp_path / "counts.yaml"
+    schema.write_text(COUNTS)
+    capture = tmp_path / "counts.bin"
+    capture.write_bytes(bytes.fromhex("03 03 07 08 15  03 02 07 08 14"))
+    convert(schema, "robot", capture, "parquet", tmp_path / "out")
+    found = rows_of(tmp_path / "out", "counts", "parquet")["m"]
+    assert [row["inner.kind"] for row in found] == [7, None]
+    assert [row["inner.data"] for row in found] == [b"\x08", b"\x07\x08"]
 
 
 def test_csv_shows_lists_as_json_and_bytes_as_digits(sink: Path, tmp_path: Path) -> None:

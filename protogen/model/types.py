@@ -464,9 +464,13 @@ def beyond(needed: frozenset[str], name: str) -> frozenset[str]:
 
 
 def count_name(fields: Sequence[Field], field: Field) -> str:
-    """Name beside those of `fields` for the number of elements or bytes of one that has it."""
+    """Name beside those of `fields` for the number of elements or bytes of one that has it.
+
+    It hides none of the numbers around that they ask for.
+    """
     word = "count" if isinstance(field.type, Array) else "size"
-    return free_name(f"{field.name}_{word}", {item.name for item in fields})
+    around = {path.partition(".")[0] for path in _needed_by(fields)}
+    return free_name(f"{field.name}_{word}", {item.name for item in fields} | around)
 
 
 def presence_name(fields: Sequence[Field], field: Field) -> str:
