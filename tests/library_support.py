@@ -109,10 +109,16 @@ def compare_frames(name: str, peer: Peer, drawn: Iterable[Case]) -> None:
 
 
 def compare_recovery(
-    name: str, endpoint: str, peer: Peer, drawn: Iterable[Case], shared: bytes = b""
+    name: str,
+    endpoint: str,
+    peer: Peer,
+    drawn: Iterable[Case],
+    shared: bytes = b"",
+    errors: float = ERRORS,
 ) -> None:
     """Of a stream with damaged bytes, no frame is lost that the peer finds.
 
+    `errors` is the share of the bytes that are damaged: few where frames are so long that none stays.
     `shared` is the delimiter that may both end a frame and begin the next one. Where a silence ends
     frames, there is one behind each.
     """
@@ -120,7 +126,7 @@ def compare_recovery(
     drawn = [case for case in drawn if endpoint_of(name, case) == endpoint]
     dice.shuffle(drawn)
     frames = [encoded(name, case) for case in drawn]
-    bursts = [(told, damaged(burst, dice)) for told, burst in bursts_of(name, drawn)]
+    bursts = [(told, damaged(burst, dice, errors)) for told, burst in bursts_of(name, drawn)]
     sent = Counter(frames)
     ours = Counter(found(name, endpoint, bursts, shared)) & sent
     theirs = Counter(frame for _, burst in bursts for frame in peer.found(endpoint, burst)) & sent
@@ -148,9 +154,9 @@ def bursts_of(name: str, drawn: Sequence[Case]) -> list[Burst]:
     return list(bursts.values())
 
 
-def damaged(data: bytes, dice: Random) -> bytes:
-    """The data with another byte in the place of each hundredth, on average."""
-    return bytes(byte ^ dice.randrange(1, 256) if dice.random() < ERRORS else byte for byte in data)
+def damaged(data: bytes, dice: Random, errors: float = ERRORS) -> bytes:
+    """The data with another byte in the place of some, on average this share of them."""
+    return bytes(byte ^ dice.randrange(1, 256) if dice.random() < errors else byte for byte in data)
 
 
 def ends_idle(name: str, case: Case) -> bool:

@@ -9,7 +9,15 @@ from typing import Any
 
 import pytest
 from compiled import module_at
-from library_support import cases_of, compare_frames, compare_recovery, encoded, peer_module
+from library_support import (
+    cases_of,
+    compare_frames,
+    compare_recovery,
+    encoded,
+    endpoint_of,
+    peer_module,
+)
+from rplidar_sdk import HIGH_QUALITY, ULTRA_DENSE, Sdk
 
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
@@ -43,6 +51,8 @@ ANNOUNCEMENTS = [
     "dense_capsules_follow",
     "ultra_dense_capsules_follow",
 ]
+SCANNED = 60
+"""Packets whose recovery is compared: each takes many bytes that are looked at one by one."""
 MEASUREMENTS = ["node", "capsule", "dense_capsule", "ultra_capsule"]
 
 
@@ -228,3 +238,20 @@ def test_a_capsule_is_found_behind_others_that_are_damaged() -> None:
 
 def test_no_answer_is_lost_that_it_finds(lidar: Lidar) -> None:
     compare_recovery("rplidar", "lidar", lidar, cases_of("rplidar"))
+
+
+@pytest.fixture(scope="module")
+def packets() -> list[Case]:
+    return cases_of("rplidar", [HIGH_QUALITY, ULTRA_DENSE])
+
+
+def test_packets_laid_out_by_hand_are_the_same(packets: list[Case]) -> None:
+    compare_frames("rplidar", Sdk(), packets)
+
+
+@pytest.mark.parametrize(("message", "errors"), [(HIGH_QUALITY, 0.001), (ULTRA_DENSE, 0.01)])
+def test_no_packet_is_lost_that_a_scan_byte_by_byte_finds(
+    packets: list[Case], message: str, errors: float
+) -> None:
+    drawn = [case for case in packets if case.message == message][:SCANNED]
+    compare_recovery("rplidar", endpoint_of("rplidar", drawn[0]), Sdk(), drawn, errors=errors)
