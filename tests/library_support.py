@@ -118,7 +118,7 @@ def compare_recovery(
 ) -> None:
     """Of a stream with damaged bytes, no frame is lost that the peer finds.
 
-    `errors` is the share of the bytes that are damaged: few where frames are so long that none stays.
+    `errors` is the share of bytes that are damaged: few where frames are so long that none stays.
     `shared` is the delimiter that may both end a frame and begin the next one. Where a silence ends
     frames, there is one behind each.
     """

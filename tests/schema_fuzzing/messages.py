@@ -238,14 +238,17 @@ class _Message:
         fields.update(front.data)
         size += front.size
         left = replace(setting.behind(front.size), budget=_TAIL)
+        tail: dict[str, Any] = {}
         for _ in range(self._draw(st.integers(1, 3))):
             built: Built = self._draw(optional(left))
-            fields[self._draw(fresh(FIELDS, fields))] = built.data
+            tail[self._draw(fresh(FIELDS, {**fields, **tail}))] = built.data
             size += built.size
             left = left.behind(built.size)
             if left.budget < 1 or built.fills:
                 break
-        return {"fields": fields}, size
+        if self._draw(forms.one_in(3)):
+            tail = {self._draw(fresh(FIELDS, fields)): {"fields": tail}}
+        return {"fields": {**fields, **tail}}, size
 
     def _may_separate(self, setting: Setting) -> bool:
         return setting.delimited and setting.byte_bits == 8 and setting.budget > 2

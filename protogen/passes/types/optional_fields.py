@@ -23,9 +23,9 @@ def is_optional(context: Context, name: str, item: Effective) -> bool:
     if any(link.optional for link, _ in item.chain[1:]):
         text = "a declared type is there wherever it is used"
         context.error("PG288", loc, text, "write `optional` where the type is used")
-    elif not _is_of_message(item.chain[0][1]):
-        text = f"`{name}` is no field of a message itself, at whose end it could be left out"
-        hint = "say by a `when` whether it is there, or make the whole struct optional"
+    elif not (_is_of_record(item.chain[0][1]) and item.setting.in_tail):
+        text = f"`{name}` is in something that does not end the payload, and may be left out"
+        hint = "say by a `when` whether it is there, or move what it is in to the end"
         context.error("PG288", loc, text, hint)
     elif not item.setting.delimited:
         text = (
@@ -38,9 +38,9 @@ def is_optional(context: Context, name: str, item: Effective) -> bool:
     return False
 
 
-def _is_of_message(loc: Loc) -> bool:
-    """True for a field of a message: no struct, array or switch is around it."""
-    return loc[0] == "messages" and len(loc) == len(("messages", "name", "fields", "field"))
+def _is_of_record(loc: Loc) -> bool:
+    """True for a field of a message or struct; a case of a switch is none."""
+    return loc[-2] == "fields"
 
 
 def _stands_alone(context: Context, name: str, item: Effective) -> bool:

@@ -28,6 +28,8 @@ class Setting(msgspec.Struct, frozen=True):
     """True if the frame tells where the payload ends."""
     last: bool = True
     """True if nothing of the payload follows."""
+    in_tail: bool = True
+    """True if nothing of the payload follows the struct or message that the field is in."""
     used: int = 0
     """The least number of bytes of the payload in front."""
     position: int | None = 0
@@ -61,6 +63,7 @@ class Setting(msgspec.Struct, frozen=True):
             outer=outer,
             leads=self.leads or not first,
             last=self.last and last,
+            in_tail=self.last,
         )
 
 

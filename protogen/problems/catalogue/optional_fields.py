@@ -37,18 +37,19 @@ out, nothing can stand behind it, so all fields behind it have `optional: true` 
         "misplaced-optional",
         "An `optional` that nothing could tell",
         """\
-The end of a message's payload says whether a field with `optional: true` is there. So it is a field
-of the message itself, not one in a struct, an array or a case; it has a byte at least where it is
-there; and nothing else says whether it is there, or what it is then: neither `when` nor `const` nor
-`default`. Fields that come and go together are one struct that is optional.
+The end of a message's payload, or of a region, says whether a field with `optional: true` is there.
+So it is a field of the message itself, or of a struct or a case behind which nothing stands, not
+one in an array; it has a byte at least where it is there; and nothing else says whether it is there,
+or what it is then: neither `when` nor `const` nor `default`. Fields that come and go together are
+one struct that is optional.
 """,
         with_fields("""
-            angle: uint16
             more: {fields: {speed: uint16, current: {type: uint16, optional: true}}}
+            angle: uint16
         """),
         with_fields("""
             angle: uint16
-            more: {optional: true, fields: {speed: uint16, current: uint16}}
+            more: {fields: {speed: uint16, current: {type: uint16, optional: true}}}
         """),
     ),
     Code(
