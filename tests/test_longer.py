@@ -42,15 +42,24 @@ def test_an_encoder_writes_what_it_knows(engine: str) -> None:
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_size_that_varies_is_as_it_says(engine: str) -> None:
     module: Any = module_at(STATION)
+    longer = bytes.fromhex("D5 04 05 09 02 61 62 63 85 38")
+    (event,) = module.Decoder("station", engine).feed(longer)
+    assert (event.raw, event.payload) == (longer, b"\2ab")
+    assert event.message == module.Name(size=2, text="ab")
+    assert module.PROTOCOL.encode_line(event.as_json()) == longer
     with pytest.raises(DecodeError) as caught:
-        module.decode(bytes.fromhex("D5 04 05 09 02 61 62 63 85 38"), engine=engine)
+        module.decode(bytes.fromhex("D5 04 05 09 04 61 62 63 1F 73"), engine=engine)
     assert caught.value.reason == "size"
 
 
-def test_what_is_left_is_no_fault() -> None:
-    rows = annotate(_protocol(STATION.read_text("utf-8")), "station", LONGER)
+@pytest.mark.parametrize(
+    ("frame", "left"),
+    [(LONGER, "01 D5"), (bytes.fromhex("D5 04 05 09 02 61 62 63 85 38"), "63")],
+)
+def test_what_is_left_is_no_fault(frame: bytes, left: str) -> None:
+    rows = annotate(_protocol(STATION.read_text("utf-8")), "station", frame)
     assert not any(row.fault for row in rows)
-    assert [row.meaning for row in rows if row.bytes == b"\1\xd5"] == [
+    assert [row.meaning for row in rows if row.bytes == bytes.fromhex(left)] == [
         "left, as what is behind the known fields is"
     ]
 
@@ -122,6 +131,19 @@ def test_a_field_that_can_not_be_zero_is_refused_in_old_frames(extra: str) -> No
 
 def test_without_zeros_that_are_left_out_old_frames_lack_the_field() -> None:
     found = _changes(CUT, "{value: uint16}", "{value: uint16, extra: uint8}")
+    assert found == {("field-added", "reading.extra", "new receiver of old frames", "rejected")}
+
+
+TEXT = "{name: {type: ascii, until: {byte: 0, max: 4}}}"
+
+
+def test_a_field_behind_one_whose_size_varies_breaks_nobody_if_it_may_be_left_out() -> None:
+    found = _changes(CUT, TEXT, TEXT[:-1] + ", extra: {type: uint16, optional: true}}")
+    assert found == {("field-appended", "reading.extra", "nobody", "nothing")}
+
+
+def test_a_field_behind_one_whose_size_varies_lacks_in_old_frames() -> None:
+    found = _changes(CUT, TEXT, TEXT[:-1] + ", extra: uint16}")
     assert found == {("field-added", "reading.extra", "new receiver of old frames", "rejected")}
 
 

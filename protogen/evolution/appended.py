@@ -38,10 +38,10 @@ def with_appended(
 
 def _is_cut(old: FramePlan, message: Message, other: Message) -> bool:
     """True if old receivers leave what new payloads have more."""
-    before, longest = message.cut_size, old.frame.payload.longest
-    if before is None or longest is None:
+    longest = old.frame.payload.longest
+    if longest is None or not message.can_be_cut:
         return False
-    return before <= other.sizes.greatest <= longest
+    return (message.cut_size or 0) <= other.sizes.greatest <= longest
 
 
 def _is_trailing(field: Field) -> bool:

@@ -175,7 +175,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
 
     def takes_any_size(self, group: IdentityGroup) -> bool:
         """True if no payload is too short or too long for the messages of an identity."""
-        is_cut = self.is_cut and group.own is not None
+        is_cut = self.is_cut and all(message.can_be_cut for message in group.messages)
         return is_cut and all(sizes.least == 0 for sizes in group.sizes)
 
     @property

@@ -9,6 +9,7 @@ import msgspec
 
 from protogen.model.frame import Frame
 from protogen.model.identities import Identities, Identity
+from protogen.model.nesting import fills
 from protogen.model.origin import NOTHING, About
 from protogen.model.parts import NumberPart, VirtualPart
 from protogen.model.payload_builder import plan_of
@@ -84,6 +85,19 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         if all(field.sizes_in_front.fixed is not None for field in self.fields):
             return self.sizes.greatest
         return self.sizes.fixed
+
+    @property
+    def tells_its_end(self) -> bool:
+        """True if its size varies, and what its fields hold says where they end.
+
+        None of them takes all that is left of a payload.
+        """
+        return self.cut_size is None and not any(map(fills, self.fields))
+
+    @property
+    def can_be_cut(self) -> bool:
+        """True if receivers can tell what is behind its fields, and leave it."""
+        return self.cut_size is not None or self.tells_its_end
 
     @property
     def told_by(self) -> Identities:

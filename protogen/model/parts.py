@@ -321,13 +321,13 @@ class PayloadPart(Part, frozen=True, kw_only=True):
         """True if receivers fill payloads up, or cut them, to the size that the message has."""
         return self.is_trimmed or self.is_cut
 
-    def carried(self, sizes: SizeSet, cut_size: int | None) -> SizeSet:
+    def carried(self, sizes: SizeSet, *, can_be_cut: bool) -> SizeSet:
         """The sizes in which a receiver takes the payloads of a message that has these itself.
 
-        It cuts longer ones to so many bytes, or does not: None.
+        It leaves what is behind the fields of longer ones where these can be cut.
         """
         least = 0 if self.is_trimmed else sizes.least
-        if self.longest is not None and cut_size is not None:
+        if self.longest is not None and can_be_cut:
             return SizeSet.between(least, max(self.longest, sizes.greatest))
         return SizeSet.between(0, sizes.greatest) if self.is_trimmed else sizes
 

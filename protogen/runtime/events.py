@@ -74,7 +74,7 @@ class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
         """The message's bytes: with zeros that a frame leaves out, without what is not known."""
         told = self.codec.told_among(self.numbers)
         payload = payload_of(self.codec, self.raw, told)
-        return self.codec.layout.payload.fitted(payload, self.message.__known__())
+        return self.codec.layout.payload.fitted(payload, self.message.__known_of__(payload))
 
     def __repr__(self) -> str:
         shown = ("offset", "raw", "sender", "parts", "message")

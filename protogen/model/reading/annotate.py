@@ -315,7 +315,7 @@ class _Frame:
         """The rows of a payload; zeros that the frame leaves out have values and no bytes."""
         offset, size = inside.offset, inside.left
         own = message.sizes.greatest
-        if self._is_cut(message) and size > own:
+        if self._is_cut(message) and message.cut_size is not None and size > own:
             return dissect(message.plan, inside.part(own))
         missing = own - size
         if missing <= 0 or not self._sender.plan.is_trimmed:
@@ -325,7 +325,7 @@ class _Frame:
 
     def _is_cut(self, message: Message | None) -> bool:
         """True if receivers leave what is behind the fields of a message."""
-        is_known = message is not None and message.cut_size is not None
+        is_known = message is not None and message.can_be_cut
         return is_known and self._sender.plan.is_cut
 
     def _payload_size(self, part: PayloadPart) -> int:

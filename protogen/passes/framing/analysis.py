@@ -73,10 +73,16 @@ class _Analysis:
         self._loc = self._written.loc
         sent, uncut = list(draft.sent_by(sender)), replace(frame.payload, longest=None)
         self._messages = [
-            replace(message, sizes=frame.payload.carried(message.sizes, message.cut_size))
+            replace(
+                message,
+                sizes=frame.payload.carried(message.sizes, can_be_cut=message.can_be_cut),
+            )
             for message in sent
         ]
-        self._own = [replace(message, sizes=uncut.carried(message.sizes, None)) for message in sent]
+        self._own = [
+            replace(message, sizes=uncut.carried(message.sizes, can_be_cut=False))
+            for message in sent
+        ]
         """The messages without the bytes that newer senders may have behind them."""
         self._too_large = any(message.name in draft.too_large for message in self._messages)
         self._overloads = draft.overloads[sender]

@@ -34,14 +34,14 @@ def check_cut(context: Context, draft: Draft) -> None:
 
 
 def _check_sizes(context: Context, draft: Draft, frame: Loc, senders: list[str]) -> None:
-    """A message that always has the same size, and room behind it, is what can be cut."""
+    """A message that no field fills to its end, and room behind it, is what can be cut."""
     longest = draft.frames[senders[0]].payload.longest or 0
     messages = [message for sender in senders for message in draft.sent_by(sender)]
     loc, sender = (*frame, "payload", "longer"), " or ".join(senders)
-    known = [message for message in messages if message.cut_size is not None]
+    known = [message for message in messages if message.can_be_cut]
     if messages and not known:
-        text = f"no message of {sender} always has the same size, so none has bytes behind it"
-        hint = "leave out `longer`, or give a message a fixed size"
+        text = f"every message of {sender} takes all of its payload, so none has bytes behind it"
+        hint = "leave out `longer`, or say where the fields of a message end"
         context.error_at_key("PG281", loc, text, hint)
     elif known and all(message.sizes.greatest >= longest for message in known):
         text = f"no frame of {sender} has room for more than a message has: {longest} bytes"

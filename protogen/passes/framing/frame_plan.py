@@ -81,7 +81,10 @@ def _group(frame: Frame, identities: Identities, messages: Sequence[Message]) ->
         identity=identities.first,
         key=frame.key(identities.first),
         messages=tuple(messages),
-        sizes=tuple(frame.payload.carried(message.sizes, message.cut_size) for message in messages),
+        sizes=tuple(
+            frame.payload.carried(message.sizes, can_be_cut=message.can_be_cut)
+            for message in messages
+        ),
         identities=identities if identities.count > 1 else None,
     )
 

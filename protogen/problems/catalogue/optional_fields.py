@@ -37,11 +37,11 @@ out, nothing can stand behind it, so all fields behind it have `optional: true` 
         "misplaced-optional",
         "An `optional` that nothing could tell",
         """\
-The end of a message's payload, or of a region, says whether a field with `optional: true` is there.
-So it is a field of the message itself, or of a struct or a case behind which nothing stands, not
-one in an array; it has a byte at least where it is there; and nothing else says whether it is there,
-or what it is then: neither `when` nor `const` nor `default`. Fields that come and go together are
-one struct that is optional.
+The end of a message's payload, or of a region, says whether a field with `optional: true` is
+there. So it is a field of the message itself, or of a struct or a case behind which nothing stands,
+not one in an array; it has a byte at least where it is there; and nothing else says whether it is
+there, or what it is then: neither `when` nor `const` nor `default`. Fields that come and go
+together are one struct that is optional.
 """,
         with_fields("""
             more: {fields: {speed: uint16, current: {type: uint16, optional: true}}}

@@ -50,11 +50,25 @@ class IdentityGroup(Generic[MessageT_co]):
         """True if frames can carry a payload of one of these messages in that size."""
         own = self._own
         if own is None or not self._part.is_fitted:
-            return any(size in message.SIZES for message in self.messages)
+            return any(
+                size in message.SIZES or self._leaves(message, size) for message in self.messages
+            )
         is_filled, is_cut = self._part.kept is not None, self._part.longest is not None
         if size > own:
             return is_cut
         return is_filled or any(size in message.SIZES for message in self.messages)
+
+    def _leaves(self, message: type[MessageT_co], size: int) -> bool:
+        """True if the fields of a message say where they end in more bytes than it has."""
+        is_cut = self._part.longest is not None and message.TELLS_ITS_END
+        return is_cut and size > message.SIZES.least
+
+    def _known(self, payload: bytes) -> bytes:
+        """What a frame has of a payload, cut or filled up to what is known of it."""
+        message, size = self.messages[0], len(payload)
+        if self._leaves(message, size):
+            return self._part.fitted(payload, message.__known_of__(payload))
+        return self._part.fitted(payload, self._own)
 
     def measure(self, start: bytes) -> int:
         """The size of the payload that starts so; PayloadError with `missing` if it is longer."""
@@ -64,7 +78,7 @@ class IdentityGroup(Generic[MessageT_co]):
 
     def read(self, payload: bytes) -> MessageT_co:
         """The message of a frame's payload. Raises PayloadError: size, value or encoding."""
-        payload = self._part.fitted(payload, self._own)
+        payload = self._known(payload)
         fitting = (message for message in self.messages if len(payload) in message.SIZES)
         return next(fitting, self.messages[0]).parse_payload(payload)
 

@@ -117,6 +117,8 @@ class Message(Record):
     """The sizes that its payload can have."""
     CUT_SIZE: ClassVar[int | None] = None
     """Bytes that are known of a longer payload, where sizes vary by what is left out."""
+    TELLS_ITS_END: ClassVar[bool] = False
+    """True if sizes vary, and the fields say where they end."""
 
     __read__: ClassVar[Callable[[bytes], Any] | None] = None
     """Gives the message of a payload, as the fast engine reads it. Raises where it can't."""
@@ -136,6 +138,18 @@ class Message(Record):
     def __known__(cls) -> int | None:
         """Bytes that are known of a payload; None where its fields say how long it is."""
         return cls.SIZES.fixed if cls.CUT_SIZE is None else cls.CUT_SIZE
+
+    @classmethod
+    def __known_of__(cls, payload: bytes) -> int | None:
+        """Bytes that are known of this payload; None where its fields take all of it.
+
+        Raises construct's kind of error where it is no payload: PayloadError.
+        """
+        if not cls.TELLS_ITS_END:
+            return cls.__known__()
+        from protogen.runtime.constructs import prefix_size  # It takes long to import.
+
+        return prefix_size(cls.FORMAT, payload)
 
     def __encode__(self, module: object, sender: str | None, *parts: GivenValue) -> bytes:
         """The frame, as the fast engine of this module makes it. Raises where it can't.

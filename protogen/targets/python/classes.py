@@ -117,8 +117,11 @@ def struct_class(item: Struct, names: Names) -> RecordClass:
     return _record(item, "_rt.Record", doc, (), names, packed)
 
 
-def message_class(item: Message, identity: str, names: Names) -> RecordClass:
-    """A message; `identity` says in words what its identity is."""
+def message_class(item: Message, identity: str, names: Names, *, is_cut: bool) -> RecordClass:
+    """A message; `identity` says in words what its identity is.
+
+    It is cut where some frames of it have payloads that may be longer than known.
+    """
     values = tuple_of(f"0x{value:02X}" for value in item.identity)
     several = () if item.identities is None else (f"IDENTITIES = {_identities(item.identities)}",)
     is_told = item.cut_size is None or item.sizes.fixed is not None
@@ -131,6 +134,7 @@ def message_class(item: Message, identity: str, names: Names) -> RecordClass:
         *several,
         f"SIZES = {_sizes(item.sizes)}",
         *cut,
+        *(("TELLS_ITS_END = True",) if is_cut and item.tells_its_end else ()),
     )
     doc = docstring(describing.message(item), _INDENT)
     return _record(item, "_rt.Message", doc, constants, names)

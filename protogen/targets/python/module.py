@@ -270,7 +270,12 @@ def _senders(
                 frame_text="" if known else frame_text,
                 spec_text=_sender_spec(sender, frame, parts[sender.name].name, names),
                 messages=tuple(
-                    classes.message_class(message, _identity_words(sender, message), names)
+                    classes.message_class(
+                        message,
+                        _identity_words(sender, message),
+                        names,
+                        is_cut=any(it.plan.is_cut for it in protocol.senders_of(message)),
+                    )
                     for message in new
                 ),
             )

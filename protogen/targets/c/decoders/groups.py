@@ -31,6 +31,8 @@ class ReceivedMessage(msgspec.Struct, frozen=True):
     """Bytes that longer payloads are cut to; None where they are refused."""
     varies: bool = False
     """True if payloads that are cut may also be shorter."""
+    tells_its_end: bool = False
+    """True if the check of a longer payload tells what it is cut to."""
 
     @property
     def fixed(self) -> bool:
@@ -40,12 +42,17 @@ class ReceivedMessage(msgspec.Struct, frozen=True):
     @property
     def takes_any_size(self) -> bool:
         """True if no payload is too short or too long."""
-        return self.cuts is not None and self.least == 0
+        return self.can_be_longer and self.least == 0
+
+    @property
+    def can_be_longer(self) -> bool:
+        """True if payloads that are too long are cut."""
+        return self.cuts is not None or self.tells_its_end
 
     @property
     def is_fitted(self) -> bool:
         """True if payloads are filled up, or cut."""
-        return bool(self.fills) or self.cuts is not None
+        return bool(self.fills) or self.can_be_longer
 
     @property
     def own(self) -> int:
@@ -65,10 +72,10 @@ class ReceivedMessage(msgspec.Struct, frozen=True):
         return self._compared(size, "!=", "<", ">", " || ")
 
     def _compared(self, size: str, equal: str, least: str, greatest: str, word: str) -> str:
-        if self.fixed:
+        if self.fixed and not self.can_be_longer:
             return f"{size} {equal} {self.least}U"
         found = [f"{size} {least} {self.least}U"] if self.least else []
-        if self.cuts is not None:
+        if self.can_be_longer:
             return word.join(found)
         found.append(f"{size} {greatest} {self.greatest}U")
         if self.step > 1:
@@ -188,6 +195,7 @@ def _message(
         fills=own or 0 if plan.is_trimmed else 0,
         cuts=own if is_cut else None,
         varies=is_cut and varies,
+        tells_its_end=plan.is_cut and message.tells_its_end,
     )
 
 

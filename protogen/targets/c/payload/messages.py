@@ -138,6 +138,9 @@ class _Codec:
         delimited = all(is_delimited(sender.frame) for sender in printer.senders_of(item))
         self.checks = self.fixed is None or bool(item.plan.checks)
         self.needs = self.fixed is None and not delimited
+        is_cut = any(sender.plan.is_cut for sender in printer.senders_of(item))
+        self.leaves = is_cut and item.tells_its_end
+        """True if a check may leave what is behind the fields, and tells where they end."""
         self.validates = can_be_refused(item.plan, item.sizes)
         result = f"enum {self._prefix}_result"
         message, given = f"{struct} *message", f"const {struct} *message"
@@ -240,14 +243,14 @@ class _Codec:
 
     def _check(self) -> str:
         lines, size, fixed = Lines(), self._item.sizes.fixed, self.fixed is not None
-        if self.needs:
+        if self.needs or self.leaves:
             with lines.block("if (need != NULL)"):
                 lines.add("*need = 0U;")
         self._refuse(lines, "" if size is None else f"size != {size}U", "SIZE")
         helpers = self._printer.helpers
         check = Checker(helpers, lines, self._prefix, fixed=fixed, needs=self.needs)
         check.message(self._item.plan)
-        check.finish(_unfit(self._item))
+        check.finish(_unfit(self._item), leaves=self.leaves)
         lines.add(f"return {self._upper}_OK;")
         return self._function("check", lines)
 

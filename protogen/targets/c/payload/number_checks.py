@@ -53,12 +53,18 @@ class NumberChecker(CheckedWalk):
         self._numbers: dict[str, str] = {}  # Variables, by the places of the numbers they hold.
         self._branches = 0
 
-    def finish(self, unfit: str) -> None:
-        """Say what is left to say at the end of the payload, and refuse sizes that are unfit."""
+    def finish(self, unfit: str, *, leaves: bool) -> None:
+        """Say what is left to say at the end of the payload, and refuse sizes that are unfit.
+
+        What is behind may be left for whoever asks how many bytes are needed.
+        """
         self._flush()
         if self._fixed:
             return
         self._require(0)
+        if leaves:
+            with self.lines.block("if (need != NULL)"):
+                self.lines.add(f"size = {self._sum(self._offset)};", "*need = size;")
         if not self._ended:
             self._refuse(f"size != {self._sum(self._offset)}", "SIZE")
         self._refuse(unfit, "SIZE")

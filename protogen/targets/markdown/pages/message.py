@@ -92,7 +92,7 @@ def _notes(senders: Iterable[Sender], message: Message) -> Iterator[str]:
     trimmed = [sender_code(it) for it in senders if it.plan.is_trimmed and message.sizes.greatest]
     if trimmed:
         yield f"{listed(trimmed)} leaves out zero bytes at the end of the payload."
-    if message.cut_size is not None and any(it.plan.is_cut for it in senders):
+    if message.can_be_cut and any(it.plan.is_cut for it in senders):
         yield "Bytes behind these fields, which a newer sender may have, are left."
     for sender in senders:
         for overload in sender.overloads:
