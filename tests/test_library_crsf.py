@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from compiled import module_at
 from library_support import (
     cases_of,
     compare_frames,
@@ -18,6 +19,7 @@ from library_support import (
 from protogen.copying import replace
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
+from protogen.library import FOLDER
 
 HEADER = 3
 """Bytes in front of what a type holds."""
@@ -111,6 +113,77 @@ def test_both_read_the_same_numbers(radio: Radio, messages: list[str]) -> None:
 
 def test_both_have_the_same_around_all_messages(radio: Radio) -> None:
     compare_frames("crsf", radio, map(radio.known, cases_of("crsf")))
+
+
+POPUP = b"\1Bind\0Which?\0\x1e\1"
+"""A pop-up with its header, its text, 30 s and a button to close it."""
+
+
+def command(content: bytes) -> bytes:
+    """A command for a screen, with both checksums worked out bit by bit."""
+    inner = b"\x32\xea\xee\x22" + content
+    inner += bytes([crc(inner, 0xBA)])
+    return bytes((0xC8, len(inner) + 1, *inner, crc(inner, 0xD5)))
+
+
+def crc(data: bytes, poly: int) -> int:
+    found = 0
+    for byte in data:
+        found ^= byte
+        for _ in range(8):
+            found = found << 1 & 0xFF ^ (poly if found & 0x80 else 0)
+    return found
+
+
+@pytest.mark.parametrize("engine", ["fast", "construct"])
+@pytest.mark.parametrize(
+    ("content", "selection", "choices"),
+    [
+        (b"", None, None),
+        (b"\0", {"first": 0, "number": None}, None),
+        (b"\0yes;no\0", {"first": 0, "number": None}, "yes;no"),
+        (
+            b"Gain\0\5\0\x0a\3dB\0\0",
+            {
+                "first": ord("G"),
+                "number": {
+                    "text": "ain",
+                    "value": 5,
+                    "least": 0,
+                    "greatest": 10,
+                    "default": 3,
+                    "unit": "dB",
+                },
+            },
+            "",
+        ),
+    ],
+    ids=["absent", "empty", "choices", "number"],
+)
+def test_what_a_pop_up_lets_choose(
+    engine: str, content: bytes, selection: Values | None, choices: str | None
+) -> None:
+    module: Any = module_at(FOLDER / "crsf.yaml")
+    frame = command(POPUP + content)
+    (event,) = module.Decoder("device", engine).feed(frame)
+    assert event.as_json()["fields"]["value"] == {
+        "header": "Bind",
+        "text": "Which?",
+        "timeout": 30,
+        "close_button": True,
+        "selection": selection,
+        "choices": choices,
+    }
+    assert module.PROTOCOL.encode_line(event.as_json()) == frame
+
+
+@pytest.mark.parametrize("engine", ["fast", "construct"])
+@pytest.mark.parametrize("content", [POPUP + b"\0yes;no\0", b"\2\1\1"], ids=["pop-up", "answer"])
+def test_what_a_newer_device_adds_is_left(engine: str, content: bytes) -> None:
+    module: Any = module_at(FOLDER / "crsf.yaml")
+    (known,) = module.Decoder("device", engine).feed(command(content))
+    (event,) = module.Decoder("device", engine).feed(command(content + b"\7new"))
+    assert (event.message, event.payload) == (known.message, content)
 
 
 def test_no_frame_is_lost_that_it_finds(radio: Radio) -> None:

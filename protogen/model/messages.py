@@ -9,7 +9,7 @@ import msgspec
 
 from protogen.model.frame import Frame
 from protogen.model.identities import Identities, Identity
-from protogen.model.nesting import fills
+from protogen.model.nesting import always_fills
 from protogen.model.origin import NOTHING, About
 from protogen.model.parts import NumberPart, VirtualPart
 from protogen.model.payload_builder import plan_of
@@ -90,9 +90,9 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     def tells_its_end(self) -> bool:
         """True if its size varies, and what its fields hold says where they end.
 
-        None of them takes all that is left of a payload.
+        At least where they choose nothing that takes all that is left of a payload.
         """
-        return self.cut_size is None and not any(map(fills, self.fields))
+        return self.cut_size is None and not any(map(always_fills, self.fields))
 
     @property
     def can_be_cut(self) -> bool:

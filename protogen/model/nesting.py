@@ -69,6 +69,21 @@ def fills(field: Field) -> bool:
     return field.region is None and takes_rest(field.type)
 
 
+def always_fills(field: Field) -> bool:
+    """True if a field takes all that the payload has left, whatever is chosen in it."""
+    return field.region is None and field.when is None and _always_takes_rest(field.type)
+
+
+def _always_takes_rest(type_: Type) -> bool:
+    match type_:
+        case Struct():
+            return bool(type_.fields) and always_fills(type_.fields[-1])
+        case Switch():
+            is_rest = type_.rest is not None or type_.otherwise is not None
+            return is_rest and all(map(_always_takes_rest, inner_types(type_)))
+    return takes_rest(type_)
+
+
 def can_count(type_: Type) -> bool:
     """True if a value can say how many elements or bytes another field has."""
     if not is_integer(type_) or type_.signed or type_.role == "bool":

@@ -29,9 +29,9 @@ identity tells that. So the frame has a length part that counts the payload.
         "No payload that could be longer than its message",
         """\
 With `longer: cut`, a payload may have more bytes than its message, where that always has the same
-size, or its fields say where they end. A message with a field that fills the payload, or a switch
-at the end whose other values have bytes, takes all of it: there is nothing to cut. Nor is there
-where the length part, or `max_frame`, allows no more bytes than the messages have.
+size, or its fields say where they end. A message with a field that fills the payload takes all of
+it: there is nothing to cut. Nor is there where the length part, or `max_frame`, allows no more
+bytes than the messages have.
 """,
         with_payload(_CUT, _TEXT),
         with_payload(_CUT, _TEXT + _GYRO),
