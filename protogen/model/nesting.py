@@ -77,7 +77,7 @@ def always_fills(field: Field) -> bool:
 def _always_takes_rest(type_: Type) -> bool:
     match type_:
         case Struct():
-            return bool(type_.fields) and always_fills(type_.fields[-1])
+            return any(map(always_fills, type_.fields))
         case Switch():
             is_rest = type_.rest is not None or type_.otherwise is not None
             return is_rest and all(map(_always_takes_rest, inner_types(type_)))
