@@ -70,7 +70,10 @@ def accessor(
             case RecordStep():
                 type_ = "void"
                 arguments = (*arguments, f"{records.spelled(element.type)} *out")
-                Load(helpers, body).pointed(plan_of_struct(element.type), "out->")
+                load = Load(helpers, body)
+                load.pointed(plan_of_struct(element.type), "out->")
+                if load.reads_size:
+                    return None  # A text goes up to a separator, or to the end of the payload.
             case _:
                 raise AssertionError(element)
     body.drop_unused_places()
