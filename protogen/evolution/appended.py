@@ -59,7 +59,9 @@ def _takes_zeros(type_: Type) -> bool:
         named = () if type_.enum is None else [item.value for item in type_.enum.values]
         return type_.text is None and (not type_.is_closed or 0 in named)
     match type_:
-        case Text() | Octets():
+        case Text():
+            return isinstance(type_.extent, Fixed) and 0 in type_.form.alphabet
+        case Octets():
             return isinstance(type_.extent, Fixed)
         case Array():
             return isinstance(type_.extent, Fixed) and _takes_zeros(type_.element)

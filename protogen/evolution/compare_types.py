@@ -27,6 +27,7 @@ from protogen.model.types import (
     Struct,
     Switch,
     Text,
+    TextForm,
     Type,
     Until,
 )
@@ -111,7 +112,7 @@ class TypeComparison:
 
     def _strings(self, old: Text | Octets, new: Text | Octets, path: str) -> Iterator[Change]:
         yield from self._extents(old.extent, new.extent, path)
-        if old.byte_bits != new.byte_bits:
+        if old.byte_bits != new.byte_bits or _form_of(old) != _form_of(new):
             yield self._report("field-encoding", path, named(old.label, new.label))
 
     def _extents(self, old: Extent, new: Extent, path: str) -> Iterator[Change]:
@@ -312,6 +313,11 @@ def _flag(bit: int) -> Mark:
     return Mark(1 << bit, 1 << bit)
 
 
+def _form_of(kind: Text | Octets) -> TextForm | None:
+    """How the characters of a text lie in its bytes."""
+    return kind.form if isinstance(kind, Text) else None
+
+
 def _runs(fields: Sequence[BitField]) -> str:
     return ", ".join(f"{item.name} {item.low}..{item.high}" for item in fields)
 
@@ -319,6 +325,8 @@ def _runs(fields: Sequence[BitField]) -> str:
 def _bytes(kind: Type) -> tuple[Extent, int] | None:
     """Number and width of the bytes of a value, if it is nothing but bytes."""
     match kind:
+        case Text() if not kind.form.is_plain:
+            return None
         case Text() | Octets():
             return kind.extent, kind.byte_bits
         case Array(element=Integer() as element, extent=extent):

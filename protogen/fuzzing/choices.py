@@ -373,6 +373,8 @@ def _text_choices(step: BytesStep, lengths: Lengths) -> Choices:
         return _characters_choices(step.count.between.characters.decode(), lengths)
     if isinstance(step.type.extent, Fixed):
         least = 0
+    if not step.type.form.is_plain:
+        return _padded_choices(step.type.form.padding, greatest)
     end = step.count.until
     ends = (_without(end, character.encode()) for character in ("A", "\n", chr(_LAST_OF_ASCII)))
     values = [character.decode() * greatest for character in ends]
@@ -391,6 +393,18 @@ def _characters_choices(characters: str, lengths: Lengths) -> Choices:
         lambda random: "".join(
             random.choice(characters) for _ in range(_any_length(least, greatest, random))
         ),
+    )
+
+
+def _padded_choices(padding: int, greatest: int) -> Choices:
+    """Texts with another padding: none of them ends with it."""
+    last = chr(padding)
+    texts = ["", *(letter * greatest for letter in ("A", "\x01", chr(_LAST_OF_ASCII)))]
+    if greatest > 1:
+        texts.append(last * (greatest - 1) + "A")
+    return Choices(
+        _distinct([text.rstrip(last) for text in texts]),
+        lambda random: _any_text(random, random.randint(0, greatest)).rstrip(last),
     )
 
 

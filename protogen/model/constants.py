@@ -8,7 +8,6 @@ from protogen.model.types import (
     Array,
     Constant,
     Field,
-    Fixed,
     Integer,
     NumberType,
     Text,
@@ -37,8 +36,8 @@ def _wire_bytes(type_: Type, value: Constant) -> bytes:
     if isinstance(value, bytes):
         return value
     if isinstance(value, str):
-        is_padded = isinstance(type_, Text) and isinstance(type_.extent, Fixed)
-        return value.encode("latin-1").ljust(type_.sizes.least if is_padded else 0, b"\0")
+        padded = type_.padded if isinstance(type_, Text) else None
+        return value.encode("latin-1") if padded is None else padded.encode(value)
     assert isinstance(type_, NumberType)
     assert isinstance(value, int | float)
     return codec(type_).encode(type_.raw(value))

@@ -166,7 +166,7 @@ class _Builder:
                     name=name,
                     field=field,
                     sizes=type_.sizes,
-                    checks=_seven_bit(type_) | _extent_checks(type_.extent),
+                    checks=_string_checks(type_),
                     is_refusable=isinstance(type_, Text)
                     or type_.byte_bits == 7
                     or not isinstance(type_.extent, Fixed),
@@ -414,6 +414,12 @@ def _number_checks(type_: Integer | Float) -> frozenset[Check]:
 
 def _seven_bit(type_: Integer | Float | Text | Octets | Switch) -> frozenset[Check]:
     return frozenset({Check.SEVEN_BIT}) if type_.byte_bits == 7 else _NOTHING
+
+
+def _string_checks(type_: Text | Octets) -> frozenset[Check]:
+    is_coded = isinstance(type_, Text) and not type_.form.is_plain
+    of_characters = frozenset({Check.CHARACTERS}) if is_coded else _NOTHING
+    return _seven_bit(type_) | _extent_checks(type_.extent) | of_characters
 
 
 def _extent_checks(extent: Extent) -> frozenset[Check]:

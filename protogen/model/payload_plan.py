@@ -41,7 +41,7 @@ class Check(Enum):
     """Something that can be wrong with bytes that are there in the right number."""
 
     CHARACTERS = auto()
-    """A character of a text is none of those that it can have."""
+    """A character of a text is none of those that it can have, or a byte stands for none."""
     SEVEN_BIT = auto()
     """A byte has its most significant bit set."""
     PADDING = auto()

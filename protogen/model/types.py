@@ -41,7 +41,9 @@ from protogen.model.origin import NOTHING, About
 from protogen.model.packing import Packing
 from protogen.model.presence import Conditional, Presence, Trailing
 from protogen.model.sizes import SizeSet
+from protogen.model.texts import PLAIN_TEXT, TextForm
 from protogen.runtime.payload.bits import BitOrder
+from protogen.runtime.payload.texts import PaddedText
 
 __all__ = [
     "NO_OFFSET",
@@ -68,6 +70,7 @@ __all__ = [
     "Switch",
     "Tail",
     "Text",
+    "TextForm",
     "Type",
     "Until",
     "bits_of",
@@ -125,9 +128,21 @@ class _Bytes(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Text(_Bytes, frozen=True, kw_only=True):
-    """ASCII text of so many bytes. A fixed size is padded with NUL bytes at the end."""
+    """ASCII text of so many bytes; of a fixed size it has padding at the end."""
 
     word: ClassVar[str] = "ascii"
+    form: TextForm = PLAIN_TEXT
+
+    @property
+    def label(self) -> str:
+        """The type in the words of the schema language."""
+        plain = f"{self.word}[{self.extent.label}]"
+        return plain if self.form.is_plain else f"{plain} ({self.form.label})"
+
+    @property
+    def padded(self) -> PaddedText | None:
+        """What reads and writes a text of a fixed size; None of others, which are their bytes."""
+        return self.form.codec(self.extent.count) if isinstance(self.extent, Fixed) else None
 
 
 class Octets(_Bytes, frozen=True, kw_only=True):

@@ -94,6 +94,7 @@ __all__ = [
     "OctetsRule",
     "OpenEnum",
     "OptionalRule",
+    "PaddedText",
     "PartsT_co",
     "PayloadPart",
     "Physical",
@@ -138,7 +139,9 @@ if TYPE_CHECKING:
         SwitchRule,
         WhenRule,
     )
-    from protogen.runtime.payload.rules import OctetsRule, TextRule, Violation
+    from protogen.runtime.payload.rules import Violation
+    from protogen.runtime.payload.string_rules import OctetsRule, TextRule
+    from protogen.runtime.payload.texts import PaddedText
 else:
     __getattr__ = importer(
         globals(),
@@ -155,6 +158,8 @@ else:
                 "SwitchRule",
                 "WhenRule",
             ),
-            ".payload.rules": ("OctetsRule", "TextRule", "Violation"),
+            ".payload.rules": ("Violation",),
+            ".payload.string_rules": ("OctetsRule", "TextRule"),
+            ".payload.texts": ("PaddedText",),
         },
     )

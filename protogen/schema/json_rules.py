@@ -19,6 +19,9 @@ _BUILT_IN_PATTERN = (
 )
 """Names of types where none are declared."""
 
+_NO_TEXT = f"^({INTEGER_PATTERN}|byte|char|bool|float32|float64|decimal|hexadecimal|bytes)$"
+"""Names of types that have no padding."""
+
 _FORMS = ("fields", "switch")
 _NUMERIC = ("scale", "offset", "unit", "special", "range")
 _NAMED = ("values", "flags", "bits")
@@ -111,7 +114,7 @@ _FIELD_RULES = (
     _where(
         _any_of(_FORMS),
         "These are for numbers.",
-        _none_of((*_NUMERIC, *_NAMED, *_WRITTEN, "const", "default", "closed")),
+        _none_of((*_NUMERIC, *_NAMED, *_WRITTEN, "padding", "const", "default", "closed")),
     ),
     _where(
         _with("fields"),
@@ -153,9 +156,25 @@ _FIELD_RULES = (
         _none_of((*_NAMED, "closed", "packed")),
     ),
     _where(
-        _type_like("byte|char|bool|float32|float64|ascii|bytes"),
+        _type_like("byte|char|bool|float32|float64|bytes"),
         "Only integers have digits.",
         _none_of(_WRITTEN),
+    ),
+    _where(_type_like("ascii"), "Only integers have digits.", _none_of(("digits", "chars"))),
+    _where(
+        _with("padding"),
+        "Only a text of a fixed size has padding.",
+        {"properties": {"type": {"not": {"pattern": _NO_TEXT}}, "size": {"type": "integer"}}},
+    ),
+    _where(
+        {**_type_like("ascii"), "required": ["type", "code"]},
+        "Only a text of a fixed size has a code.",
+        {"properties": {"size": {"type": "integer"}}},
+    ),
+    _where(
+        {**_type_like(INTEGER_PATTERN), "required": ["type", "code"]},
+        "The characters of an integer are not shifted.",
+        {"properties": {"code": {"properties": {"shift": {"const": 0}}}}},
     ),
     _ONE_KIND_OF_DIGITS,
     _where(

@@ -10,7 +10,7 @@ from functools import lru_cache
 from protogen.model.messages import Message
 from protogen.model.origin import About, Source
 from protogen.model.protocol import Link, Protocol
-from protogen.model.types import Array, Field, Marked
+from protogen.model.types import Array, Field, Marked, Text
 from protogen.targets.escape import paragraphs
 
 
@@ -70,7 +70,9 @@ def step_of(item: Field) -> str:
 
 
 def extent_of(item: Field) -> list[str]:
-    """Number of elements of an array, and what says which is the last."""
+    """Number of elements of an array, and what says which is the last; padding of a text."""
+    if isinstance(item.type, Text) and not item.type.form.is_plain:
+        return [f"text of at most {item.type.extent.counts} characters: {item.type.form.label}"]
     if not isinstance(item.type, Array):
         return []
     extent = item.type.extent

@@ -14,7 +14,7 @@ _DIGITS = {
     "base16-lower": frozenset(b"0123456789abcdef"),
 }
 _PRINTABLE = frozenset(range(0x20, 0x7F))
-_WRITTEN = ("digits", "code", "fraction", "case")
+_WRITTEN = ("digits", "code", "fraction", "case", "padding")
 
 Types = Mapping[str, Any]
 """What is declared."""
@@ -88,7 +88,12 @@ def _of_value(item: dict[str, Any]) -> frozenset[int]:
     if item["type"] == "decimal":
         signs = b"+-" if item.get("range", [-1])[0] < 0 else b""
         return frozenset(b"0123456789" + signs + (b"." if item.get("fraction") else b""))
-    if "code" in item:
+    if item["type"] == "ascii" and "const" not in item and ("code" in item or "padding" in item):
+        form = item.get("code", {"bits": 8})
+        least = 1 if "padding" in item else 0
+        shift, add = form.get("shift", 0), form.get("add", 0)
+        return frozenset((code << shift) + add for code in range(least, 2 ** form["bits"]))
+    if "code" in item and item["type"] != "ascii":
         first = item["code"]["add"]
         return frozenset(range(first, first + 2 ** item["code"]["bits"]))
     if "digits" in item:
@@ -109,9 +114,16 @@ def _of_constant(item: Mapping[str, Any], named: Mapping[str, Any]) -> frozenset
     if item["type"] == "char":
         return frozenset({_code(named.get(constant, constant))})
     if item["type"] == "ascii":
-        padding = b"\0" if len(constant) < item["size"] else b""
-        return frozenset(constant.encode() + padding)
+        form = item.get("code", {})
+        shift, add = form.get("shift", 0), form.get("add", 0)
+        text = constant.ljust(item["size"], _padding(item))
+        return frozenset((ord(character) << shift) + add for character in text)
     return frozenset(bytes.fromhex(constant["hex"])) if item["type"] == "bytes" else EVERY
+
+
+def _padding(item: Mapping[str, Any]) -> str:
+    padding = item.get("padding", 0)
+    return padding if isinstance(padding, str) else chr(padding)
 
 
 def _code(value: Any) -> int:

@@ -335,15 +335,31 @@ _NUMBERS = {
 # --- items --------------------------------------------------------------------------------------
 
 
+_PADDED: list[dict[str, Any]] = [{"padding": 0x20}, {"padding": 0x5A}]
+_CODED: list[dict[str, Any]] = [
+    {"code": {"bits": 7, "shift": 1}, "padding": 0x20},
+    {"code": {"bits": 7, "shift": 1, "add": 1}},
+    {"code": {"bits": 7, "add": 0x80}, "padding": 0x5F},
+    {"code": {"bits": 7}},
+]
+_PLAIN: list[tuple[str, dict[str, Any]]] = [("bytes", {}), ("ascii", {})]
+_STRINGS = {
+    bits: [*_PLAIN * 2, *(("ascii", form) for form in padded)]
+    for bits, padded in ((7, _PADDED), (8, _PADDED + _CODED))
+}
+"""Types of strings of a fixed size, with the form of a text, by the bits of a byte."""
+
+
 @st.composite
 def _string(draw: st.DrawFn, setting: Setting) -> Built:
     """A text or bytes of a fixed size, sometimes with a constant."""
     size = draw(st.integers(0, min(_USUAL_BYTES, setting.budget)))
-    kind = draw(st.sampled_from(["ascii", "bytes"]))
-    data: dict[str, Any] = {"type": kind, "size": size, **draw(forms.about())}
+    kind, form = draw(st.sampled_from(_STRINGS[setting.byte_bits]))
+    data: dict[str, Any] = {"type": kind, "size": size, **form, **draw(forms.about())}
     key = draw(st.sampled_from(["", "", "", "const", "default"]))
+    padding = chr(form["padding"]) if "padding" in form else ""
     if key and kind == "ascii":
-        data[key] = draw(st.text("aZ09 _-\"'\\{}", max_size=size))
+        data[key] = draw(st.text("aZ09 _-\"'\\{}", max_size=size)).rstrip(padding)
     elif key:
         highest = (1 << setting.byte_bits) - 1
         content = st.lists(st.integers(0, highest), min_size=size, max_size=size)

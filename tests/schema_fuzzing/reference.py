@@ -66,7 +66,7 @@ def value_bytes(type_: Type, value: Any, scope: Scope) -> bytes:
         case Float():
             return _float_bytes(type_, value)
         case Text():
-            return _ended(type_.extent, value.encode("latin-1"))
+            return _ended(type_.extent, _text_bytes(type_, value))
         case Octets():
             return _ended(type_.extent, bytes.fromhex(value))
         case Struct(packed=str(order)) | Array(packed=str(order)):
@@ -76,6 +76,13 @@ def value_bytes(type_: Type, value: Any, scope: Scope) -> bytes:
         case Array():
             return b"".join(value_bytes(type_.element, element, scope) for element in value)
     return _switch_bytes(type_, value, scope)
+
+
+def _text_bytes(type_: Text, value: str) -> bytes:
+    if not isinstance(type_.extent, Fixed):
+        return value.encode("latin-1")
+    text, form = value.ljust(type_.extent.count, chr(type_.form.padding)), type_.form
+    return bytes((ord(character) << form.shift) + form.add for character in text)
 
 
 def _ended(extent: Extent, data: bytes) -> bytes:

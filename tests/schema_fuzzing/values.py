@@ -299,7 +299,9 @@ def _string(draw: st.DrawFn, type_: Text | Octets, scope: Scope) -> str:
         return draw(st.text(characters, min_size=size, max_size=size))
     if not isinstance(type_.extent, Fixed):
         return _without_end(type_.extent, draw(_text(size, size)).encode()).decode()
-    return draw(_text(0, size)).rstrip("\0")
+    text = draw(_text(0, size))
+    padding = chr(type_.form.padding)
+    return (text.replace("\0", "\x01") if padding != "\0" else text).rstrip(padding)
 
 
 def _without_end(extent: Extent, data: bytes) -> bytes:

@@ -39,7 +39,6 @@ from protogen.model.reading.wire import Unit
 from protogen.model.types import (
     Between,
     Field,
-    Fixed,
     Float,
     NumberType,
     Scalar,
@@ -422,8 +421,12 @@ def _text(step: BytesStep, row: Row) -> Row:
         text = text[step.count.between.leads :]
     if step.count.until is not None:
         text = text[:-1]
-    if isinstance(step.type.extent, Fixed):
-        text = text.rstrip("\0")
+    padded = step.type.padded if isinstance(step.type, Text) else None
+    if padded is not None:
+        try:
+            text = padded.decode(row.bytes)
+        except ByteError as error:
+            return replace(row, fault=str(error))
     due = step.field.const
     wrong = isinstance(due, str) and text != due
     return row.reads(text, "", f"must be {quoted(str(due))}" if wrong else "")

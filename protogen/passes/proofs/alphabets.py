@@ -40,7 +40,9 @@ def payload_alphabet(byte_bits: int, messages: Sequence[Message]) -> ByteSet:
 
 def _holds_text(type_: Type) -> bool:
     is_between = isinstance(type_, Text) and isinstance(type_.extent, Between)
-    return is_text(type_) or is_between or any(map(_holds_text, inner_types(type_)))
+    is_coded = isinstance(type_, Text) and not type_.form.is_plain
+    is_told = is_between or is_coded or is_text(type_)
+    return is_told or any(map(_holds_text, inner_types(type_)))
 
 
 def _of_fields(fields: Iterable[Field]) -> ByteSet:
@@ -62,6 +64,8 @@ def _of(type_: Type) -> ByteSet:
             return frozenset(extent.alphabet)
         case Integer(role="char", enum=enum) if enum is not None and enum.closed:
             return frozenset(item.value for item in enum.values)
+        case Text():
+            return type_.form.alphabet
         case Struct(packed=None):
             return _of_fields(type_.fields)
         case Switch() if type_.rest is not None:

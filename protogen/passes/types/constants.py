@@ -157,8 +157,9 @@ class _Reader:
         padded = isinstance(type_.extent, Fixed)
         if not written.isascii():
             raise _UnfitError(f"`{self._key}` is not ASCII")
-        if padded and written.endswith("\0"):
-            raise _UnfitError(f"`{self._key}` ends with NUL, which is padding here")
+        codec = type_.padded
+        if codec is not None and (fault := codec.fault_of(written)):
+            raise _UnfitError(f"`{self._key}` {fault}")
         self._has_size(len(written), type_, padded=padded)
         self._goes_on(written.encode("ascii"), type_)
         if isinstance(type_.extent, Between):

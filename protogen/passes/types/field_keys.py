@@ -37,6 +37,9 @@ def check_keys(context: Context, name: str, item: Effective) -> None:
         text = f"`cases` are for a switch, and `{name}` is none"
         hint = "name the field that chooses: `switch`"
         context.error_at_key("PG110", item.at("cases"), text, hint)
+    if syntax.padding is not None and syntax.type != "ascii":
+        text = f"`padding` is for ascii of a fixed size, and `{name}` is none"
+        context.error_at_key("PG294", item.at("padding"), text)
     check_size(context, item)
     check_until(context, name, item)
     if syntax.count is not None:
@@ -55,6 +58,8 @@ def _only_for_integers(context: Context, item: Effective) -> None:
     syntax = item.syntax
     kind = "a switch" if syntax.switch else "a struct" if syntax.fields is not None else syntax.type
     for key in (*VALUE_NAMES, "digits", "code", "chars", "fraction", "case"):
+        if key == "code" and syntax.type == "ascii":
+            continue
         if getattr(syntax, key) is not None:
             text = f"{key} are for integers, not for {kind}"
             context.error_at_key("PG110", item.at(key), text)

@@ -56,6 +56,7 @@ from protogen.passes.types.sized_arrays import (
 )
 from protogen.passes.types.tails import can_be_followed, in_front_of_tail
 from protogen.passes.types.terminators import until_of
+from protogen.passes.types.text_forms import text_form
 from protogen.passes.types.text_numbers import says_text, text_number, with_text
 from protogen.passes.types.type_names import UNKNOWN_TYPE, float_type, integer
 from protogen.passes.types.value_names import with_names
@@ -268,10 +269,12 @@ class FieldBuilder:
         byte_bits = item.setting.layout.byte_bits
         if item.setting.layout.separator is not None:
             self._expansion.vary()
-            return Text(extent=text_between(self._context, item))
+            between = text_between(self._context, item)
+            return Text(extent=between, form=text_form(self._context, item, between))
         extent = self._length(item)
         if item.syntax.type == "ascii":
-            return Text(extent=extent, byte_bits=byte_bits)
+            form = text_form(self._context, item, extent)
+            return Text(extent=extent, byte_bits=byte_bits, form=form)
         return Octets(extent=extent, byte_bits=byte_bits)
 
     def _length(self, item: Effective) -> Extent:

@@ -83,6 +83,9 @@ class FixedDigits:
     def _alphabet(self) -> bytes | None:
         """The characters of the digits."""
         code = self._syntax.code
+        if code is not None and code.shift:
+            text = "`shift` is for the characters of a text, not for the digits of an integer"
+            self._context.error("PG294", (*self._at("code"), "shift"), text)
         if code is None:
             digits = self._syntax.digits
             return ALPHABETS[digits if isinstance(digits, str) else "base10"]

@@ -24,6 +24,7 @@ from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
 from protogen.problems.catalogue.switch_cases import SWITCH_CASE_CODES
 from protogen.problems.catalogue.tails import TAIL_CODES
 from protogen.problems.catalogue.terminators import TERMINATOR_CODES
+from protogen.problems.catalogue.text_forms import TEXT_FORM_CODES
 from protogen.problems.catalogue.text_numbers import TEXT_NUMBER_CODES
 from protogen.problems.catalogue.told_parts import TOLD_PART_CODES
 from protogen.problems.catalogue.trimming import TRIMMING_CODES
@@ -36,6 +37,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *PACKING_CODES,
     *TEXT_NUMBER_CODES,
     *TERMINATOR_CODES,
+    *TEXT_FORM_CODES,
     *LAST_ELEMENT_CODES,
     *VIRTUAL_PART_CODES,
     *TOLD_PART_CODES,

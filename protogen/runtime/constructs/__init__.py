@@ -41,6 +41,7 @@ from protogen.runtime.constructs.strings import (
     Octets,
     OctetsFill,
     OctetsUntil,
+    Padded,
     TextBetween,
 )
 from protogen.runtime.constructs.structs import (
@@ -80,6 +81,7 @@ __all__ = [
     "OctetsFill",
     "OctetsUntil",
     "Packed",
+    "Padded",
     "Pass",
     "PayloadError",
     "Piece",

@@ -13,6 +13,8 @@ from protogen.runtime.constructs.pieces import (
     fixed_extent,
     read,
 )
+from protogen.runtime.errors import ByteError
+from protogen.runtime.payload.texts import PaddedText
 
 
 def _check_seven_bits(data: bytes, path: str, offset: int) -> None:
@@ -191,26 +193,30 @@ class _Text(Around):
         return str(obj)
 
 
-class _PaddedText(Around):
-    """Text in a fixed number of bytes, padded with NUL at the end."""
+class _Padded(Around):
+    """Text in a fixed number of bytes, with padding at the end."""
 
-    def __init__(self, size: int, seven_bit: bool) -> None:
-        super().__init__(Octets(size, seven_bit))
-        self._size = size
+    def __init__(self, text: PaddedText, seven_bit: bool) -> None:
+        super().__init__(Octets(text.size, seven_bit))
+        self._text = text
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> str:
         data: bytes = self.subcon._parsereport(stream, context, path)
-        return data.rstrip(b"\0").decode("latin-1")
+        try:
+            return self._text.decode(data)
+        except ByteError as error:
+            place = stream.tell() - len(data) + (self._text.first_foreign(data) or 0)
+            raise PayloadError(error.reason, path, place, str(error)) from None
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> str:
-        data = _latin1(obj, path, stream)
-        if len(data) > self._size:
-            problem = f"has {len(data)} characters, at most {self._size} are allowed"
+        text = _latin1(obj, path, stream).decode("latin-1")
+        if len(text) > self._text.size:
+            problem = f"has {len(text)} characters, at most {self._text.size} are allowed"
             raise PayloadError("size", path, stream.tell(), problem)
-        if data.endswith(b"\0"):
-            problem = "ends with NUL, which a receiver takes for padding"
+        problem = self._text.fault_of(text)
+        if problem:
             raise PayloadError("value", path, stream.tell(), problem)
-        self.subcon._build(data.ljust(self._size, b"\0"), stream, context, path)
+        self.subcon._build(self._text.encode(text), stream, context, path)
         return str(obj)
 
 
@@ -229,8 +235,20 @@ def Latin1(size: Extent, seven_bit: bool = False) -> Piece:  # noqa: N802
     a size that an earlier field gives it has exactly that many characters.
     """
     if isinstance(size, int):
-        return _PaddedText(size, seven_bit)
+        return _Padded(PaddedText(size), seven_bit)
     return _Text(Octets(size, seven_bit))
+
+
+def Padded(  # noqa: N802
+    size: int,
+    padding: int = 0,
+    bits: int = 8,
+    shift: int = 0,
+    add: int = 0,
+    seven_bit: bool = False,
+) -> Piece:
+    """Text in a fixed number of bytes, with another padding than NUL, or in a code."""
+    return _Padded(PaddedText(size, padding, bits, shift, add), seven_bit)
 
 
 def Latin1Fill(  # noqa: N802

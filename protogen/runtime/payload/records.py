@@ -8,7 +8,8 @@ from typing import Any
 from protogen.runtime.attributes import ATTRIBUTES, attribute
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.payload.formula import Formula, number_of
-from protogen.runtime.payload.rules import OctetsRule, Rule, Scope, SeveralRule, Violation
+from protogen.runtime.payload.rules import Rule, Scope, SeveralRule, Violation
+from protogen.runtime.payload.string_rules import OctetsRule
 
 FieldRules = tuple[tuple[str, Rule], ...]
 """Name and rule of each field, in wire order."""

@@ -53,9 +53,13 @@ FixedDigitsName = Annotated[
 
 
 class CharacterCode(Syntax):
-    """How the characters of an integer come of its bits."""
+    """How the characters of an integer come of its bits, or the bytes of a text of characters."""
 
     bits: Annotated[Count, Field(ge=1, le=7)] = Field(
-        description="Bits of the integer in each character."
+        description="Bits of the integer in each character; of a text, 7: those of a character."
     )
-    add: ByteNumber = Field(description="What is added to them, which is the character of zeros.")
+    shift: Count = Field(0, description="Of a text: bits by which each character is shifted left.")
+    add: ByteNumber = Field(
+        0,
+        description="What is added to them, which is the character of zeros; 0 if not said.",
+    )

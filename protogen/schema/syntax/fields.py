@@ -273,7 +273,14 @@ class FieldSyntax(Syntax):
         "its greatest value needs.",
     )
     code: CharacterCode | None = Field(
-        None, description="Each character is some bits of the integer, the highest ones first."
+        None,
+        description="Each character is some bits of the integer, the highest ones first. Of an "
+        "ascii field of a fixed size: what the byte of each character is.",
+    )
+    padding: ByteNumber | None = Field(
+        None,
+        description="Character that fills up an ascii field of a fixed size, such as a blank; NUL "
+        "if not said.",
     )
     when: ExpressionText | None = Field(
         None,

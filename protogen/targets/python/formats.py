@@ -158,6 +158,8 @@ def _order(type_: Integer | Float) -> str | None:
 
 def _string(type_: Text | Octets) -> str:
     kind, seven = _string_kind(type_), _seven_bit(type_)
+    if isinstance(type_, Text) and not type_.form.is_plain:
+        return call("_c.Padded", *_text_form(type_), seven_bit=seven)
     match type_.extent:
         case Fill(greatest=greatest) as of:
             return call(f"{kind}Fill", str(greatest), seven_bit=seven, least=least(of))
@@ -173,6 +175,18 @@ def between(of: Between) -> tuple[str, ...]:
     """Arguments that say what stands around a text, and which characters it can have."""
     leads = ("leads=True",) if of.leads else ()
     return f"0x{of.separator:02X}", str(of.greatest), octets_in_class(of.characters), *leads
+
+
+def padded_text(type_: Text) -> str:
+    """The codec of a text of a fixed size."""
+    return call("_rt.PaddedText", *_text_form(type_))
+
+
+def _text_form(type_: Text) -> tuple[str, ...]:
+    form = type_.form
+    given = {"bits": (form.bits, 8), "shift": (form.shift, 0), "add": (form.add, 0)}
+    stated = [f"{name}={value}" for name, (value, usual) in given.items() if value != usual]
+    return (extent(type_.extent), f"0x{form.padding:02X}", *stated)
 
 
 def extent(of: Extent) -> str:

@@ -24,7 +24,7 @@ from protogen.model.types import (
     Type,
     Until,
 )
-from protogen.targets.python.formats import constant, is_empty, least
+from protogen.targets.python.formats import constant, is_empty, least, padded_text
 from protogen.targets.python.formulas import formula
 from protogen.targets.python.literals import call, mapping, number, octets_in_class, text
 from protogen.targets.python.names import Names
@@ -45,7 +45,9 @@ def _rule(type_: Type, field: Field | None, names: Names) -> str:
         case Float():
             return _float(type_, field)
         case Text():
-            return call("_rt.TextRule", **_extent("size", type_.extent), const=_const(field))
+            form = padded_text(type_) if not type_.form.is_plain else None
+            extent = _extent("size", type_.extent)
+            return call("_rt.TextRule", **extent, const=_const(field), form=form)
         case Octets():
             return call("_rt.OctetsRule", **_extent("size", type_.extent), const=_const(field))
         case Struct():

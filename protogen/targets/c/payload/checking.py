@@ -29,6 +29,7 @@ from protogen.model.payload_plan import (
 from protogen.model.types import Between, Tail
 from protogen.targets.c.payload.between import count_elements, is_text, separator_of, text_size
 from protogen.targets.c.payload.number_checks import NumberChecker
+from protogen.targets.c.payload.texts import PaddedText
 from protogen.targets.c.payload.walk import amount, out_of_bounds, times
 
 
@@ -60,6 +61,7 @@ class Checker(NumberChecker):
             if seven:
                 self._require(count)
                 self._seven_bit(count)
+            self._characters(PaddedText.of(step.type), count, seven=seven)
             self._offset += count
             return
         self._settle()
@@ -67,6 +69,15 @@ class Checker(NumberChecker):
         if seven:
             self._refuse(f"!{self.helpers.seven_bit()}(payload + at, {count})", "ENCODING")
         self._move(count)
+
+    def _characters(self, text: PaddedText | None, count: int, *, seven: bool) -> None:
+        """Bytes that have to stand for characters."""
+        if text is None:
+            return
+        self._flush(count if seven else 0)
+        self._require(count)
+        is_sound = text.is_sound(self.helpers)
+        self._refuse(f"!{is_sound}({self._address()}, {amount(count)})", "VALUE")
 
     def _filled(self, count: Count, *, seven: bool) -> None:
         """All bytes that are left; where the size is always the same there are none."""

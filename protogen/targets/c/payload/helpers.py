@@ -134,6 +134,11 @@ class Helpers:
         self.has_vectors = False
         """True if some function has a way for SSE2."""
 
+    @property
+    def writer(self) -> str:
+        """The parameter that takes bytes one by one."""
+        return self._names.writer
+
     def member(self, name: str) -> str:
         """The member for a field or a case."""
         return self._names.member(name)

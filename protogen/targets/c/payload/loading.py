@@ -31,6 +31,7 @@ from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, members_of, number_in
 from protogen.targets.c.payload.placed import PlacedWalk
 from protogen.targets.c.payload.storing import is_bytes
+from protogen.targets.c.payload.texts import PaddedText
 from protogen.targets.c.payload.walk import amount, times
 
 
@@ -144,6 +145,10 @@ class Load(PlacedWalk):
             self._up_to(place, str(count), step.count, step.count.until)
         elif step.count.between is not None:
             self._between(place, str(count), step.count, step.count.between)
+        elif (text := PaddedText.of(step.type)) is not None:
+            load = text.load(self.helpers)
+            self.lines.add(f"{load}({place}, {self.address()}, {amount(count)});")
+            self.skip(count)
         else:
             self._copy(place, count)
 

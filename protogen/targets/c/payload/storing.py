@@ -25,6 +25,7 @@ from protogen.targets.c.payload.helpers import Helpers, is_plain, parted
 from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, bytes_of
 from protogen.targets.c.payload.placed import PlacedWalk
+from protogen.targets.c.payload.texts import PaddedText
 from protogen.targets.c.payload.walk import Walk, amount
 
 
@@ -60,6 +61,10 @@ class _Output(Walk):
 
     def _bytes(self, place: str, count: int | str) -> None:
         """Put several bytes that lie in memory."""
+        raise NotImplementedError
+
+    def _padded(self, text: PaddedText, place: str, count: int | str) -> None:
+        """Put a text in a code, or with padding behind it."""
         raise NotImplementedError
 
     def _digits(self, digits: Digits, value: str) -> None:
@@ -116,6 +121,10 @@ class _Output(Walk):
 
     def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
         """A text, or bytes, with what ends them, or stands in front."""
+        text = PaddedText.of(step.type)
+        if text is not None:
+            self._padded(text, place, count)
+            return
         if step.count.between is not None and step.count.between.leads:
             self._byte(separator_of(step.count.between))
         self._bytes(place, count)
@@ -166,12 +175,18 @@ class Store(_Output, PlacedWalk):
         self.lines.add(f"{self.helpers.copy()}({self.address()}, {place}, {amount(count)});")
         self.skip(count)
 
+    def _padded(self, text: PaddedText, place: str, count: int | str) -> None:
+        store = text.store(self.helpers)
+        self.lines.add(f"{store}({self.address()}, {place}, {amount(count)});")
+        self.skip(count)
+
 
 class Put(_Output):
     """Puts values into a writer."""
 
     def __init__(self, helpers: Helpers, lines: Lines, prefix: str, writing: str) -> None:
         super().__init__(helpers, lines)
+        self._prefix = prefix
         self._write = f"{prefix}_write"
         self._writing = writing
 
@@ -193,4 +208,8 @@ class Put(_Output):
 
     def _bytes(self, place: str, count: int | str) -> None:
         write = self.helpers.write_bytes()
+        self.lines.add(f"{write}({self._writing}, {place}, {amount(count)});")
+
+    def _padded(self, text: PaddedText, place: str, count: int | str) -> None:
+        write = text.write(self.helpers, self._prefix, self._writing)
         self.lines.add(f"{write}({self._writing}, {place}, {amount(count)});")

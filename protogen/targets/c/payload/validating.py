@@ -26,6 +26,7 @@ from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.between import is_text
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.measuring import Measure
+from protogen.targets.c.payload.texts import PaddedText
 from protogen.targets.c.payload.walk import Walk, amount, is_unfit, out_of_bounds
 
 
@@ -106,6 +107,10 @@ class Validate(Walk):
             self._refuse(f"!{is_text(self.helpers, step.count.between, place, amount(count))}")
         elif isinstance(step.type, Text) or Check.SEVEN_BIT in step.checks:
             self._refuse(f"!{self.helpers.seven_bit()}({place}, {amount(count)})")
+        text = PaddedText.of(step.type)
+        is_fit = "" if text is None else text.is_fit(self.helpers)
+        if is_fit:
+            self._refuse(f"!{is_fit}({place}, {amount(count)})")
         if step.count.until is not None:
             end = hexadecimal(step.count.until)
             size = f"{self.helpers.text_size()}({place}, {amount(count)}, {end})"

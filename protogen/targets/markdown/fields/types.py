@@ -19,7 +19,7 @@ from protogen.model.payload_plan import (
     RepeatStep,
     TrailingPresence,
 )
-from protogen.model.types import Between, NumberType, Text
+from protogen.model.types import Between, NumberType, Octets, Text
 from protogen.targets.markdown.text.words import code, hex_number, plural
 
 _ORDERS = {"little": "LE", "big": "BE"}
@@ -35,8 +35,7 @@ def type_text(step: AnyStep, region: RegionStep | None = None) -> str:
         case NumberStep():
             return number_text(step.type)
         case BytesStep():
-            name = "ascii" if isinstance(step.type, Text) else "bytes"
-            return _extended(code(name), step.count, "byte", region)
+            return _extended(_string(step.type), step.count, "byte", region)
         case RepeatStep():
             element = type_text(step.element, region)
             return _extended(element, step.count, "element", region) + _packed(step)
@@ -145,6 +144,13 @@ def _between(between: Between) -> str:
 
 def _shown(byte: int) -> str:
     return code(chr(byte) if 0x20 < byte < 0x7F else f"{byte:02X}")
+
+
+def _string(type_: Text | Octets) -> str:
+    """Name the type of a text, with its form, or of bytes."""
+    name = code(type_.word)
+    form = type_.form.label if isinstance(type_, Text) else ""
+    return f"{name} ({code(form)})" if form else name
 
 
 def _extended(element: str, count: Count, noun: str, region: RegionStep | None) -> str:

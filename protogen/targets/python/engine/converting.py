@@ -86,6 +86,8 @@ class Converter:
             self.lines.refuse_if(f"not {value}.isascii()")
         if isinstance(step.type, Octets):
             return value
+        if not step.type.form.is_plain:
+            return f"{self.lines.constants.padded(step.type)}.decode({value})"
         padding = '.rstrip(b"\\0")' if step.count.is_fixed else ""
         return f'{value}{padding}.decode("latin-1")'
 

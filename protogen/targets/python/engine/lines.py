@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from protogen.model.types import NumberType
-from protogen.targets.python.formats import numeral
+from protogen.model.types import NumberType, Text
+from protogen.targets.python.formats import numeral, padded_text
 from protogen.targets.python.names import Names
 from protogen.targets.python.wrapping import WIDTH, wrapped
 
@@ -37,6 +37,10 @@ class Constants:
         seven = type_.byte_bits == 7
         arguments = f'{type_.bits}, {type_.signed}, "{type_.byte_order}", {seven}'
         return self.named("NUMBER", f"_rt.Number({arguments})")
+
+    def padded(self, type_: Text) -> str:
+        """The name of what reads and writes a text with another padding, or in a code."""
+        return self.named("TEXT", padded_text(type_))
 
     def use(self, name: str) -> bool:
         """True if some constant so far is made by something of that name."""

@@ -295,6 +295,10 @@ class _Writer(Raw):
         self._put(step, value)
 
     def _text(self, value: str, step: BytesStep) -> None:
+        if isinstance(step.type, Text) and not step.type.form.is_plain:
+            self.lines.refuse_if(f"not {value}.isascii()")
+            self._put(step, f"{self.lines.constants.padded(step.type)}.encode({value})")
+            return
         data = self.lines.local()
         self.lines.add(f'{data} = {value}.encode("ascii")')
         if step.count.is_fixed:
