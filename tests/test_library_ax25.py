@@ -7,28 +7,23 @@ from random import Random
 from typing import Any
 
 import pytest
+from compiled import protocol_of
 from library_support import cases_of, compare_frames, compare_recovery, engine_of, peer_module
 from test_library_kiss import FEND, PyhamKiss
 
 from protogen.copying import replace
 from protogen.fuzzing.samples import Values
 from protogen.fuzzing.trips import Case
+from protogen.library import FOLDER
 
 PEER = "pyham_ax25"
+AX25 = FOLDER / "ax25.yaml"
 UNNUMBERED = (0x03, 0x0F, 0x2F, 0x43, 0x63, 0x6F, 0x87, 0xAF, 0xE3)
 SUPERVISORY = (0x01, 0x05, 0x09, 0x0D)
 WITH_INFORMATION = (0x03, 0x87, 0xAF, 0xE3)
 """Unnumbered frames that have some: UI, FRMR, XID and TEST."""
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
 RESERVED = 0x60
-
-
-def call_of(numbers: list[int]) -> str:
-    return "".join(chr(number >> 1) for number in numbers).rstrip()
-
-
-def numbers_of(call: str) -> list[int]:
-    return [ord(character) << 1 for character in call.ljust(6)]
 
 
 class PyhamAx25(PyhamKiss):
@@ -57,7 +52,7 @@ class PyhamAx25(PyhamKiss):
 
     def _address(self, values: Values, *, is_repeater: bool) -> Any:
         station, mark = (values["ssid"] >> 1) & 0xF, bool(values["ssid"] >> 7)
-        address = self._ax25.Address(call_of(values["call"]), station, repeater=is_repeater)
+        address = self._ax25.Address(values["call"], station, repeater=is_repeater)
         if is_repeater:
             address.has_been_repeated = mark
         else:
@@ -68,6 +63,9 @@ class PyhamAx25(PyhamKiss):
         if case.message != "data":
             return case.values  # It reads no command.
         (packet,) = self._read(frame)
+        return self._values(packet)
+
+    def _values(self, packet: bytes) -> Values:
         found = self._ax25.Frame.unpack(packet)
         path = [found.dst, found.src, *(found.via or ())]
         kind = found.control.frame_type
@@ -82,14 +80,14 @@ class PyhamAx25(PyhamKiss):
     def _shown(self, address: Any, *, is_last: bool) -> Values:
         mark = address.has_been_repeated if address.repeater else address.command_response
         ssid = mark << 7 | RESERVED | address.ssid << 1 | is_last
-        return {"call": numbers_of(address.call), "ssid": ssid}
+        return {"call": address.call, "ssid": ssid}
 
     def found(self, endpoint: str, data: bytes) -> Iterator[bytes]:
         """What it takes for packets between two FEND."""
         for frame in super().found(endpoint, data):
             (packet,) = self._read(frame)
             try:
-                self._ax25.Frame.unpack(packet)
+                self._values(packet)
             except (ValueError, IndexError):
                 continue
             yield frame
@@ -104,10 +102,10 @@ def drawn() -> list[Case]:
     """Packets that it can make, but not from port 12: see the decision of `kiss`."""
     dice = Random("ax25")
     cases = [case for case in cases_of("ax25", ["data"]) if case.parts["port"] != 12]
-    return [replace(case, values=_as_heard(case.values, dice)) for case in cases]
+    return [replace(case, values=as_heard(case.values, dice)) for case in cases]
 
 
-def _as_heard(values: Values, dice: Random) -> Values:
+def as_heard(values: Values, dice: Random) -> Values:
     """The values with calls of stations, and a control field of a frame that there is."""
     control = values["control"]
     if control & 3 == 1:
@@ -128,7 +126,7 @@ def _as_heard(values: Values, dice: Random) -> Values:
 
 def _address_as_heard(values: Values, dice: Random) -> Values:
     call = "".join(dice.choice(LETTERS) for _ in range(dice.randrange(2, 7)))
-    return {"call": numbers_of(call), "ssid": values["ssid"] | RESERVED}
+    return {"call": call, "ssid": values["ssid"] | RESERVED}
 
 
 def test_both_make_and_read_the_same_packets(pyham_ax25: PyhamAx25) -> None:
@@ -139,6 +137,24 @@ def test_both_make_and_read_the_same_packets(pyham_ax25: PyhamAx25) -> None:
     assert kinds >= {*UNNUMBERED}
     assert {kind & 0x0F for kind in kinds} >= {0x00, 0x0E, *SUPERVISORY}
     compare_frames("ax25", pyham_ax25, cases)
+
+
+def test_unnumbered_frames_have_the_names_that_it_has() -> None:
+    (message,) = (it for it in protocol_of(AX25).messages if it.name == "data")
+    control = next(field.integer for field in message.fields if field.name == "control")
+    assert control is not None
+    enum = next(run.enum for run in control.bit_fields if run.name == "unnumbered")
+    assert enum is not None
+    kinds = peer_module("ax25").FrameType
+    assert {item.value: item.name.upper() for item in enum.values} == {
+        kind: kinds(kind).name for kind in UNNUMBERED
+    }
+
+
+def test_a_character_that_is_not_shifted_is_no_packet() -> None:
+    frame = bytes.fromhex("C0 00 83 84 86 88 8A 8C 60 82 84 86 88 8A 8C 61 2F C0")
+    (event,) = (event for event in engine_of("ax25").events("tnc", [frame]) if event.size > 1)
+    assert event.kind == "invalid"
 
 
 def test_the_commands_are_those_of_kiss(pyham_ax25: PyhamAx25) -> None:

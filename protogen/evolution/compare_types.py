@@ -241,12 +241,14 @@ class TypeComparison:
     def _bits(
         self, old: Sequence[BitField], new: Sequence[BitField], path: str
     ) -> Iterator[Change]:
-        old, new = (sorted(runs, key=lambda run: run.low) for runs in (old, new))
+        old, new = (
+            sorted(runs, key=lambda run: (run.low, run.high, run.gaps)) for runs in (old, new)
+        )
         words = named(_runs(old) or "none", _runs(new) or "none")
         pairs = list(zip(old, new, strict=False))
         renamed = [(one.name, other.name) for one, other in pairs if one.name != other.name]
         names = {run.name for run in old}
-        is_moved = [(run.low, run.high) for run in old] != [(run.low, run.high) for run in new]
+        is_moved = [run.mask for run in old] != [run.mask for run in new]
         if is_moved or are_crossed(renamed) or any(after in names for _, after in renamed):
             yield self._report("bits", path, words)
             return
@@ -319,7 +321,11 @@ def _form_of(kind: Text | Octets) -> TextForm | None:
 
 
 def _runs(fields: Sequence[BitField]) -> str:
-    return ", ".join(f"{item.name} {item.low}..{item.high}" for item in fields)
+    return ", ".join(f"{item.name} {_places(item)}" for item in fields)
+
+
+def _places(run: BitField) -> str:
+    return " and ".join(f"{low}..{high}" for low, high in run.runs)
 
 
 def _bytes(kind: Type) -> tuple[Extent, int] | None:

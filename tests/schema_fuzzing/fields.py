@@ -262,7 +262,8 @@ def optional(draw: st.DrawFn, setting: Setting) -> Built:
     """A field at the end of a message that may be left out, with a byte at least."""
     if draw(forms.one_in(5)):
         most = min(4, setting.budget)
-        extent = {"fill": True, "min": 1, "max": most} if draw(st.booleans()) else most
+        fills = draw(st.booleans()) and most > 1
+        extent = {"fill": True, "min": 1, "max": most} if fills else most
         data = {"type": draw(st.sampled_from(["bytes", "ascii"])), "size": extent}
         built = Built(data, Size(1, most), fills=isinstance(extent, dict))
     elif setting.budget > 2 and draw(forms.one_in(3)):

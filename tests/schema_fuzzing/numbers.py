@@ -113,6 +113,8 @@ def _operands(data: dict[str, Any], kind: Kind) -> dict[str, Size]:
     found.update({f".{name}": Size(0, 1) for name in data.get("flags", {})})
     for name, entry in data.get("bits", {}).items():
         written = entry["bits"] if isinstance(entry, dict) else entry
+        if isinstance(written, list):
+            continue  # Nothing can be worked out of several runs.
         low, _, high = str(written).partition("..")
         found[f".{name}"] = Size(0, (1 << (int(high or low) - int(low) + 1)) - 1)
     return found
@@ -241,7 +243,11 @@ def _one_run(draw: st.DrawFn, low: int, high: int) -> Any:
     widest = (1 << (high - low + 1)) - 1
     raw = draw(st.lists(st.integers(0, widest), min_size=1, max_size=3, unique=True))
     names = draw(several(VALUES, len(raw), len(raw)))
-    return {"bits": written, "values": dict(zip(names, raw, strict=True))}
+    runs: Any = written
+    if high - low >= 2 and raw[0] & 1:  # Two runs, without the bit that is next to the lowest one.
+        runs = [low, f"{low + 2}..{high}"]
+        raw = list(dict.fromkeys(value & ~2 for value in raw))
+    return {"bits": runs, "values": dict(zip(names, raw, strict=False))}
 
 
 def _keys(data: dict[str, Any], kind: Kind, least: int, greatest: int) -> st.SearchStrategy[Any]:

@@ -98,6 +98,7 @@ def _bits(step: IntegerStep, written: Mapping[str, Any], path: str) -> int:
     value = step.field.default if isinstance(step.field.default, int) else 0
     flags = {flag.name: flag.bit for flag in (step.type.flags.bits if step.type.flags else ())}
     runs = {run.name: run for run in step.type.bit_fields}
+    given: dict[str, tuple[int, int]] = {}
     for name, item in written.items():
         if name in flags:
             low, mask, names = flags[name], 1 << flags[name], {"false": 0, "true": 1}
@@ -109,13 +110,17 @@ def _bits(step: IntegerStep, written: Mapping[str, Any], path: str) -> int:
             hint = hint_for(name, (*flags, *runs))
             raise UsageError(f"{path} has no bits called `{name}`", hint)
         value = value & ~mask | _run(f"{path}.{name}", item, names, mask >> low) << low
+        given |= {name: (mask, value & mask)}
+    for name, (mask, due) in given.items():
+        if value & mask != due:
+            raise UsageError(f"{path}.{name} shares bits with others, which say something else")
     return value
 
 
 def _run(path: str, written: Any, names: Mapping[str, int], greatest: int) -> int:
     text = str(written).strip().lower() if isinstance(written, bool) else str(written).strip()
     number = names.get(text, _number(text))
-    if number is not None and 0 <= number <= greatest:
+    if number is not None and 0 <= number <= greatest and not number & ~greatest:
         return number
     kinds = ", ".join((f"a whole number from 0 to {greatest}", *names))
     raise UsageError(f"{path}: `{text}` is none of: {kinds}", hint_for(text, names))

@@ -27,6 +27,7 @@ from typing import Any
 import msgspec
 
 from protogen.copying import replace
+from protogen.model.meanings import BitField
 from protogen.model.messages import Message, given_parts
 from protogen.model.names import unit_suffix
 from protogen.model.protocol import Protocol, Sender
@@ -451,6 +452,11 @@ def facts_of(item: Field, type: Type) -> dict[str, str]:
     return {key: value for key, value in facts.items() if value}
 
 
+def _bits_of(run: BitField) -> list[int] | tuple[tuple[int, int], ...]:
+    """The lowest and the highest bit of a run; of several a list of both."""
+    return run.runs if run.gaps else [run.low, run.high]
+
+
 def _names_of(type: NumberType) -> dict[str, str]:
     facts = {}
     if type.enum is not None:
@@ -458,5 +464,5 @@ def _names_of(type: NumberType) -> dict[str, str]:
     if type.flags is not None:
         facts["flags"] = json.dumps({flag.name: flag.bit for flag in type.flags.bits})
     if type.bit_fields:
-        facts["bits"] = json.dumps({run.name: [run.low, run.high] for run in type.bit_fields})
+        facts["bits"] = json.dumps({run.name: _bits_of(run) for run in type.bit_fields})
     return facts

@@ -354,6 +354,12 @@ class _Reader:
         """The bits of a field that the last of the names stands for."""
         runs = _runs(field)
         name = ".".join(item.path[depth:])
+        if isinstance(field.type, Integer) and any(
+            run.gaps and run.name == name for run in field.type.bit_fields
+        ):
+            text = f"`{name}` is several runs of bits, of which nothing can be worked out"
+            advice = "compare the whole number, or name each run"
+            raise _WrongError("PG296", *_place(item), text, advice)
         if name not in runs:
             text = f"`{'.'.join(item.path[:depth])}` has nothing called `{name}`"
             hint = hint_for(name, [*runs, *_members(field)])
@@ -388,7 +394,7 @@ def _runs(field: Field) -> dict[str, Interval]:
     """The bits of a field that have a name."""
     if not isinstance(field.type, Integer):
         return {}
-    runs = {run.name: (run.low, run.high) for run in field.type.bit_fields}
+    runs = {run.name: (run.low, run.high) for run in field.type.bit_fields if not run.gaps}
     flags = field.type.flags.bits if field.type.flags else ()
     return {**runs, **{flag.name: (flag.bit, flag.bit) for flag in flags}}
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import cast
 
 from protogen.copying import replace
 from protogen.model.meanings import BitField, Enum, Flags, NamedBit, NamedValue
@@ -90,34 +92,64 @@ def _flags(context: Context, width: int, item: Effective) -> Flags:
 def _bit_fields(context: Context, width: int, item: Effective) -> tuple[BitField, ...]:
     """The bit ranges of an integer; those that it does not have are left out."""
     ranges: list[BitField] = []
+    alone: list[BitField] = []  # Whose bits have no other name.
     for name, entry in (item.syntax.bits or {}).items():
         here = (*item.at("bits"), name)
         if not _is_run(context, width, entry, here):
             continue
         found = _bit_field(context, f"{item.owner}_{name}", name, entry, here)
-        for other in ranges:
+        is_alone = not _is_list(entry)
+        for other in alone if is_alone else ():
             if found.mask & other.mask:
                 text = f"the bits of `{name}` overlap those of `{other.name}`"
                 context.error("PG112", here, text)
         ranges.append(found)
+        alone += [found] if is_alone else []
     return tuple(ranges)
 
 
+def _is_list(entry: NamedBits) -> bool:
+    return isinstance(entry.bits[0], tuple)
+
+
+def _runs_of(entry: NamedBits) -> list[tuple[int, int]]:
+    runs = [run for run in entry.bits if isinstance(run, tuple)]
+    return runs or [cast("tuple[int, int]", entry.bits)]
+
+
 def _is_run(context: Context, width: int, entry: NamedBits, loc: Loc) -> bool:
-    low, high = entry.bits
-    if low <= high < width:
-        return True
-    text = f"bits {low}..{high} are not a run within the {width} bits of the integer"
-    context.error("PG113", loc, text, f"bits go from 0 to {width - 1}")
-    return False
+    for low, high in _runs_of(entry):
+        if not low <= high < width:
+            text = f"bits {low}..{high} are not a run within the {width} bits of the integer"
+            context.error("PG113", loc, text, f"bits go from 0 to {width - 1}")
+            return False
+    for (_, before), (low, _) in pairwise(_runs_of(entry)):
+        if low <= before + 1:
+            text = f"bit {low} does not lie behind bit {before} with others between them"
+            hint = "list the runs from the lowest bit on; bits beside each other are one run"
+            context.error("PG296", (*loc, "bits"), text, hint)
+            return False
+    return True
 
 
 def _bit_field(context: Context, type_name: str, name: str, entry: NamedBits, loc: Loc) -> BitField:
-    low, high = entry.bits
+    runs = _runs_of(entry)
+    low, high = runs[0][0], runs[-1][1]
+    gaps = sum((1 << after) - (1 << before + 1) for (_, before), (after, _) in pairwise(runs))
     text = about(entry.doc, entry.source, context.find_key(loc))
     enum = None
     if entry.values is not None:
         bounds = (0, (1 << high - low + 1) - 1)
         values = named_values(context, bounds, entry.values, (*loc, "values"))
+        _are_outside(context, values, gaps >> low, loc)
         enum = Enum(name=type_name, values=values, about=text)
-    return BitField(name=name, low=low, high=high, enum=enum, about=text)
+    return BitField(name=name, low=low, high=high, gaps=gaps, enum=enum, about=text)
+
+
+def _are_outside(context: Context, values: Sequence[NamedValue], gaps: int, loc: Loc) -> None:
+    """Report values with bits between the runs."""
+    for item in values:
+        if item.value & gaps:
+            text = f"{item.name} = {item.value:#x} has bits between the runs, which are not named"
+            hint = f"that is {item.value & ~gaps:#x} without them"
+            context.error("PG296", (*loc, "values", item.name), text, hint)

@@ -94,7 +94,8 @@ it a number or a counting field. Only an array of elements of one size may have 
         "Bit ranges overlap",
         """\
 Two names under `bits` claim the same bit, so a sender could be asked to make it 0 and 1 at once.
-Bits count from 0, the least significant one; both ends of `LOW..HIGH` are included.
+Bits count from 0, the least significant one; both ends of `LOW..HIGH` are included. Only bits in a
+list, such as `bits: [5..7]`, may have other names, too: they mean something else in other frames.
 """,
         with_fields("""
             command:
@@ -117,6 +118,27 @@ A bit or a run of bits lies beyond the integer, or its ends are in the wrong ord
 """,
         with_fields("status: {type: uint8, flags: {ready: 1, moving: 2, error: 8}}"),
         with_fields("status: {type: uint8, flags: {ready: 0, moving: 1, error: 7}}"),
+    ),
+    Code(
+        "PG296",
+        "several-runs-of-bits",
+        "Runs of bits that are no list, or values and expressions that they do not have",
+        """\
+A name may stand for several runs of bits, such as `bits: [0..3, 5..7]`: they are listed from the
+lowest bit on, and other bits lie between them. In a value the runs keep their distances, counted
+from the lowest bit, so a named value has none of the bits in between. Nothing can be worked out of
+several runs together.
+""",
+        with_fields("""
+            control:
+              type: uint8
+              bits: {kind: {bits: [5..7, 0..3]}, poll: 4}
+        """),
+        with_fields("""
+            control:
+              type: uint8
+              bits: {kind: {bits: [0..3, 5..7]}, poll: 4}
+        """),
     ),
     Code(
         "PG114",

@@ -104,12 +104,15 @@ class PhysicalListOrNone(_PhysicalValues[list[float | None]]):
 
 
 class BitRange(_View[int]):
-    """The bits `low` to `high` of an integer field, both included."""
+    """The bits `low` to `high` of an integer field, both included, without the `gaps` in between.
 
-    def __init__(self, field: str, low: int, high: int) -> None:
+    The gaps are a mask of bits of the field; in the value they are 0.
+    """
+
+    def __init__(self, field: str, low: int, high: int, gaps: int = 0) -> None:
         super().__init__(field)
         self._low = low
-        self._greatest = (1 << (high - low + 1)) - 1
+        self._greatest = ((1 << (high - low + 1)) - 1) & ~(gaps >> low)
 
     def _read(self, record: object) -> int:
         return (int(getattr(record, self._attribute)) >> self._low) & self._greatest
@@ -118,16 +121,18 @@ class BitRange(_View[int]):
         run = as_integer(value)
         if not 0 <= run <= self._greatest:
             raise ValueError(f"{run} is not in 0..{self._greatest}")
+        if run & ~self._greatest:
+            raise ValueError(f"{run:#x} has bits that are none of {self._greatest:#x}")
         whole = getattr(record, self._attribute)
         others = 0 if whole is None else as_integer(whole) & ~(self._greatest << self._low)
         return others | run << self._low
 
 
 class EnumRange(BitRange, Generic[EnumT]):
-    """The bits `low` to `high` of an integer field, whose values have names."""
+    """Such bits of an integer field, whose values have names."""
 
-    def __init__(self, field: str, low: int, high: int, named: type[EnumT]) -> None:
-        super().__init__(field, low, high)
+    def __init__(self, field: str, low: int, high: int, named: type[EnumT], gaps: int = 0) -> None:
+        super().__init__(field, low, high, gaps)
         self._named = named
 
     @overload

@@ -236,6 +236,25 @@ BitRange = Annotated[
 """The lowest and the highest bit of a bit range, counted from the least significant bit 0."""
 
 
+def _to_bit_ranges(value: object) -> object:
+    """One run of bits, or a list of some."""
+    if isinstance(value, list):
+        if not value:
+            raise ValueError("a list of runs of bits has one at least")
+        return tuple(map(_to_bit_range, value))
+    return value if isinstance(value, tuple) else _to_bit_range(value)
+
+
+BitRanges = Annotated[
+    tuple[int, int] | tuple[tuple[int, int], ...],
+    BeforeValidator(
+        _to_bit_ranges,
+        json_schema_input_type=BitRangeForm | Annotated[list[BitRangeForm], Field(min_length=1)],
+    ),
+]
+"""One run of bits, or a list of some, each by its lowest and its highest bit."""
+
+
 def pair_of(what: str) -> Callable[[Any], Any]:
     """Let a list of exactly two stand for a pair; `what` says what the two are."""
 

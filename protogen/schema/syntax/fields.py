@@ -8,8 +8,8 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from protogen.schema.syntax.base import (
     BitNumber,
-    BitRange,
     BitRangeForm,
+    BitRanges,
     ByteForm,
     ByteNumber,
     Bytes,
@@ -64,9 +64,12 @@ ValueNames = Annotated[dict[Name, NamedValueRef], Field(min_length=1)]
 
 
 class NamedBits(Syntax):
-    """A named run of bits of one integer."""
+    """A named run of bits of one integer, or several runs that mean something together."""
 
-    bits: BitRange = Field(description="Bit number, or LOW..HIGH counted from bit 0.")
+    bits: BitRanges = Field(
+        description="Bit number, or LOW..HIGH counted from bit 0; or a list of these, which may "
+        "have other names as well, and which keep their distances in the value."
+    )
     values: ValueNames | None = Field(None, description="Names of its values.")
     doc: Text | None = Field(None, description="What the bits mean.")
     source: SourceRef | None = Field(None, description="Where it is written down.")

@@ -97,9 +97,8 @@ def _bits(record: str, field: Field, kind: str, item: BitField, names: Names) ->
     words = (record, field.name, item.name)
     thing = inside(record, "run of bits", field.name, "bits", item.name)
     first = next(iter(paragraphs(item.about.doc)), descriptions.words(item.name))
-    run = f"bit {item.low}" if item.low == item.high else f"bits {item.low} to {item.high}"
     return BitsView(
-        comments.comment([f"{first.rstrip('.')}; {run} of {field.name}."]),
+        comments.comment([f"{first.rstrip('.')}; {item.words} of {field.name}."]),
         Macro(names.claim_macro(thing, *words, "mask"), hexadecimal(item.mask)),
         Macro(names.claim_macro(thing, *words, "shift"), f"{item.low}U"),
         kind,

@@ -391,11 +391,11 @@ def _physical_range(field: Field) -> str:
 def _bits(field: Field, item: BitField, scope: _Scope) -> Attribute:
     name = scope.own.run(field, item)
     bounds = (text(field.name), str(item.low), str(item.high))
+    gaps = f"0x{item.gaps:X}" if item.gaps else None
     if item.enum:
-        view = call("_rt.EnumRange", *bounds, scope.module.classes[item.enum.name])
+        view = call("_rt.EnumRange", *bounds, scope.module.classes[item.enum.name], gaps=gaps)
     else:
-        view = call("_rt.BitRange", *bounds)
+        view = call("_rt.BitRange", *bounds, gaps=gaps)
     what = next(iter(paragraphs(item.about.doc)), item.name.replace("_", " ").capitalize())
-    run = f"bit {item.low}" if item.low == item.high else f"bits {item.low} to {item.high}"
-    texts = describing.escaped([f"{what.rstrip('.')}; {run} of {field.name}."])
+    texts = describing.escaped([f"{what.rstrip('.')}; {item.words} of {field.name}."])
     return Attribute(f"{name} = {_if_there(field, view)}", remark(texts, _INDENT))

@@ -101,7 +101,7 @@ def _bits_table(type_: NumberType, anchor: str) -> Table:
         ("Bits", "Mask", "Name", "Values", "Meaning"),
         (
             (
-                code(item.low if item.low == item.high else f"{item.high}..{item.low}"),
+                code(_places(item)),
                 code(hex_number(item.mask, type_.bits)),
                 code(item.name),
                 _bit_values(item, f"{anchor}-{item.name}"),
@@ -110,6 +110,12 @@ def _bits_table(type_: NumberType, anchor: str) -> Table:
             for item in type_.bit_fields
         ),
     )
+
+
+def _places(bits: BitField) -> str:
+    """Print the runs of bits, the highest one first."""
+    runs = (str(low) if low == high else f"{high}..{low}" for low, high in reversed(bits.runs))
+    return ", ".join(runs)
 
 
 def _bit_values(bits: BitField, anchor: str) -> str:
