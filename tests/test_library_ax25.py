@@ -153,7 +153,7 @@ def test_unnumbered_frames_have_the_names_that_it_has() -> None:
 
 def test_a_character_that_is_not_shifted_is_no_packet() -> None:
     frame = bytes.fromhex("C0 00 83 84 86 88 8A 8C 60 82 84 86 88 8A 8C 61 2F C0")
-    (event,) = (event for event in engine_of("ax25").events("tnc", [frame]) if event.size > 1)
+    (event,) = (event for event in engine_of("ax25").events("tnc", [frame], {}) if event.size > 1)
     assert event.kind == "invalid"
 
 
@@ -170,12 +170,12 @@ def test_no_packet_is_lost_that_it_finds(pyham_ax25: PyhamAx25, endpoint: str) -
 def test_a_path_without_an_end_is_no_packet() -> None:
     address = "82 84 86 88 8A 8C 60"
     frame = bytes.fromhex(f"C0 00 {address} {address} 03 F0 41 C0")
-    (event,) = (event for event in engine_of("ax25").events("tnc", [frame]) if event.size > 1)
+    (event,) = (event for event in engine_of("ax25").events("tnc", [frame], {}) if event.size > 1)
     assert event.kind == "invalid"
 
 
 def test_information_where_there_is_none_is_no_packet() -> None:
     path = "82 84 86 88 8A 8C 60 82 84 86 88 8A 8C 61"
     frames = [bytes.fromhex(f"C0 00 {path} {rest} C0") for rest in ("01", "01 41")]
-    kinds = [next(iter(engine_of("ax25").events("tnc", [frame]))).kind for frame in frames]
+    kinds = [next(iter(engine_of("ax25").events("tnc", [frame], {}))).kind for frame in frames]
     assert kinds == ["message", "invalid"]

@@ -89,5 +89,5 @@ def test_no_packet_is_lost_that_it_finds(pyham_ax25: PyhamAx25Long, endpoint: st
 def test_a_supervisory_frame_without_its_number_is_no_packet() -> None:
     path = "82 84 86 88 8A 8C 60 82 84 86 88 8A 8C 61"
     frames = [bytes.fromhex(f"C0 00 {path} {rest} C0") for rest in ("01 9B", "01", "7F")]
-    kinds = [next(iter(engine_of("ax25_128").events("tnc", [frame]))).kind for frame in frames]
+    kinds = [next(iter(engine_of("ax25_128").events("tnc", [frame], {}))).kind for frame in frames]
     assert kinds == ["message", "invalid", "message"]
