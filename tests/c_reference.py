@@ -231,7 +231,7 @@ class _Reader:
         data = self._take(count)
         if type_.byte_bits == 7 and not data.isascii():
             raise Wrong("encoding")
-        return data.rstrip(b"\0") if isinstance(type_, Text) and _is_fixed(type_) else data
+        return _characters(type_, data) if isinstance(type_, Text) and _is_fixed(type_) else data
 
     def _elements(self, type_: Array, scope: Scope, *, constant: bool) -> list[Any]:
         count = self._count(type_.extent, scope, constant=constant)
@@ -366,6 +366,16 @@ def _float(type_: Float, bits: int) -> float:
 
 def _is_fixed(type_: Text) -> bool:
     return isinstance(type_.extent, Fixed)
+
+
+def _characters(type_: Text, data: bytes) -> bytes:
+    """The characters of a text of a fixed size, without the padding."""
+    form = type_.form
+    found = [(byte - form.add) / (1 << form.shift) for byte in data]
+    least = 1 if form.padding else 0
+    if any(code != int(code) or not least <= code < 1 << form.bits for code in found):
+        raise Wrong("value")
+    return bytes(map(int, found)).rstrip(bytes([form.padding]))
 
 
 def _names(type_: Integer) -> set[int]:
