@@ -43,6 +43,8 @@ FORMS = ROOT / "tests" / "framings" / "trimmed_forms.yaml"
 Of payloads that are filled up in room of their own, EVA does not see that they are as long as their
 events say.
 """
+TOLD = ROOT / "tests" / "told_schemas" / "answers.yaml"
+"""Frames whose identity is told, at any time."""
 DECODES = [
     (path, machine)
     for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS)
@@ -59,6 +61,8 @@ PUSHES: list[tuple[Path, Events, str]] = (
         (BITS, "all", WIDE),
         (MIRRORS, "all", WIDE),
         (FORMS, "messages", WIDE),
+        (TOLD, "all", WIDE),
+        (TOLD, "messages", NARROW),
         (BITS, "messages", NARROW),
     ]
 )

@@ -30,6 +30,8 @@ _GREATEST = re.compile(r"#define (\w+)_PAYLOAD_MAX (\d+)[uU]")
 _ARRAY = re.compile(r"\[(\d+)\];")
 _PUSH = re.compile(r"(?:void|enum \w+) (\w+)_decoder_push\(")
 _LIMIT = re.compile(r"struct (\w+)_decoder \{[^}]* limit;")
+_TELLS = re.compile(r"void ((\w+)_decoder_tell_\w+)\(\s*struct \w+ \*decoder,\s*(uint\d+_t) \w+\);")
+"""What tells a decoder an identity that is not sent."""
 _POLLS = re.compile(r"void (\w+)_decoder_init\(struct \w+ \*decoder\);")
 """A decoder whose `push` returns which message is complete, and takes no handler."""
 
@@ -55,11 +57,14 @@ _ENDLESS = """static void prove_{prefix}_push(void) {{
 {apart}    while (any) {{
         if (any) {{
             {push}
-        }} else {{
+{tells}        }} else {{
             {prefix}_decoder_flush(&decoder);
         }}
     }}
 }}
+"""
+_TELL = """        }} else if (any) {{
+            {function}(&decoder, ({type})Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU));
 """
 _ENDS = """    if (event->payload_size > 0) {
         /* EVA has to show that these two bytes are there. `decode` is shown to read no others. */
@@ -171,6 +176,9 @@ def push_driver(protocol: Protocol, header: str, *, reads_ends: bool = True) -> 
     limited = polled & set(_LIMIT.findall(header))
     given = {"bounds": _bounds(header), "reads": _ENDS if reads_ends else _FIRST_BYTE}
     upper = protocol.name.upper()
+    tells: dict[str, str] = {}
+    for function, prefix, type_ in _TELLS.findall(header):
+        tells[prefix] = tells.get(prefix, "") + _TELL.format(function=function, type=type_)
     parts = [
         _decoder(
             _ENDLESS,
@@ -178,6 +186,7 @@ def push_driver(protocol: Protocol, header: str, *, reads_ends: bool = True) -> 
             upper,
             polls=prefix in polled,
             apart=_IDLE if prefix in limited else "",
+            tells=tells.get(prefix, ""),
             **given,
         )
         for prefix in prefixes
