@@ -8,21 +8,15 @@ from typing import Any, Generic, Literal
 
 from protogen.runtime.errors import PayloadFault, Reason
 from protogen.runtime.events import Event, InvalidEvent, MessageEvent, frame_event
-from protogen.runtime.framing.damage import IdleJudge, idle_judge_of
 from protogen.runtime.framing.forms import (
     FormsCandidate,
-    FormsCutter,
-    FormStarts,
-    check_together,
-    cutter_of,
 )
 from protogen.runtime.framing.frame import AfterEnd, Anywhere
 from protogen.runtime.framing.machine import Candidate, Cut, Failure
 from protogen.runtime.framing.prefix import Prefix, prefix_of
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
-from protogen.runtime.framing.starts import Starts, starts_of
-from protogen.runtime.framing.told import GivenIdentity, Told
-from protogen.runtime.plain_cut import PlainCutter
+from protogen.runtime.framing.told import GivenIdentity
+from protogen.runtime.search import Search
 
 Engine = Literal["fast", "construct"]
 """Engine that decodes and encodes. `construct` is the reference: byte by byte, and construct's own
@@ -54,46 +48,6 @@ def octets(data: object) -> bytes:
         raise TypeError(f"needs bytes, a bytearray or a memoryview, not {kind}") from None
 
 
-class _Search(Generic[MessageT_co, PartsT_co]):
-    """Search for the frames of one sender, or of several forms at once."""
-
-    starts: Starts | FormStarts
-    cutter: PlainCutter[MessageT_co, PartsT_co] | FormsCutter | None
-    """Takes what is plainly in order; None where only the reference does."""
-    idle_judge: IdleJudge | None
-    """Judges what begins in front of a silence; None where only the reference does."""
-
-    def __init__(
-        self, senders: Sequence[SenderSpec[MessageT_co, PartsT_co]], engine: Engine
-    ) -> None:
-        self._senders = senders
-        self.told = Told(senders)
-        if len(senders) == 1:
-            cut = senders[0].cut if engine == "fast" else None
-            self.starts = starts_of(senders[0].frame)
-            self.cutter = None if cut is None else PlainCutter(senders[0], cut, self.starts)
-            self.idle_judge = idle_judge_of(senders[0]) if engine == "fast" else None
-            return
-        self.idle_judge = None
-        check_together(senders)
-        self._forms = FormStarts(senders)
-        self.starts = self._forms
-        self.cutter = cutter_of(senders, self._forms) if engine == "fast" else None
-
-    def candidate(self, data: bytes, at: int, *, is_fresh: bool) -> Candidate | FormsCandidate:
-        """What begins there; `is_fresh`: nothing has come in front of it."""
-        told = self.told.values
-        if len(self._senders) == 1:
-            return Candidate(self._senders[0], told=told)
-        return FormsCandidate(self._senders, self._forms, data, at, is_fresh=is_fresh, told=told)
-
-    def sharing(self) -> Candidate | FormsCandidate:
-        """What begins with the end of the frame before."""
-        if len(self._senders) == 1:
-            return Candidate(self._senders[0], shares_start=True, told=self.told.values)
-        return FormsCandidate.sharing(self._senders, self.told.values)
-
-
 class Decoder(Generic[MessageT_co, PartsT_co]):
     """Cuts what is on a line into events: what one endpoint sends, or several.
 
@@ -117,7 +71,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._senders = senders
         names = {item.name for item in senders}
         self._name = names.pop() if len(names) == 1 else ""
-        self._search = _Search(senders, engine)
+        self._search = Search(senders, is_fast=engine == "fast")
         self._told = self._search.told
         self._starts = self._search.starts
         self._plain_cut = self._search.cutter
