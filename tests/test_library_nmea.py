@@ -77,8 +77,12 @@ INTEGERS = {
 HEXADECIMAL = ("system", "signal")
 NOT_READ = "ublox_time.reserved"
 """A field at the end of which pynmeagps knows nothing."""
-TIME, DATE, LATITUDE, LONGITUDE = 10**8, 10**6, 10**9, 10**10
+TIME, DATE, LATITUDE, LONGITUDE = 10**9, 10**6, 10**12, 10**13
 """What stands for no text: the least number that has too many digits."""
+
+
+ZEROS = {"time": "0", "latitude": "000", "longitude": "000"}
+"""The digits behind those that pynmeagps writes; the values that are compared have no others."""
 
 
 class Receiver:
@@ -114,7 +118,7 @@ class Receiver:
         if name in kinds:
             typed = typed_of(name, value)
             text: str = self._module.NMEAMessage.val2str(typed, kinds[name])
-            return text
+            return text + (ZEROS.get(name, "") if text else "")
         return chr(value) if value else ""
 
     def values(self, case: Case, frame: bytes) -> Values:
@@ -157,13 +161,13 @@ def typed_of(name: str, value: int) -> Any:
     """A time, a date, or degrees; nothing where there is no text."""
     match name:
         case "time" if value != TIME:
-            hours, minutes, seconds = value // 10**6, value // 10**4 % 100, value % 10**4
-            return time(hours, minutes, seconds // 100, seconds % 100 * 10**4)
+            hours, minutes, seconds = value // 10**7, value // 10**5 % 100, value % 10**5
+            return time(hours, minutes, seconds // 1000, seconds % 1000 * 1000)
         case "date" if value != DATE:
             year = value % 100
             return date((2000 if year < 69 else 1900) + year, value // 100 % 100, value // 10**4)
         case "latitude" | "longitude" if value not in (LATITUDE, LONGITUDE):
-            return value // 10**7 + value % 10**7 / 10**5 / 60
+            return value // 10**10 + value % 10**10 / 10**8 / 60
     return ""
 
 
@@ -180,14 +184,14 @@ def raw_of(path: str, value: Any) -> int:
         return 10 ** (front + behind) if value == "" else round(Decimal(str(value)) * 10**behind)
     match name:
         case "time":
-            return TIME if value == "" else int(value.strftime("%H%M%S%f")[:8])
+            return TIME if value == "" else int(value.strftime("%H%M%S%f")[:8]) * 10
         case "date":
             return DATE if value == "" else int(value.strftime("%d%m%y"))
         case "latitude" | "longitude":
             if value == "":
                 return LATITUDE if name == "latitude" else LONGITUDE
             units: int = round(abs(value) * 60 * 10**5)
-            return units // (60 * 10**5) * 10**7 + units % (60 * 10**5)
+            return (units // (60 * 10**5) * 10**7 + units % (60 * 10**5)) * 1000
     return ord(value) if value else 0
 
 
@@ -214,15 +218,18 @@ def known(case: Case) -> Case:
 
 def _that_is(path: str, value: Any) -> Any:
     match path.rpartition(".")[2]:
+        case "details":
+            return None  # It is told of the two numbers alone.
         case "text":
             return value.replace(",", ";")  # It reads the text up to the first comma.
         case "time" if value != TIME:
-            return value // 10**6 * 10**6 + value // 10**4 % 60 * 10**4 + value % 6000
+            minutes, seconds = value // 10**5 % 60, value % 60000 // 10 * 10
+            return value // 10**7 * 10**7 + minutes * 10**5 + seconds
         case "date" if value != DATE:
             day, month = value // 10**4 % 28 + 1, value // 100 % 12 + 1
             return day * 10**4 + month * 100 + value % 100
         case "latitude" | "longitude" if value not in (LATITUDE, LONGITUDE):
-            return value // 10**7 * 10**7 + value % (60 * 10**5)
+            return value // 10**10 * 10**10 + value % (60 * 10**8) // 1000 * 1000
     return value
 
 

@@ -109,6 +109,89 @@ def test_a_decoder_hears_what_another_one_found(engine: str) -> None:
     assert names(probe.feed(bytes.fromhex("07 34 12"))) == ["mode", "speed"]
 
 
+@ENGINE
+def test_what_is_told_while_a_frame_comes_in_is_not_used_up_by_it(engine: str) -> None:
+    module = module_at(ANSWERS)
+    probe = module.Decoder("probe", engine)
+    probe.tell(wanted=3)
+    assert probe.feed(bytes.fromhex("01 00")) == []
+    probe.tell(wanted=2)
+    assert names(probe.feed(bytes.fromhex("FF FF 07"))) == ["pose", "mode"]
+    gauge = module.Decoder("gauge", engine)
+    gauge.tell(asked=16)
+    assert gauge.feed(LEVEL[:1]) == []
+    gauge.tell(asked=[1, 2])
+    found = gauge.feed(LEVEL[1:] + LEVEL + NAME)
+    assert [item.parts.asked for item in found] == [16, 1, 2]
+
+
+SAME_NAME = """
+protocol: same_name
+endpoints: {host: Host, gauge: Gauge}
+byte_order: little
+frame:
+  host:
+    sync: {literal: 0xA5, unprotected: start_in_data}
+    command: {type: uint8, id: true}
+    payload: {}
+    check: {type: uint8, algorithm: sum-8, covers: command..payload}
+  gauge:
+    sync: {literal: 0x5A, unprotected: start_in_data}
+    command: {type: uint8, told: true, once: true, set_by: command}
+    payload: {}
+    check: {type: uint8, algorithm: sum-8, covers: payload}
+    end: {literal: 0x0D, unprotected: start_in_data}
+messages:
+  ask: {id: 1, from: host}
+  one: {id: 1, from: gauge, fields: {one: uint8}}
+decisions:
+  start_in_data: {question: q, document: d, choice: c, because: b}
+"""
+
+
+@ENGINE
+def test_a_frame_does_not_tell_what_it_was_told(tmp_path: Path, engine: str) -> None:
+    path = tmp_path / "same_name.yaml"
+    path.write_text(SAME_NAME)
+    decoder = module_at(path).Decoder(engine=engine)
+    one = bytes.fromhex("5A 07 07 0D")
+    events = decoder.feed(bytes.fromhex("A5 01 01") + one + one) + decoder.flush()
+    assert names(events) == ["ask", "one", "unknown"]
+
+
+EMPTY = """
+protocol: empty
+endpoints: {gauge: Gauge}
+frame:
+  asked: {type: uint8, told: true}
+  payload: {}
+  end: {literal: 0}
+transparency: {encoding: cobs}
+messages:
+  none: {id: 2, from: gauge}
+  size: {id: 3, from: gauge, fields: {size: uint8}}
+"""
+
+
+def test_c_takes_what_is_told_of_a_frame_without_content(tmp_path: Path) -> None:
+    path = tmp_path / "empty.yaml"
+    path.write_text(EMPTY)
+    steps: list[Step] = [
+        ("tell", bytes.fromhex("00 00000002")),
+        ("feed", bytes.fromhex("01 00")),  # Nothing, in COBS.
+        ("tell", bytes.fromhex("00 00000003")),
+        ("feed", bytes.fromhex("02")),
+        ("tell", bytes.fromhex("00 00000002")),  # The frame has begun: this is of the next one.
+        ("feed", bytes.fromhex("07 00 01 00")),
+        ("flush",),
+    ]
+    check_events(process_of(path), module_at(path), "gauge", steps)
+    module = module_at(path)
+    decoder = module.Decoder("gauge")
+    decoder.tell(asked=2)
+    assert names(decoder.feed(bytes.fromhex("01 00"))) == ["none"]
+
+
 def test_one_frame_alone_is_read_as_it_is_told() -> None:
     module = module_at(ANSWERS)
     assert module.decode(LEVEL, "gauge", told={"asked": 0x10}).level == 0x1234
@@ -116,6 +199,8 @@ def test_one_frame_alone_is_read_as_it_is_told() -> None:
         module.decode(LEVEL, "gauge")
     assert module.encode(module.Level(level=0x1234)) == LEVEL
     assert module.encode(module.Level(level=0x1234), asked=16) == LEVEL
+    with pytest.raises(ValueError, match="asked can't be 300: it has 8 bits"):
+        module.decode(LEVEL, "gauge", told={"asked": 300})
     with pytest.raises(module.EncodeError, match="asked: 5 is not level, whose asked is 1 or 16"):
         module.encode(module.Level(level=0x1234), asked=5)
 
@@ -221,6 +306,22 @@ def test_a_log_of_both_ways_tells_by_itself() -> None:
         "read_level",
         "level",
     ]
+
+
+def test_a_log_is_heard_of_senders_that_are_not_shown() -> None:
+    log = f"host: {READ_LEVEL.hex()}\ngauge: {LEVEL.hex()}\n"
+    given = ("--tagged", "-", "--sender", "gauge")
+    code, text = told("decode", str(ANSWERS), *given, input=log)
+    assert (code, text.split()[:3]) == (0, ["0", "level", "@asked=1"])
+
+
+def test_what_is_told_nothing_says_so() -> None:
+    given = ("--sender", "gauge", "--hex", LEVEL.hex())
+    code, text = told("decode", str(ANSWERS), *given)
+    assert (
+        code,
+        "hint: some frames do not say what they are: give --told asked=NUMBER" in text,
+    ) == (0, True)
 
 
 def test_explain_shows_what_was_told() -> None:

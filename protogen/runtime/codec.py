@@ -15,6 +15,7 @@ from protogen.runtime.framing.lines import encode_line as line_to_bytes
 from protogen.runtime.framing.lines import split_parts
 from protogen.runtime.framing.reading import read_frame
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
+from protogen.runtime.framing.told import Told
 from protogen.runtime.payload.message import Message, build_payload
 from protogen.runtime.payload.number import GivenValue
 
@@ -130,9 +131,13 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         """The event of exactly one valid frame. Raises DecodeError.
 
         Without `sender`, any endpoint may have sent it. `told` has identities that are not sent, by
-        the names of their parts. Raises TypeError for what is not like bytes.
+        the names of their parts. Raises TypeError for what is not like bytes, ValueError for what
+        can't be told.
         """
-        return read_frame(self.forms(sender), octets(frame), told or {})
+        senders = self.forms(sender)
+        given = Told(senders)
+        given.tell(told or {})
+        return read_frame(senders, octets(frame), given.begin_frame())
 
     def decode(
         self,
@@ -144,7 +149,8 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         """The message of exactly one frame, as the reference reads it. Raises DecodeError.
 
         Without `sender`, any endpoint may have sent it. `told` has identities that are not sent, by
-        the names of their parts. Raises TypeError for what is not like bytes.
+        the names of their parts. Raises TypeError for what is not like bytes, ValueError for what
+        can't be told.
         """
         check_engine(engine)
         event = self.read(frame, sender, told)

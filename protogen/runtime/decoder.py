@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Generic, Literal
 
 from protogen.runtime.errors import PayloadFault, Reason
@@ -226,15 +226,19 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
             self._data += self._behind
             self._behind = bytearray()
 
-    def tell(self, **values: GivenIdentity) -> None:
+    @property
+    def told(self) -> Mapping[str, int]:
+        """What holds of identities that are not sent, by the names of their parts."""
+        return self._told.current
+
+    def tell(self, /, **values: GivenIdentity) -> None:
         """Tell identities that are not sent, such as what was asked for, by their parts' names.
 
         They hold for the frame that comes next and those behind it, or for one where the schema
         says so. Several values are those of frames that follow each other, of which the last stays.
         Raises ValueError where there is no such part, or it can't have the value.
         """
-        for name, value in values.items():
-            self._told.tell(name, value)
+        self._told.tell(values)
         self._restart()
 
     def hear(self, event: Event[Any, Any]) -> None:
@@ -243,7 +247,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
             return
         numbers = event.codec.layout.numbers_of(event.parts)
         message = event.message if isinstance(event, MessageEvent) else None
-        self._told.hear(numbers, message)
+        self._told.hear(event.codec, numbers, message)
         self._restart()
 
     def _restart(self) -> None:

@@ -52,7 +52,7 @@ class Search(Generic[MessageT_co, PartsT_co]):
 
     def candidate(self, data: bytes, at: int, *, is_fresh: bool) -> Candidate | FormsCandidate:
         """What begins there; `is_fresh`: nothing has come in front of it."""
-        told = self.told.values
+        told = self.told.begin_frame()
         if len(self._senders) == 1:
             return Candidate(self._senders[0], told=told)
         return FormsCandidate(self._senders, self._forms, data, at, is_fresh=is_fresh, told=told)
@@ -60,5 +60,5 @@ class Search(Generic[MessageT_co, PartsT_co]):
     def sharing(self) -> Candidate | FormsCandidate:
         """What begins with the end of the frame before."""
         if len(self._senders) == 1:
-            return Candidate(self._senders[0], shares_start=True, told=self.told.values)
-        return FormsCandidate.sharing(self._senders, self.told.values)
+            return Candidate(self._senders[0], shares_start=True, told=self.told.begin_frame())
+        return FormsCandidate.sharing(self._senders, self.told.begin_frame())

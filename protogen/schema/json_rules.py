@@ -259,6 +259,7 @@ _PART_RULES = (
         "What is not sent has no bounds, and no delimiter can be mistaken for it.",
         _none_of(("range", "unprotected")),
     ),
+    _where(_with("told"), "What is told has no bytes, and so no order.", _none_of(("byte_order",))),
     *(_bounded(f"uint{bits}", 0, 2**bits - 1) for bits in (8, 16, 32)),
     _where(_with("over"), "This is for a checksum or a length.", _any_of(("algorithm", "counts"))),
     _together("These are for a part that is told.", {key: ["told"] for key in ("set_by", "once")}),

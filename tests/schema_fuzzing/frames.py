@@ -503,7 +503,7 @@ class _Drawing:
         found = [part]
         if region is None and type_.digits is None and "range" not in keys:
             # Where parts have no places yet that one more would move.
-            found += [self._maker.mirror(part)] if self._draw(forms.one_in(3)) else []
+            found += [self._maker.mirror(part)] if self._draw(forms.one_in(2)) else []
         if len(found) == 1 and place > 0 and keys.keys().isdisjoint({"range", "over"}):
             part = self._maker.length_in_bits(part) if self._draw(forms.one_in(2)) else part
             found, greatest = [part], part.bounds[1]

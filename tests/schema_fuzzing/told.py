@@ -43,7 +43,7 @@ def add_told(draw: st.DrawFn, data: Data) -> None:
 
 def _part(draw: st.DrawFn) -> Data:
     part: Data = {
-        "type": draw(st.sampled_from(["uint8", "uint12", "uint16"])),
+        "type": draw(st.sampled_from(["uint8", "uint16", "uint32"])),
         "told": True,
         **draw(forms.about()),
     }
@@ -65,7 +65,7 @@ def _can_be_told(parts: Data) -> bool:
     listed = list(parts.values())
     ends = [part for part in (listed[0], listed[-1]) if "literal" in part]
     bits = sum(_bits(part) for part in listed if _tells(part))
-    return not any("virtual" in part for part in listed) and len(ends) < 2 and bits <= _ROOM - 16
+    return not any("virtual" in part for part in listed) and len(ends) < 2 and bits <= _ROOM - 32
 
 
 def _tells(part: Data) -> bool:

@@ -87,17 +87,20 @@ def decode(  # noqa: PLR0913 - each option is one argument
     if sender is not None:
         find_senders(codec.protocol, sender)
     complaints = Complaints()
-    has_invalid = False
+    has_invalid = is_untold = False
     show = _printer(codec, format, show_sender=sender is None and len(codec.senders) > 1)
     with _capture(file, hex, kind, codec, sender, complaints.add, timed=timed) as pieces:
         for events in _batches(codec, sender, pieces, silences, told or ()):
             for event in events:
                 has_invalid = has_invalid or event.kind == "invalid"
+                is_untold = is_untold or event.kind != "message"
                 show(event)
             sys.stdout.flush()
     complaints.report()
     if has_invalid and not timed:
         _hint_at_silences(codec)
+    if is_untold and not told:
+        _hint_at_told(codec)
     return FINDINGS if complaints.count or (strict and has_invalid) else CLEAN
 
 
@@ -106,6 +109,14 @@ def _hint_at_silences(codec: Codec) -> None:
     if ended := ends_of_frames(codec.protocol):
         text = f"only a silence ends a frame of {', '.join(ended)}; --timed takes it from a log"
         typer.echo(f"hint: {text} with times", err=True)
+
+
+def _hint_at_told(codec: Codec) -> None:
+    """Say what may be missing where frames do not say what they are, and nothing was told."""
+    names = {part.name: None for form in codec.protocol.senders for part in form.frame.told}
+    if names:
+        text = f"some frames do not say what they are: give --told {next(iter(names))}=NUMBER"
+        typer.echo(f"hint: {text}, or a log of both ways (--tagged)", err=True)
 
 
 # --- in -------------------------------------------------------------------------------------------
@@ -174,21 +185,55 @@ def _batches(
     A piece that names no sender may be from any. A silence in front of it ends what came before.
     What one sender's frames tell of another's, the decoder of that one hears.
     """
-    decoders: dict[str, Decoder[Any, Any]] = {}
+    line = _Line(codec, told)
     for piece in pieces:
-        if sender is not None and piece.sender != sender:
-            continue
+        if codec.protocol.is_told:
+            # What one sends may tell what others do, so that all are decoded, and some are shown.
+            yield [event for event in line.take(piece, silences) if sender in (None, event.sender)]
+        elif sender is None or piece.sender == sender:
+            yield line.take(piece, silences)
+    yield [event for event in line.flush() if sender in (None, event.sender)]
+
+
+class _Line:
+    """The decoders of what each end of a line sends, which hear each other."""
+
+    def __init__(self, codec: Codec, told: Sequence[str]) -> None:
+        self._codec = codec
+        self._told = told
+        self._decoders: dict[str, Decoder[Any, Any]] = {}
+
+    def take(self, piece: Piece, silences: Silences | None) -> list[Any]:
+        """Take some bytes, and the silences in front of them; the events of all ends."""
+        decoder = self._decoder_of(piece.sender)
+        found: list[Any] = []
+        if silences is not None:
+            for name in silences.passed(piece):
+                if name in self._decoders:
+                    found += self._heard(self._decoders[name], self._decoders[name].flush())
+        return [*found, *self._heard(decoder, decoder.feed(piece.data))]
+
+    def flush(self) -> list[Any]:
+        """Take the end of the log."""
+        return [event for decoder in self._decoders.values() for event in decoder.flush()]
+
+    def _decoder_of(self, sender: str) -> Decoder[Any, Any]:
         # Where frames tell what others are, all decoders have to hear them from the beginning.
-        known = codec.senders if piece.sender and codec.protocol.is_told else ()
-        for name in (piece.sender, *known):
-            if name not in decoders:
-                decoders[name] = codec.decoder(name or None, _told_to(codec, name, told))
-        decoder = decoders[piece.sender]
-        if silences is not None and silences.are_in_front(piece):
-            yield _heard(codec, decoders, decoder, decoder.flush())
-        yield _heard(codec, decoders, decoder, decoder.feed(piece.data))
-    for decoder in decoders.values():
-        yield decoder.flush()
+        codec = self._codec
+        known = codec.senders if sender and codec.protocol.is_told else ()
+        for name in (sender, *known):
+            if name not in self._decoders:
+                self._decoders[name] = codec.decoder(
+                    name or None, _told_to(codec, name, self._told)
+                )
+        return self._decoders[sender]
+
+    def _heard(self, own: Decoder[Any, Any], events: list[Any]) -> list[Any]:
+        if self._codec.protocol.is_told:
+            for other in (item for item in self._decoders.values() if item is not own):
+                for event in events:
+                    other.hear(event)
+        return events
 
 
 def _told_to(codec: Codec, sender: str, told: Sequence[str]) -> list[str]:
@@ -197,20 +242,6 @@ def _told_to(codec: Codec, sender: str, told: Sequence[str]) -> list[str]:
     others = {part.name for form in forms if form.endpoint != sender for part in form.frame.told}
     own = {part.name for form in codec.protocol.forms(sender) for part in form.frame.told}
     return [item for item in told if not sender or item.partition("=")[0] not in others - own]
-
-
-def _heard(
-    codec: Codec,
-    decoders: dict[str, Decoder[Any, Any]],
-    own: Decoder[Any, Any],
-    events: list[Any],
-) -> list[Any]:
-    """Return the events, which the decoders of the other senders hear."""
-    if codec.protocol.is_told:
-        for other in (item for item in decoders.values() if item is not own):
-            for event in events:
-                other.hear(event)
-    return events
 
 
 # --- out ------------------------------------------------------------------------------------------

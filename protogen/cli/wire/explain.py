@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from protogen.cli.exits import CLEAN
@@ -46,7 +46,7 @@ def explain(
     if not data:
         out.print("no bytes")
     for event in (*decoder.feed(data), *decoder.flush()):
-        _print_event(out, codec.protocol, event)
+        _print_event(out, codec.protocol, event, decoder.told)
     return CLEAN
 
 
@@ -54,11 +54,11 @@ def _standard_input() -> str:
     return sys.stdin.buffer.read().decode("utf-8-sig", "replace")
 
 
-def _print_event(out: Console, protocol: Protocol, event: Any) -> None:
+def _print_event(out: Console, protocol: Protocol, event: Any, told: Mapping[str, int]) -> None:
     from protogen.cli.console import print_table
 
     out.print(*_title(event), style="bold red" if event.kind == "invalid" else "bold cyan")
-    heads, rows = _columns(protocol, event)
+    heads, rows = _columns(protocol, event, told)
     print_table(out, heads, rows)
     out.print()
 
@@ -76,10 +76,14 @@ def _title(event: Any) -> Iterator[str]:
         yield f"no frame: {event.reason}{f', {event.problem}' if event.problem else ''}"
 
 
-def _columns(protocol: Protocol, event: Any) -> tuple[list[str], list[list[Cell]]]:
+def _columns(
+    protocol: Protocol, event: Any, told: Mapping[str, int]
+) -> tuple[list[str], list[list[Cell]]]:
     """Return heads and rows, without a column for unstuffed bytes where nothing is stuffed."""
     sender = _sender(protocol, event)
-    rows = [cells for row in _rows(protocol, sender, event) for cells in _lines(event.offset, row)]
+    rows = [
+        cells for row in _rows(protocol, sender, event, told) for cells in _lines(event.offset, row)
+    ]
     if sender.frame.transparency is not None:
         return list(_HEADS), rows
     heads = [head for head in _HEADS if head != "unstuffed"]
@@ -95,12 +99,12 @@ def _sender(protocol: Protocol, event: Any) -> Sender:
     return next(begun, forms[0])
 
 
-def _rows(protocol: Protocol, sender: Sender, event: Any) -> Sequence[Row]:
+def _rows(protocol: Protocol, sender: Sender, event: Any, told: Mapping[str, int]) -> Sequence[Row]:
     from protogen.model.reading.annotate import Row, annotate
 
     if event.kind == "invalid" and event.reason == "noise":
         return [Row(offset=0, wire=event.raw, bytes=b"", path="", type="", meaning="noise")]
-    numbers = {} if event.kind == "invalid" else event.codec.layout.numbers_of(event.parts)
+    numbers = told if event.kind == "invalid" else event.codec.layout.numbers_of(event.parts)
     rows = annotate(protocol, sender.name, event.raw, told=numbers)
     if event.kind == "invalid" and event.reason != "truncated":
         return [*rows[:-1], *map(_not_looked_at, rows[-1:])]

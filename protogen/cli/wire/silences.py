@@ -45,24 +45,29 @@ class Silences:
         ends = self._ends.values() if not sender else filter(None, [self._ends.get(sender)])
         return min(ends, default=self._timeout)
 
-    def are_in_front(self, piece: Piece) -> bool:
-        """True if its sender was silent for at least that long in front of these bytes.
+    def passed(self, piece: Piece) -> list[str]:
+        """The senders that were silent for at least that long in front of these bytes.
 
         A line may be noted down when its bytes begin or when they are there, so the longer time
         that they, or those before, were on the line is no silence.
         """
         if piece.when is None:
-            return False
+            return []
         duration = len(piece.data) * self._of_byte
         before = self._last.get(piece.sender)
         if before is not None and before.when == piece.when:
             duration += before.duration
+        found = [
+            name
+            for name, sent in self._last.items()
+            if self._is_over(name, piece.when - sent.when - max(sent.duration, duration))
+        ]
         self._last[piece.sender] = _Sent(piece.when, duration)
-        silence = self._of(piece.sender)
-        if before is None or silence is None:
-            return False
-        passed = piece.when - before.when - max(before.duration, duration)
-        return passed >= silence * _SECOND
+        return found
+
+    def _is_over(self, sender: str, passed: Fraction) -> bool:
+        silence = self._of(sender)
+        return silence is not None and passed >= silence * _SECOND
 
 
 def ends_of_frames(protocol: Protocol) -> dict[str, Fraction]:

@@ -64,6 +64,8 @@ _ROLES: dict[str, frozenset[str]] = {
     "type": _NUMBER | {"size", "default"},
     PAYLOAD: frozenset({"unprotected", "trailing_zeros", "longer"}),
 }
+_TOLD_BITS = (8, 16, 32, 64)
+"""So that each value that C can hold is one of the part."""
 _IDENTITY_BITS = 64
 _COMMON_KEYS = frozenset({"doc", "source"})
 
@@ -173,8 +175,12 @@ class FrameBuilder:
         if bits > _IDENTITY_BITS:
             text = f"the identity has {bits} bits together, and {_IDENTITY_BITS} are the most"
             hint = "make one of its parts a value: a part with a `type` and no `id`"
-            place = place_of_number(self._loc, frame, frame.identity[-1].name)
-            self._context.error_at_key("PG193", (*place, "id"), text, hint)
+            last = frame.identity[-1]
+            if isinstance(last, ToldPart):
+                place: Loc = (*self._loc, last.name, "told")
+            else:
+                place = (*place_of_number(self._loc, frame, last.name), "id")
+            self._context.error_at_key("PG193", place, text, hint)
 
     # -- parts --------------------------------------------------------------------------------
 
@@ -304,8 +310,11 @@ class FrameBuilder:
             return None
         if is_written(item):
             return digits_type(self._context, (*self._loc, name), item, found)
+        if item.told and found.bits not in _TOLD_BITS:
+            text = f"a part that is told has no bytes, and `{item.type}` is no whole number of them"
+            self._context.error("PG105", loc, text, "make it uint8, uint16, uint32 or uint64")
         if item.told:
-            return found  # It has no bytes.
+            return found
         if item.algorithm is None and found.bits < found.byte_bits:
             text = f"a part takes whole bytes, and `{item.type}` is less than one"
             hint = f"make it `uint{found.byte_bits}`"

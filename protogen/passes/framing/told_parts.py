@@ -28,13 +28,27 @@ def _split(written: str) -> tuple[str, str]:
 
 def check_told(context: Context, draft: Draft) -> None:
     """Check what tells identities that are not sent: numbers that receivers of them take."""
+    known: dict[tuple[str, str], ToldPart] = {}
     for sender, frame in draft.frames.items():
+        for part in frame.told:
+            first = known.setdefault((context.frames[sender].endpoint, part.name), part)
+            if _rule(first) != _rule(part):
+                text = f"another form has a `{part.name}` that is told in another way"
+                place = (*context.frames[sender].loc, part.name)
+                context.error_at_key(
+                    "PG306", place, text, "give both the same keys, or other names"
+                )
         if frame.told:
             _check_beside(context, frame, context.frames[sender].loc)
         for part in frame.told:
             loc: Loc = (*context.frames[sender].loc, part.name, "set_by")
             for index, teller in enumerate(part.set_by):
                 _Telling(context, draft, loc, index, part).check(teller)
+
+
+def _rule(part: ToldPart) -> tuple[object, ...]:
+    """What is the same in all forms of an endpoint's frames, as they have one value of it."""
+    return part.type.bits, part.default, part.once, part.set_by
 
 
 def _check_beside(context: Context, frame: Frame, loc: Loc) -> None:

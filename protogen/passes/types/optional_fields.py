@@ -23,7 +23,11 @@ def is_optional(context: Context, name: str, item: Effective) -> bool:
     if any(link.optional for link, _ in item.chain[1:]):
         text = "a declared type is there wherever it is used"
         context.error("PG288", loc, text, "write `optional` where the type is used")
-    elif not (_is_of_record(item.chain[0][1]) and item.setting.in_tail):
+    elif not _is_of_record(item.chain[0][1]) and item.setting.in_tail:
+        text = "a case is there if its value says so, and is not left out by itself"
+        hint = "give the case `fields`, the last of which may be left out"
+        context.error("PG288", loc, text, hint)
+    elif not item.setting.in_tail:
         text = f"`{name}` is in something that does not end the payload, and may be left out"
         hint = "say by a `when` whether it is there, or move what it is in to the end"
         context.error("PG288", loc, text, hint)

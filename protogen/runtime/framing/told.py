@@ -26,18 +26,37 @@ class Told:
         self._parts: dict[str, ToldPart] = {
             part.name: part for sender in senders for part in sender.frame.told
         }
-        self.values: dict[str, int] = {name: part.default for name, part in self._parts.items()}
-        """What holds now."""
+        self._values: dict[str, int] = {name: part.default for name, part in self._parts.items()}
         self._next: dict[str, list[int]] = {name: [] for name in self._parts}
+        self._new: dict[str, list[int]] = {}
+        """What was told since a frame began."""
+
+    @property
+    def current(self) -> Mapping[str, int]:
+        """What holds for the frame that is coming in, or was the last."""
+        return self._values
+
+    def begin_frame(self) -> Mapping[str, int]:
+        """What holds for a frame that begins now."""
+        for name, (first, *others) in self._new.items():
+            self._values[name] = first
+            self._next[name] = others
+        self._new = {}
+        return {**self._values}
 
     def __bool__(self) -> bool:
         return bool(self._parts)
 
-    def tell(self, name: str, given: GivenIdentity) -> None:
-        """Take a value, or those of the frames to come, one after another.
+    def tell(self, given: Mapping[str, GivenIdentity]) -> None:
+        """Take values, or those of the frames to come, one after another; all of them or none.
 
         Raises ValueError where no part has the name, or the part can't hold it.
         """
+        self._new |= {
+            part.name: values for part, values in map(self._checked, given, given.values())
+        }
+
+    def _checked(self, name: str, given: GivenIdentity) -> tuple[ToldPart, list[int]]:
         part = self._parts.get(schema_name(name))
         if part is None:
             known = ", ".join(self._parts) or "there is none"
@@ -50,12 +69,7 @@ class Told:
         wrong = [value for value in values if not 0 <= value < 1 << part.number.bits]
         if wrong:
             raise ValueError(f"{name} can't be {wrong[0]}: it has {part.number.bits} bits")
-        self._set(part, values)
-
-    def _set(self, part: ToldPart, values: Sequence[int]) -> None:
-        first, *others = values or [part.default]
-        self.values[part.name] = first
-        self._next[part.name] = others
+        return part, values or [part.default]
 
     def pass_frame(
         self, sender: SenderSpec[Any, Any], numbers: Mapping[str, int], message: Message | None
@@ -64,14 +78,18 @@ class Told:
         for part in sender.frame.told:
             following = self._next[part.name]
             if following or part.once:
-                self._set(part, following)
-        self.hear(numbers, message)
+                self._values[part.name] = following.pop(0) if following else part.default
+        self.hear(sender, numbers, message)
 
-    def hear(self, numbers: Mapping[str, int], message: Message | None) -> None:
+    def hear(
+        self, sender: SenderSpec[Any, Any], numbers: Mapping[str, int], message: Message | None
+    ) -> None:
         """Take the numbers of a frame, which may tell something of those behind it."""
+        told = {part.name for part in sender.frame.told}
+        sent = {name: value for name, value in numbers.items() if name not in told}
         for part in self._parts.values():
-            for values in _told_by(part, numbers, message):
-                self._set(part, values)
+            for values in _told_by(part, sent, message):
+                self._new[part.name] = values or [part.default]
 
 
 def _told_by(

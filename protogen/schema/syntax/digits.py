@@ -58,7 +58,9 @@ class CharacterCode(Syntax):
     bits: Annotated[Count, Field(ge=1, le=7)] = Field(
         description="Bits of the integer in each character; of a text, 7: those of a character."
     )
-    shift: Count = Field(0, description="Of a text: bits by which each character is shifted left.")
+    shift: Annotated[Count, Field(le=8)] = Field(
+        0, description="Of a text: bits by which each character is shifted left."
+    )
     add: ByteNumber = Field(
         0,
         description="What is added to them, which is the character of zeros; 0 if not said.",

@@ -146,6 +146,11 @@ class ToldView(msgspec.Struct, frozen=True):
         return f"own_{self.member}"
 
     @property
+    def is_new(self) -> str:
+        """The member that says that it was told since the candidate began."""
+        return f"new_{self.member}"
+
+    @property
     def flips(self) -> str:
         """What the value is kept with, by an exclusive or, so that zeros are the default."""
         return f" ^ {hexadecimal(self.part.default)}" if self.part.default else ""

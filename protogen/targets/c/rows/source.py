@@ -164,9 +164,15 @@ def _spellings(unit: Unit, tables: list[str], parts: _Parts) -> list[_Spelling]:
 
 
 def _wrapped(unit: Unit, decoder: DecoderView, parts: _Parts) -> str:
-    """The arguments of the parts that go into a frame beside the payload."""
+    """The arguments of the parts that go into a frame of unknown identity beside the payload.
+
+    What is not sent has its default there. Without one there are no such frames, as none of them
+    can be verified.
+    """
     frame = next(it.frame for it in unit.framing.messages if it.frame.decoder is decoder)
-    return _of_row([argument.part for argument in (*frame.identity, *frame.arguments)], parts)
+    identity = _of_row([argument.part for argument in frame.identity], parts)
+    virtual = "".join(f", {item.default or item.constant or '0'}" for item in decoder.virtual)
+    return identity + virtual + _of_row([it.part for it in frame.arguments], parts)
 
 
 def _of_row(names: Iterable[str], parts: _Parts) -> str:

@@ -218,7 +218,7 @@ def _payload_roles(part: Part) -> Iterator[str]:
         kept = "the first one" if part.kept == 1 else f"the first {part.kept}"
         yield f"Zero bytes at its end are left out, but for {kept}; a receiver puts them there."
     if isinstance(part, PayloadPart) and part.longest is not None:
-        yield "It may be longer than a message of a fixed size, whose receiver leaves the rest."
+        yield "It may be longer than a receiver knows its message, which then leaves the rest."
     if part.unprotected is not None:
         yield _unmarked(part.unprotected)
 
