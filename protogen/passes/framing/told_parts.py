@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator
 
 from protogen.model.frame import Frame
 from protogen.model.messages import Message
-from protogen.model.parts import CounterPart, IdentityPart, Teller, ToldPart, ValuePart
-from protogen.model.types import Array, Field, Integer, Type
+from protogen.model.parts import CounterPart, IdentityPart, PartType, Teller, ToldPart, ValuePart
+from protogen.model.types import Array, Field, Type
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
 from protogen.problems import hint_for
@@ -119,7 +119,7 @@ class _Telling:
             return
         self._check_bits(f"`{teller.text}`", number)
 
-    def _check_bits(self, shown: str, type_: Integer) -> None:
+    def _check_bits(self, shown: str, type_: PartType) -> None:
         if type_.is_text or type_.greatest > self._part.greatest:
             text = f"{shown} has values that `{self._part.name}` can't hold"
             self._report(text, f"make `{self._part.name}` as wide")
@@ -132,9 +132,9 @@ def _handed_on(frame: Frame) -> Iterator[IdentityPart | CounterPart | ValuePart]
     return (part for part in frame.numbers if isinstance(part, _TELLING))
 
 
-def _number_in(field: Field) -> Integer | None:
+def _number_in(field: Field) -> PartType | None:
     """The unsigned integer that a field is, or that the elements of an array are."""
     found: Type = field.type
     if isinstance(found, Array):
         found = found.element
-    return found if isinstance(found, Integer) and not found.signed else None
+    return found if isinstance(found, PartType) and not found.signed else None
