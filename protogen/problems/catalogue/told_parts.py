@@ -46,7 +46,8 @@ for all of its values.
         """\
 A receiver has to be told in front of a frame which one it is. Where the end of a frame is the start
 of the next one as well, it has begun with that one already. And the values of virtual parts follow
-from the identity that is sent: a frame has virtual parts, or identities that are told.
+from the identity that is sent: a frame has virtual parts, or identities that are told. Forms of one
+endpoint's frames that have a told part of one name have one value of it, and say the same about it.
 """,
         _framed("", "extra: {type: uint8, virtual: true, default: 0}").replace(
             "covers: ok", "covers: extra"
