@@ -347,3 +347,10 @@ def test_every_engine_takes_samples_there_and_back(path: Path) -> None:
     code, text = told("fuzz", str(path), "--examples", "20")
     assert code == 0, text
     assert text.count("all came back") == 3
+
+
+def test_one_form_of_frame_is_told() -> None:
+    module = module_at(MODES)
+    given = ("--sender", "motor_answer", "--hex", module.encode(module.Speed(speed=-2)).hex())
+    code, text = told("decode", str(MODES), *given, "--told", "mode=1")
+    assert (code, text.split()[:3]) == (0, ["0", "speed", "@mode=1"])

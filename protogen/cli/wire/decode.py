@@ -185,63 +185,64 @@ def _batches(
     A piece that names no sender may be from any. A silence in front of it ends what came before.
     What one sender's frames tell of another's, the decoder of that one hears.
     """
-    line = _Line(codec, told)
+    line = _Line(codec, told, shown=sender)
     for piece in pieces:
-        if codec.protocol.is_told:
-            # What one sends may tell what others do, so that all are decoded, and some are shown.
-            yield [event for event in line.take(piece, silences) if sender in (None, event.sender)]
-        elif sender is None or piece.sender == sender:
+        # What one end sends may tell what the other does: then all are decoded, and one is shown.
+        if codec.protocol.is_told or sender in (None, piece.sender):
             yield line.take(piece, silences)
-    yield [event for event in line.flush() if sender in (None, event.sender)]
+    yield line.flush()
 
 
 class _Line:
     """The decoders of what each end of a line sends, which hear each other."""
 
-    def __init__(self, codec: Codec, told: Sequence[str]) -> None:
+    def __init__(self, codec: Codec, told: Sequence[str], shown: str | None) -> None:
+        """With `shown`, events of that end alone are given."""
         self._codec = codec
         self._told = told
+        self._shown = shown
         self._decoders: dict[str, Decoder[Any, Any]] = {}
 
     def take(self, piece: Piece, silences: Silences | None) -> list[Any]:
-        """Take some bytes, and the silences in front of them; the events of all ends."""
-        decoder = self._decoder_of(piece.sender)
+        """Take some bytes, and the silences in front of them; the events that are certain now."""
+        self._begin(piece.sender)
         found: list[Any] = []
-        if silences is not None:
-            for name in silences.passed(piece):
-                if name in self._decoders:
-                    found += self._heard(self._decoders[name], self._decoders[name].flush())
-        return [*found, *self._heard(decoder, decoder.feed(piece.data))]
+        for name in silences.passed(piece) if silences is not None else ():
+            if name in self._decoders:
+                found += self._heard(name, self._decoders[name].flush())
+        return [*found, *self._heard(piece.sender, self._decoders[piece.sender].feed(piece.data))]
 
     def flush(self) -> list[Any]:
-        """Take the end of the log."""
-        return [event for decoder in self._decoders.values() for event in decoder.flush()]
+        """Take the end of the log; the remaining events."""
+        ends = [(name, decoder.flush()) for name, decoder in self._decoders.items()]
+        return [event for name, events in ends for event in self._heard(name, events)]
 
-    def _decoder_of(self, sender: str) -> Decoder[Any, Any]:
-        # Where frames tell what others are, all decoders have to hear them from the beginning.
+    def _begin(self, sender: str) -> None:
+        """Make the decoders that there have to be: all, where they have to hear each other."""
         codec = self._codec
         known = codec.senders if sender and codec.protocol.is_told else ()
         for name in (sender, *known):
             if name not in self._decoders:
-                self._decoders[name] = codec.decoder(
-                    name or None, _told_to(codec, name, self._told)
-                )
-        return self._decoders[sender]
+                told = _told_to(codec, name, self._told)
+                self._decoders[name] = codec.decoder(name or None, told)
 
-    def _heard(self, own: Decoder[Any, Any], events: list[Any]) -> list[Any]:
+    def _heard(self, own: str, events: list[Any]) -> list[Any]:
+        """The events, if they are shown; the other decoders hear them."""
         if self._codec.protocol.is_told:
-            for other in (item for item in self._decoders.values() if item is not own):
+            for other in (item for name, item in self._decoders.items() if name != own):
                 for event in events:
                     other.hear(event)
-        return events
+        return events if self._shown in (None, own) else []
 
 
 def _told_to(codec: Codec, sender: str, told: Sequence[str]) -> list[str]:
     """Return what is told to the decoder of a sender: of parts that others have, nothing."""
-    forms = codec.protocol.senders
-    others = {part.name for form in forms if form.endpoint != sender for part in form.frame.told}
-    own = {part.name for form in codec.protocol.forms(sender) for part in form.frame.told}
-    return [item for item in told if not sender or item.partition("=")[0] not in others - own]
+    if not sender:
+        return list(told)
+    forms = find_senders(codec.protocol, sender)
+    own = {part.name for form in forms for part in form.frame.told}
+    every = {part.name for form in codec.protocol.senders for part in form.frame.told}
+    return [item for item in told if item.partition("=")[0] not in every - own]
 
 
 # --- out ------------------------------------------------------------------------------------------
