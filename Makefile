@@ -25,7 +25,7 @@ check: $(INSTALLED)
 	@$(BIN)/ruff format --check --quiet || { $(BIN)/ruff format --check; exit 1; }
 	@$(BIN)/mypy --no-error-summary
 
-# What to wait for: style, types, and tests that touch every module, in some ten minutes on two
+# What to wait for: style, types, and tests that touch every module, in some five minutes on two
 # cores. Prints the closing line of pytest, and more only if something fails.
 test: check
 	@$(call tested,-m "not slow")
