@@ -192,6 +192,45 @@ def test_c_takes_what_is_told_of_a_frame_without_content(tmp_path: Path) -> None
     assert names(decoder.feed(bytes.fromhex("01 00"))) == ["none"]
 
 
+LINES = """
+protocol: lines
+endpoints: {gauge: Gauge}
+byte_bits: 7
+forms:
+  short:
+    from: gauge
+    frame:
+      asked: {type: uint8, told: true}
+      payload: {}
+      check: {type: uint8, byte_order: little, algorithm: sum-8, covers: payload}
+      end: {literal: 0x80}
+  long:
+    from: gauge
+    behind: short_first
+    frame:
+      asked: {type: uint8, told: true}
+      payload: {}
+      check: {type: uint16, byte_order: little, algorithm: sum-16, covers: payload}
+      end: {literal: 0x80}
+messages:
+  one: {id: 1, from: gauge, fields: {one: char}}
+  two: {id: 2, from: gauge, fields: {two: char}}
+decisions:
+  short_first: {question: q, document: d, choice: c, because: b}
+"""
+
+
+@ENGINE
+def test_the_first_frame_of_an_input_is_told_before_any_byte(tmp_path: Path, engine: str) -> None:
+    path = tmp_path / "lines.yaml"
+    path.write_text(LINES)
+    module = module_at(path)
+    decoder = module.Decoder("gauge", engine)
+    assert decoder.feed(b"") == []  # A frame may begin where the input does.
+    decoder.tell(asked=2)
+    assert names(decoder.feed(module.encode(module.Two(two=7)))) == ["two"]
+
+
 def test_one_frame_alone_is_read_as_it_is_told() -> None:
     module = module_at(ANSWERS)
     assert module.decode(LEVEL, "gauge", told={"asked": 0x10}).level == 0x1234

@@ -103,6 +103,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._prefix: Prefix | None = None  # Judge of them, made when first needed.
         self._plain = b""  # Bytes that the judge needs not see one by one.
         self._is_fresh = True  # Nothing came in since the start or the last flush.
+        self._began_fresh = False  # The same of when the candidate began.
 
     @property
     def pending(self) -> int:
@@ -257,7 +258,9 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         if self._shares_start:
             self._candidate = self._search.sharing()
         else:
-            self._candidate = self._search.candidate(self._data, self._scan, is_fresh=False)
+            self._candidate = self._search.candidate(
+                self._data, self._scan, is_fresh=self._began_fresh
+            )
 
     def flush(self) -> list[Event[MessageT_co, PartsT_co]]:
         """Take the end of the input, or a silence on the line; all remaining events."""
@@ -319,7 +322,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
 
     def _open(self, start: int, final: bool) -> bool:
         """Begin at a possible start. False: nothing can be said before more comes in."""
-        is_fresh, self._is_fresh = self._is_fresh, False
+        self._began_fresh, self._is_fresh = self._is_fresh, False
         if not self._is_anywhere:
             self._noise(start, complete=True)
         self._scan = self._pushed = start
@@ -335,7 +338,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
                 return True
         self._wanted = 0 if final else self._wanted_at(start)
         if not self._wanted:
-            self._candidate = self._search.candidate(self._data, start, is_fresh=is_fresh)
+            self._candidate = self._search.candidate(self._data, start, is_fresh=self._began_fresh)
         return not self._wanted
 
     def _wanted_at(self, start: int) -> int:
@@ -355,8 +358,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._join()
         self._wanted = 0
         self._pushed = self._scan
-        is_fresh, self._is_fresh = self._is_fresh, False
-        self._candidate = self._search.candidate(self._data, self._scan, is_fresh=is_fresh)
+        self._began_fresh, self._is_fresh = self._is_fresh, False
+        self._candidate = self._search.candidate(self._data, self._scan, is_fresh=self._began_fresh)
 
     def _cut_frames(self) -> bool:
         """Take whole frames that stand here and are plainly in order; whether there were any."""
