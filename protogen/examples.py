@@ -149,15 +149,9 @@ class _Verification:
     def _read(self, wire: bytes) -> _Reading:
         decoder = self._module.Decoder(sender=self._sender.name)
         numbers = self._numbers()
-        told = {part.name: numbers[part.name] for part in self._frame.told}
         # What is out of bounds is said where the parts are compared.
-        decoder.tell(
-            **{
-                part.name: told[part.name]
-                for part in self._frame.told
-                if part.holds(told[part.name])
-            }
-        )
+        told = (part for part in self._frame.told if part.holds(numbers[part.name]))
+        decoder.tell(**{part.name: numbers[part.name] for part in told})
         events = [*decoder.feed(wire), *decoder.flush()]
         bad = next((event for event in events if isinstance(event, InvalidEvent)), None)
         if bad is not None:

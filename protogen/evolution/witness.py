@@ -16,7 +16,7 @@ from protogen.evolution.change import Change, Mark
 from protogen.evolution.compare import Comparison
 from protogen.evolution.observe import Reading, Side
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
-from protogen.model.messages import Message
+from protogen.model.messages import Message, told_before
 from protogen.model.protocol import Sender
 
 ROUNDS = 64
@@ -197,7 +197,7 @@ class Witnesses:
             frame = one.frame(sender.name, message.name, values, parts)
             if frame is None:
                 continue
-            told = _told(sender, message, parts)
+            told = told_before(sender.frame, message, parts)
             sent = one.reads(sender.endpoint, frame, told=told)
             if sent.message != message.name:
                 continue  # A frame that its own side can't tell proves nothing.
@@ -275,12 +275,6 @@ class Witnesses:
         filled = received.contents.filled
         for path in (path for path in theirs if path not in filled):
             yield Difference(path, None, received.values[path])
-
-
-def _told(sender: Sender, message: Message, parts: Values) -> dict[str, int]:
-    """What a receiver was told before a frame of this message."""
-    identity = dict(zip(sender.frame.identity, message.identity, strict=True))
-    return {part.name: parts.get(part.name, identity[part]) for part in sender.frame.told}
 
 
 def _drawn(message: Message, sender: Sender) -> Iterator[tuple[Values, Values]]:

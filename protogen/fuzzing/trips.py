@@ -12,7 +12,7 @@ import msgspec
 from protogen.copying import replace
 from protogen.fuzzing.engine import Engine, Refused, Seen
 from protogen.fuzzing.samples import Values, boundary_rounds, samples, samples_at_least
-from protogen.model.messages import Message
+from protogen.model.messages import Message, told_before
 from protogen.model.protocol import Protocol, Sender
 
 
@@ -113,8 +113,7 @@ def _trip(engine: Engine, sender: Sender, case: Case) -> Outcome:
 def told_of(sender: Sender, case: Case) -> dict[str, int]:
     """What the receiver of a case has to be told before its frame."""
     message = next(item for item in sender.messages if item.name == case.message)
-    identity = dict(zip(sender.frame.identity, message.identity, strict=True))
-    return {part.name: case.parts.get(part.name, identity[part]) for part in sender.frame.told}
+    return told_before(sender.frame, message, case.parts)
 
 
 def _wrong_with_events(

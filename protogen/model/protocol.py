@@ -191,9 +191,15 @@ class Protocol(msgspec.Struct, frozen=True, kw_only=True):
         raise KeyError(name)
 
     @property
+    def told(self) -> tuple[str, ...]:
+        """Names of the identity parts that are not sent, and that receivers are told."""
+        parts = (part for sender in self.senders for part in sender.frame.told)
+        return tuple(dict.fromkeys(part.name for part in parts))
+
+    @property
     def is_told(self) -> bool:
-        """True if receivers are told identities that are not sent."""
-        return any(sender.frame.told for sender in self.senders)
+        """True if there are such parts."""
+        return bool(self.told)
 
     @property
     def sending(self) -> tuple[str, ...]:

@@ -10,13 +10,13 @@ from typing import Any
 import pytest
 
 from protogen.model.framing import Anywhere, StartLiteral, StartSet
-from protogen.model.messages import Message
+from protogen.model.messages import Message, told_before
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.api import EncodeError
 from protogen.runtime.attributes import arguments, attribute
 from protogen.runtime.constructs import PayloadError, Whole
 from schema_fuzzing.reference import frame_bytes, payload_bytes
-from schema_fuzzing.values import all_parts, told_parts
+from schema_fuzzing.values import all_parts
 
 
 def check_payload(module: ModuleType, message: Message, values: dict[str, Any]) -> Any:
@@ -117,7 +117,7 @@ def check_decoded(
     shown: dict[str, int | str],
 ) -> None:
     """frame -> message, as one event and by `decode`."""
-    told = told_parts(sender, message, shown)
+    told = told_before(sender.frame, message, shown)
     (event,) = events_of(module, sender, [frame], told=told)
     assert event.kind == "message", event
     assert (event.offset, event.raw, event.message) == (0, frame, made)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import reduce
 from math import ceil, floor, lcm
@@ -18,7 +18,6 @@ from protogen.model.expressions import Expression, Operand, Quotient, plain_name
 from protogen.model.frame import Frame
 from protogen.model.messages import Message
 from protogen.model.parts import ChoicePart, CounterPart, IdentityPart, ValuePart
-from protogen.model.protocol import Sender
 from protogen.model.types import (
     Array,
     Between,
@@ -97,16 +96,6 @@ def all_parts(frame: Frame, message: Message, given: dict[str, int | str]) -> di
             default = -1 if part.default is None else part.shown(part.default)
             shown[part.name] = given.get(part.name, default)
     return shown
-
-
-def told_parts(
-    sender: Sender, message: Message, given: Mapping[str, int | str] | None = None
-) -> dict[str, int]:
-    """What a decoder is told before a frame of the message."""
-    identity = dict(
-        zip((part.name for part in sender.frame.identity), message.identity, strict=True)
-    )
-    return {part.name: int((given or identity).get(part.name, 0)) for part in sender.frame.told}
 
 
 # --- structs ------------------------------------------------------------------------------------

@@ -113,9 +113,9 @@ def _hint_at_silences(codec: Codec) -> None:
 
 def _hint_at_told(codec: Codec) -> None:
     """Say what may be missing where frames do not say what they are, and nothing was told."""
-    names = {part.name: None for form in codec.protocol.senders for part in form.frame.told}
-    if names:
-        text = f"some frames do not say what they are: give --told {next(iter(names))}=NUMBER"
+    if codec.protocol.is_told:
+        name = codec.protocol.told[0]
+        text = f"some frames do not say what they are: give --told {name}=NUMBER"
         typer.echo(f"hint: {text}, or a log of both ways (--tagged)", err=True)
 
 
@@ -241,8 +241,8 @@ def _told_to(codec: Codec, sender: str, told: Sequence[str]) -> list[str]:
         return list(told)
     forms = find_senders(codec.protocol, sender)
     own = {part.name for form in forms for part in form.frame.told}
-    every = {part.name for form in codec.protocol.senders for part in form.frame.told}
-    return [item for item in told if item.partition("=")[0] not in every - own]
+    others = set(codec.protocol.told) - own
+    return [item for item in told if item.partition("=")[0] not in others]
 
 
 # --- out ------------------------------------------------------------------------------------------

@@ -13,7 +13,6 @@ from itertools import groupby
 import msgspec
 from msgspec.structs import astuple
 
-from protogen.c_language.numbers import unsigned_type
 from protogen.model.frame_plan import StartRule
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.candidate import Candidate
@@ -73,11 +72,10 @@ class _Search(PushDecoder, frozen=True, dict=True):
 class FormsTold(msgspec.Struct, frozen=True):
     """An identity that is not sent, of all forms that have a part of its name."""
 
-    name: str
-    member: str
-    type: str
-    kept: tuple[tuple[str, ToldView], ...]
-    """The candidate of each of these forms, as a member of the decoder, and its part."""
+    part: ToldView
+    """What all of them say about it."""
+    fields: tuple[str, ...]
+    """The candidates of these forms, as members of the decoder."""
 
 
 class FormsDecoder(NamedDecoder, frozen=True, dict=True):
@@ -117,19 +115,17 @@ class FormsDecoder(NamedDecoder, frozen=True, dict=True):
     @cached_property
     def told(self) -> tuple[FormsTold, ...]:
         """The identities that are not sent."""
-        kept: dict[str, list[tuple[str, ToldView]]] = {}
+        fields: dict[str, list[str]] = {}
+        views: dict[str, ToldView] = {}
         for form in self.forms:
             for view in form.candidate.told_parts:
-                kept.setdefault(view.member, []).append((form.field, view))
-        return tuple(
-            FormsTold(item[0][1].name, member, _widest(item), tuple(item))
-            for member, item in kept.items()
-        )
+                views.setdefault(view.member, view)
+                fields.setdefault(view.member, []).append(form.field)
+        return tuple(FormsTold(view, tuple(fields[name])) for name, view in views.items())
 
     def told_once(self, form: Form) -> tuple[FormsTold, ...]:
         """What was told of a frame of this form, and holds no more behind it."""
-        names = [view.member for view in form.candidate.told_parts if view.part.once]
-        return tuple(item for item in self.told if item.member in names)
+        return tuple(it for it in self.told if it.part.part.once and form.field in it.fields)
 
     # --- the search -------------------------------------------------------------------------------
 
@@ -201,11 +197,6 @@ def forms_decoders(
         if len(forms) > 1:
             found.append(FormsDecoder(names, endpoint, forms, events))
     return tuple(found)
-
-
-def _widest(kept: Sequence[tuple[str, ToldView]]) -> str:
-    """The type that holds what is told of all these parts."""
-    return unsigned_type(max(view.part.type.bits for _, view in kept))
 
 
 def _form(names: Names, sender: Sender, view: DecoderView) -> Form:

@@ -89,8 +89,8 @@ class PushDecoder(PushStates, frozen=True, dict=True):
         return self._finds_size and not self.identified
 
     @property
-    def finds_size_with_first(self) -> bool:
-        """True if the size is known with the first byte, when what was told is taken."""
+    def finds_size_by_told(self) -> bool:
+        """True if what was told tells the size, before the first byte."""
         return self._finds_size and self.plan.is_told_alone
 
     @property

@@ -158,5 +158,5 @@ def _forms_decoder(
         DrivenForm(form.name, form.member, form.constant, indices[form.sender])
         for form in item.forms
     )
-    told = tuple((part.name, part.member, part.type) for part in item.told)
+    told = tuple((told.part.name, told.part.member, told.part.type) for told in item.told)
     return DrivenDecoder(index, item.name, item.prefix, item.all_events, False, (), (), told, forms)
