@@ -183,7 +183,11 @@ def _form(detail: ErrorDetails) -> str | None:
 def _report_name(
     loc: Loc, written: object, find: Find, problems: Problems, hint: str | None
 ) -> None:
-    text = f"`{written}` is no name: names are lower snake case, such as `left_motor`"
+    if isinstance(written, bool):
+        word = str(written).lower()
+        text, hint = f"`{word}` is true or false to YAML, and no name", f'write `"{word}"`'
+    else:
+        text = f"`{written}` is no name: names are lower snake case, such as `left_motor`"
     problems.add("PG103", find(loc), text, hint)
 
 

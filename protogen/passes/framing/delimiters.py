@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 import msgspec
 
 from protogen.model.frame import Frame
-from protogen.model.parts import ChoicePart, LiteralPart
+from protogen.model.parts import ChoicePart, LiteralPart, Part
 from protogen.passes.context import Context, Loc
 from protogen.passes.framing.capacity import head_literals, joined_words, tail_literals
 from protogen.passes.proofs.codewords import occurs
@@ -62,16 +62,19 @@ def delimiters_of(frame: Frame, payload: ByteSet) -> Delimiters:
 def judge_delimiters(context: Context, senders: Iterable[tuple[str, Frame, Delimiters]]) -> None:
     """Report what is not protected and not accepted; senders of one frame are judged together."""
     alike: dict[Loc, list[Delimiter]] = defaultdict(list)
+    frames: dict[Loc, Frame] = {}
     for sender, frame, found in senders:
         loc = context.frames[sender].loc
         for delimiter in filter(None, (found.head, found.tail)):
-            alike[(*loc, delimiter.parts[0].name)].append(delimiter)
+            place = (*loc, delimiter.parts[0].name)
+            alike[place].append(delimiter)
+            frames[place] = frame
         _needless_inside(context, frame, found, loc)
     for loc, delimiters in alike.items():
-        _judge(context, loc, delimiters)
+        _judge(context, frames[loc], loc, delimiters)
 
 
-def _judge(context: Context, loc: Loc, delimiters: Sequence[Delimiter]) -> None:
+def _judge(context: Context, frame: Frame, loc: Loc, delimiters: Sequence[Delimiter]) -> None:
     witness = next((item.witness for item in delimiters if item.witness is not None), None)
     accepted = [part.name for part in delimiters[0].parts if part.unprotected is not None]
     if witness is None:
@@ -85,8 +88,32 @@ def _judge(context: Context, loc: Loc, delimiters: Sequence[Delimiter]) -> None:
             loc,
             f"`{loc[-1]}` can also occur inside a frame, and nothing protects it: "
             f"{data.hex(' ').upper()} has it at byte {offset}",
-            "add a transparency, or accept it: `unprotected:` and a decision's name",
+            _protection(frame),
         )
+
+
+def _protection(frame: Frame) -> str:
+    """What to do about a delimiter that can occur inside."""
+    accept = "or accept it: `unprotected:` and a decision's name"
+    region = frame.transparency
+    if region is None:
+        return f"add a transparency, {accept}"
+    names = [part.name for part in frame.parts]
+    inside = slice(names.index(region.first), names.index(region.last) + 1)
+    between = [part.name for part in frame.parts if part not in (*_ends(frame),)]
+    if names[inside] == between:
+        return f"let the transparency replace it, {accept}"
+    covered = region.first if region.first == region.last else f"{region.first}..{region.last}"
+    return (
+        f"the transparency covers no more than `{covered}`: let it cover all that stands between, "
+        f"{accept}"
+    )
+
+
+def _ends(frame: Frame) -> tuple[Part, ...]:
+    """The first part and the last one, where they are literals."""
+    ends = (frame.parts[0], frame.parts[-1])
+    return tuple(part for part in ends if isinstance(part, LiteralPart | ChoicePart))
 
 
 def _needless_inside(context: Context, frame: Frame, found: Delimiters, loc: Loc) -> None:

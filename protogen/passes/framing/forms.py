@@ -98,7 +98,8 @@ def _told_apart(context: Context, draft: Draft, names: Sequence[str]) -> set[str
                 "PG173",
                 ("forms", form),
                 f"nothing at its beginning tells a frame of `{form}` from one of `{other}`",
-                f"accept that `{other}` wins: `behind:` and a decision's name",
+                f"tell them apart by a literal or by constant bits, or accept that `{other}` wins: "
+                "`behind:` and a decision's name",
             )
     return needed
 

@@ -202,7 +202,11 @@ class _Reader:
 
     def condition(self, parsed: Expression) -> Worked:
         """The expression of a condition, or of a number that is one."""
-        return self._within(self._read(parsed, _NO_NAMES))
+        found = self._read(parsed, _NO_NAMES)
+        if isinstance(found, Number):
+            text = f"`{parsed.text}` {'always' if found.value else 'never'} holds"
+            raise _WrongError("PG205", *_place(parsed), text)
+        return self._within(found)
 
     def inside(self, parsed: Expression, struct: Struct) -> tuple[Operand, Field]:
         """A member, or bits of one, and the field that has them."""
