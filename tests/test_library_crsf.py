@@ -187,4 +187,5 @@ def test_what_a_newer_device_adds_is_left(engine: str, content: bytes) -> None:
 
 
 def test_no_frame_is_lost_that_it_finds(radio: Radio) -> None:
-    compare_recovery("crsf", "device", radio, cases_of("crsf"))
+    # It knows three of the messages.
+    compare_recovery("crsf", "device", radio, cases_of("crsf"), share=0.1)

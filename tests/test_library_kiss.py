@@ -106,7 +106,9 @@ def test_both_make_and_read_the_same_frames(pyham_kiss: PyhamKiss) -> None:
 
 @pytest.mark.parametrize("endpoint", ["host", "tnc"])
 def test_no_frame_is_lost_that_it_finds(pyham_kiss: PyhamKiss, endpoint: str) -> None:
-    compare_recovery("kiss", endpoint, pyham_kiss, cases_of("kiss"), shared=FEND)
+    # Of what a host sends, it reads data and no settings.
+    share = 0.09 if endpoint == "host" else 0.9
+    compare_recovery("kiss", endpoint, pyham_kiss, cases_of("kiss"), shared=FEND, share=share)
 
 
 def test_data_of_port_12_are_told_by_an_escape() -> None:

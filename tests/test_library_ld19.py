@@ -98,4 +98,5 @@ def test_both_start_and_stop_the_motor_alike(lds2d: Lds2d, message: str) -> None
 
 
 def test_no_frame_is_lost_that_it_finds(lds2d: Lds2d) -> None:
-    compare_recovery("ld19", "lidar", lds2d, cases_of("ld19"))
+    # It reads measurements and no answers.
+    compare_recovery("ld19", "lidar", lds2d, cases_of("ld19"), share=0.2)

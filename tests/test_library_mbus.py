@@ -193,4 +193,5 @@ def test_both_make_and_read_the_same_frames_of_a_slave(meterbus: MeterBus) -> No
 @pytest.mark.parametrize("endpoint", ["master", "slave"])
 def test_no_frame_is_lost_that_it_finds(meterbus: MeterBus, endpoint: str) -> None:
     messages = [*SHORT, *COMMANDS] if endpoint == "master" else ["ack", *ANSWERS]
-    compare_recovery("mbus", endpoint, meterbus, drawn(messages))
+    # It refuses some control fields that we take.
+    compare_recovery("mbus", endpoint, meterbus, drawn(messages), share=0.45)

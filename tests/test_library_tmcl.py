@@ -308,5 +308,5 @@ def test_it_reads_the_version_as_a_text(pytrinamic: PyTrinamic) -> None:
 
 
 def test_no_frame_is_lost_that_it_finds(pytrinamic: PyTrinamic) -> None:
-    compare_recovery("tmcl", "host", pytrinamic, cases_of("tmcl", COMMANDS))
-    compare_recovery("tmcl", "module", pytrinamic, cases_of("tmcl", REPLIES))
+    compare_recovery("tmcl", "host", pytrinamic, cases_of("tmcl", COMMANDS), begins_anew=False)
+    compare_recovery("tmcl", "module", pytrinamic, cases_of("tmcl", REPLIES), begins_anew=False)
