@@ -22,8 +22,9 @@ _HEAD = """\
 Schemas of protocols in the wild, which are installed with protogen. `extends: library:NAME` takes
 one and states what a device does differently; `protogen init --from library:NAME` writes such a
 schema. Each is compared with an implementation of the protocol that is not ours, at least 500
-frames each way; and of a stream with one damaged byte in a hundred, no frame is lost that the other
-one finds. Where that one is wrong, a decision of the schema says so. A protocol is said completely
+frames each way; what that one only makes, or only reads, is compared one way, as its section says.
+Of a stream with one damaged byte in a hundred, no frame is lost that the other one finds, wherever
+it begins to read. Where it is wrong, a decision of the schema says so. A protocol is said completely
 where its frames and all layouts of its messages can be written; a message that a schema does not
 list is an unknown one to a decoder, and is added by `extends`.
 
@@ -63,7 +64,11 @@ def with_table(readme: str) -> str:
         names[proof_of(name).unsaid == []].append(f"`{name}`")
     said = ((True, "completely"), (False, "in part"))
     rows = [f"| {words} | {', '.join(names[whole])} |" for whole, words in said]
-    count = f"{len(names[True])} of {len(library_names())} are said completely."
+    count = (
+        f"{len(names[True])} of {len(library_names())} are said completely: their frames, and all "
+        "layouts that their messages have.\nA message that a schema does not list is added by "
+        "`extends`."
+    )
     text = "\n".join((count, "", "| Said | Schemas |", "| --- | --- |", *rows, "", ""))
     return re.sub(f"(?s)(?<={_BEGIN}).*(?={_END})", lambda _: text, readme)
 
