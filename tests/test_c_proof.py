@@ -11,11 +11,13 @@ import re
 from pathlib import Path
 
 import pytest
+from c_proof.annotations import OPTIONS, annotated
 from c_proof.drivers import Driver, decode_driver, first_driver, push_driver
 from c_proof.eva import MACHINES, Report, analyse
 from c_proof.generated import Generated, generate
 from compiled import DIALECTS, DOCUMENTS, ROOT, SCHEMAS, name_of, protocol_of
 
+from protogen.copying import replace
 from protogen.targets.c.options import EVENTS, COptions, Events
 
 WIDE, NARROW = MACHINES
@@ -43,6 +45,10 @@ FORMS = ROOT / "tests" / "framings" / "trimmed_forms.yaml"
 Of payloads that are filled up in room of their own, EVA does not see that they are as long as their
 events say.
 """
+SEQUENCES = ROOT / "tests" / "framings" / "sequences_marked.yaml"
+"""Frames in which sequences of bytes are replaced."""
+SIZED = ROOT / "tests" / "framings" / "sized_arrays.yaml"
+"""Arrays whose number of bytes is told, which a decoder checks."""
 TOLD = ROOT / "tests" / "told_schemas" / "answers.yaml"
 """Frames whose identity is told, at any time."""
 DECODES = [
@@ -58,6 +64,8 @@ PUSHES: list[tuple[Path, Events, str]] = (
         *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS, DIGITS, IDLE)),
         *((path, events, NARROW) for path in DOCUMENTS for events in EVENTS),
         (TRIMMED, "messages", WIDE),
+        (SEQUENCES, "messages", WIDE),
+        (SIZED, "messages", WIDE),
         (BITS, "all", WIDE),
         (MIRRORS, "all", WIDE),
         (FORMS, "messages", WIDE),
@@ -69,6 +77,13 @@ PUSHES: list[tuple[Path, Events, str]] = (
 FIRST = [ROOT / "schemas" / f"{name}.yaml" for name in ("matty", "rn1")]
 """Whose smallest frames are small enough to follow each way through the decoder alone."""
 MATTY = ROOT / "schemas" / "matty.yaml"
+
+
+SMALL = [
+    *sorted((ROOT / "tests" / "c_proof" / "schemas").glob("*.yaml")),
+    ROOT / "tests" / "framings" / "terminated_alone.yaml",
+]
+"""Payloads of few bytes, so that each place where a part of them ends can be followed alone."""
 
 
 def decode_driver_of(made: Generated) -> Driver:
@@ -93,6 +108,32 @@ def test_no_payload_harms_a_decode_function(path: Path, machine: str, tmp_path: 
     assert len(driver.proves) == len(protocol.messages)
     report = prove(made, driver, machine)
     assert (report.alarms, report.found) == (0, ())
+
+
+def prove_small(made: Generated) -> Report:
+    """Analyse `decode` of payloads that say where they end, one place at a time."""
+    assert made.source is not None
+    driver = decode_driver_of(made)
+    plain = made.source.read_text(encoding="utf-8")
+    made.source.write_text(annotated(plain), encoding="utf-8")
+    return prove(made, replace(driver, options=OPTIONS))
+
+
+@pytest.mark.parametrize("path", SMALL, ids=name_of)
+def test_no_small_payload_that_says_where_it_ends_harms_decode(path: Path, tmp_path: Path) -> None:
+    protocol = protocol_of(path)
+    report = prove_small(generate(protocol, tmp_path))
+    assert (report.alarms, report.found) == (0, ())
+
+
+@pytest.mark.parametrize("path", SMALL, ids=name_of)
+def test_annotations_are_comments(path: Path, tmp_path: Path) -> None:
+    made = generate(protocol_of(path), tmp_path)
+    assert made.source is not None
+    plain = made.source.read_text(encoding="utf-8")
+    with_comments = annotated(plain)
+    assert with_comments.count("//@ split") > 1
+    assert re.sub(r" +//@ (split .*;\n +;|slevel merge;)\n", "", with_comments) == plain
 
 
 @pytest.mark.parametrize(("path", "events", "machine"), PUSHES, ids=name_of)
@@ -198,3 +239,32 @@ def test_a_decoder_that_forgets_a_bound_is_found(tmp_path: Path) -> None:
     changed(made.source, r"> 121U", "> 122U")
     report = prove(made, push_driver(made.protocol, made.header.read_text(encoding="utf-8")))
     assert report.alarms > 0
+
+
+@pytest.mark.parametrize(
+    ("name", "pattern", "fault"),
+    [
+        ("terminated", r"length > 2U\)", "length > 3U)"),
+        ("terminated", r"length == size - at", "length == size + 1U - at"),
+        ("separated", r"length_3 > 2U", "length_3 > 3U"),
+    ],
+)
+def test_a_check_of_an_end_that_is_wrong_by_one_is_found(
+    name: str, pattern: str, fault: str, tmp_path: Path
+) -> None:
+    made = generate(protocol_of(ROOT / f"tests/c_proof/schemas/{name}.yaml"), tmp_path)
+    assert made.source is not None
+    changed(made.source, pattern, fault)
+    report = prove_small(made)
+    assert any("out of bounds" in found for found in report.found)
+
+
+@pytest.mark.parametrize(("name", "member"), [("last_elements", "hops"), ("sized", "words")])
+def test_an_array_that_is_too_small_for_what_a_check_allows_is_found(
+    name: str, member: str, tmp_path: Path
+) -> None:
+    made = generate(protocol_of(ROOT / f"tests/c_proof/schemas/{name}.yaml"), tmp_path)
+    one_less = {"hops": "hops[2];", "words": "words[1];"}[member]
+    changed(made.header, rf"\b{member}\[\d\];", one_less)
+    report = prove_small(made)
+    assert any("out of bounds" in found for found in report.found)
