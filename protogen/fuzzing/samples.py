@@ -30,6 +30,7 @@ from protogen.fuzzing.last_elements import Mark
 from protogen.model.expression_bounds import linear
 from protogen.model.frame import Frame
 from protogen.model.messages import Message
+from protogen.model.packing import FilledPacking, Packing
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -230,7 +231,7 @@ class _Sampler:
         return values
 
     def _value(self, step: AnyStep, chooser: Chooser, need: Need | None = None) -> Any:
-        if isinstance(step, RecordStep | RepeatStep) and step.packing is not None:
+        if isinstance(step, RecordStep | RepeatStep) and isinstance(step.packing, Packing):
             self.size += step.packing.size  # Of the numbers themselves, none has bytes.
         match step:
             case RecordStep():
@@ -274,7 +275,19 @@ class _Sampler:
         self.size += fixed if fixed is not None else len(value) // (1 if is_text else 2)
         return value
 
+    def _packed_fill(self, step: RepeatStep, packing: FilledPacking, chooser: Chooser) -> list[Any]:
+        """Packed elements that take what is left, as many as there is room for at most."""
+        least, greatest = lengths_of(step.count, 0)
+        room, due = self._sizes.greatest - self.size, self._sizes.least - self.size
+        greatest = min(greatest, max(0, 8 * room) // packing.width)
+        needed = -(-(8 * due - 7) // packing.width)
+        length = chooser.choose(count_choices((min(greatest, max(least, needed)), greatest)))
+        self.size += packing.size_of(length)
+        return [self._value(step.element, chooser.element(index)) for index in range(length)]
+
     def _array(self, step: RepeatStep, chooser: Chooser) -> list[Any]:
+        if isinstance(step.packing, FilledPacking):
+            return self._packed_fill(step, step.packing, chooser)
         count = step.count
         length = chooser.choose(count_choices(self._lengths(count, step.element.sizes.least)))
         values: list[Any] = []

@@ -7,7 +7,11 @@ from typing import Literal
 
 import msgspec
 
+from protogen.model.sizes import SizeSet
 from protogen.runtime.payload.bits import BitOrder
+
+ByteOrder = Literal["little", "big"]
+_BYTE_ORDERS: dict[BitOrder, ByteOrder] = {"lsb_first": "little", "msb_first": "big"}
 
 
 class BytePart(msgspec.Struct, frozen=True):
@@ -43,9 +47,9 @@ class Packing(msgspec.Struct, frozen=True):
         return -(-self.bits // 8)
 
     @property
-    def byte_order(self) -> Literal["little", "big"]:
+    def byte_order(self) -> ByteOrder:
         """The order of bytes in which the run is one integer."""
-        return "little" if self.order == "lsb_first" else "big"
+        return _BYTE_ORDERS[self.order]
 
     @property
     def padding(self) -> int:
@@ -65,3 +69,37 @@ class Packing(msgspec.Struct, frozen=True):
             start, end = max(low, 8 * place), min(low + bits, 8 * place + 8)
             byte = place if self.order == "lsb_first" else self.size - 1 - place
             yield BytePart(byte, start - 8 * place, start - low, end - start)
+
+
+class FilledPacking(msgspec.Struct, frozen=True):
+    """Runs of as many numbers of `width` bits, 8 or more, as their bytes hold.
+
+    The number of bytes tells that of the numbers: fewer than 8 bits are left in the last byte, and
+    are zero.
+    """
+
+    order: BitOrder
+    width: int
+
+    @property
+    def byte_order(self) -> ByteOrder:
+        """The order of bytes in which a run is one integer."""
+        return _BYTE_ORDERS[self.order]
+
+    def size_of(self, count: int) -> int:
+        """Wire bytes of so many numbers."""
+        return -(-count * self.width // 8)
+
+    def sizes_of(self, counts: SizeSet) -> SizeSet:
+        """Wire bytes of any of these numbers of numbers."""
+        step = 1 if self.width % 8 else self.width // 8 * counts.step
+        return SizeSet.between(self.size_of(counts.least), self.size_of(counts.greatest), step)
+
+    def count_in(self, size: int) -> int | None:
+        """How many numbers take just so many bytes; None where no number of them does."""
+        count = 8 * size // self.width
+        return count if self.size_of(count) == size else None
+
+    def run_of(self, count: int) -> Packing:
+        """The run of so many numbers."""
+        return Packing(self.order, count * self.width)

@@ -57,6 +57,7 @@ from protogen.model.types import (
     is_text,
     packing_of,
     presence_name,
+    run_of,
     total,
 )
 
@@ -69,7 +70,7 @@ def plan_of(fields: Sequence[Field]) -> PayloadPlan:
 
 def plan_of_struct(struct: Struct) -> PayloadPlan:
     """The plan of a struct by itself."""
-    return replace(plan_of(struct.fields), sizes=struct.sizes, packing=packing_of(struct))
+    return replace(plan_of(struct.fields), sizes=struct.sizes, packing=run_of(struct))
 
 
 _NOTHING: frozenset[Check] = frozenset()
@@ -175,7 +176,7 @@ class _Builder:
                     count=count,
                 )
             case Struct():
-                steps, packing = self._inner(type_, name, is_last), packing_of(type_)
+                steps, packing = self._inner(type_, name, is_last), run_of(type_)
                 return RecordStep(
                     name=name,
                     field=field,

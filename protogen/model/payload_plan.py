@@ -21,7 +21,7 @@ import msgspec
 from protogen.model.constants import allowed, constant_bytes
 from protogen.model.expression_bounds import Interval, bounds_of, hull_of
 from protogen.model.expressions import Expression, Operand, value_of
-from protogen.model.packing import Packing
+from protogen.model.packing import FilledPacking, Packing
 from protogen.model.sizes import SizeSet
 from protogen.model.types import (
     Between,
@@ -63,9 +63,15 @@ class Check(Enum):
 _NO_CHECKS: frozenset[Check] = frozenset()
 
 
-def packing_checks(packing: Packing | None) -> frozenset[Check]:
+def packing_checks(packing: Packing | FilledPacking | None) -> frozenset[Check]:
     """Faults of a run of bits, beside those of its numbers."""
-    is_padded = packing is not None and packing.padding
+    match packing:
+        case Packing(padding=padding):
+            is_padded = padding != 0
+        case FilledPacking(width=width):
+            is_padded = width % 8 != 0
+        case None:
+            is_padded = False
     return frozenset({Check.PADDING}) if is_padded else _NO_CHECKS
 
 
@@ -273,7 +279,7 @@ class RepeatStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
 
     element: AnyStep
     count: Count
-    packing: Packing | None = None
+    packing: Packing | FilledPacking | None = None
     """The run of bits that its numbers are, where they are packed."""
 
 

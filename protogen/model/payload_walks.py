@@ -51,12 +51,12 @@ class PackedNumber(msgspec.Struct, frozen=True):
     constant: int | None
 
 
-def packed_numbers(steps: Iterable[AnyStep]) -> Iterator[PackedNumber]:
-    """Yield the numbers of packed steps, in wire order."""
+def packed_numbers(steps: Iterable[AnyStep], filled: int = 0) -> Iterator[PackedNumber]:
+    """Yield the numbers of packed steps, in wire order; `filled` of what takes all that is left."""
     first = 0
     for step in steps:
         value = without_constant(step)
-        elements = [value] if isinstance(value, IntegerStep) else _packed_elements(value)
+        elements = [value] if isinstance(value, IntegerStep) else _packed_elements(value, filled)
         const = step.field.const
         for index, element in enumerate(elements):
             constant = const[index] if isinstance(const, tuple) else const
@@ -66,7 +66,7 @@ def packed_numbers(steps: Iterable[AnyStep]) -> Iterator[PackedNumber]:
             first += element.type.bits
 
 
-def _packed_elements(step: AnyStep) -> list[IntegerStep]:
+def _packed_elements(step: AnyStep, filled: int) -> list[IntegerStep]:
     assert isinstance(step, RepeatStep)
     assert isinstance(step.element, IntegerStep)
-    return [step.element] * (step.count.known or 0)
+    return [step.element] * (filled if step.fills else step.count.known or 0)

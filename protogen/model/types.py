@@ -38,7 +38,7 @@ from protogen.model.numbers import (
     storage_bits,
 )
 from protogen.model.origin import NOTHING, About
-from protogen.model.packing import Packing
+from protogen.model.packing import FilledPacking, Packing
 from protogen.model.presence import Conditional, Presence, Trailing
 from protogen.model.sizes import SizeSet
 from protogen.model.texts import PLAIN_TEXT, TextForm
@@ -82,6 +82,7 @@ __all__ = [
     "is_text",
     "packing_of",
     "presence_name",
+    "run_of",
     "storage_bits",
     "total",
 ]
@@ -177,8 +178,8 @@ class Struct:
 
     def __post_init__(self) -> None:
         stored = any(field.is_stored or field.has_count for field in self.fields)
-        packing = packing_of(self)
-        sizes = total(self.fields) if packing is None else SizeSet.exactly(packing.size)
+        run = run_of(self)
+        sizes = total(self.fields) if run is None else SizeSet.exactly(run.size)
         object.__setattr__(self, "sizes", sizes)
         object.__setattr__(self, "holds_values", stored)
         object.__setattr__(self, "needs", _needed_by(self.fields))
@@ -211,9 +212,11 @@ class Array(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def sizes(self) -> SizeSet:
         """Wire bytes."""
-        packing = packing_of(self)
-        if packing is not None:
-            return SizeSet.exactly(packing.size)
+        match packing_of(self):
+            case Packing(size=size):
+                return SizeSet.exactly(size)
+            case FilledPacking() as filled:
+                return filled.sizes_of(self.extent.counts)
         return self.element.sizes.times(self.extent.counts)
 
 
@@ -300,9 +303,18 @@ def is_integer(type_: Type) -> TypeGuard[Integer]:
     return isinstance(type_, Integer)
 
 
-def packing_of(type_: Struct | Array) -> Packing | None:
-    """The run of bits that a struct or an array is, if its numbers are packed."""
-    return None if type_.packed is None else Packing(type_.packed, bits_of(type_))
+def run_of(struct: Struct) -> Packing | None:
+    """The run of bits that a struct is, if its numbers are packed."""
+    return None if struct.packed is None else Packing(struct.packed, bits_of(struct))
+
+
+def packing_of(array: Array) -> Packing | FilledPacking | None:
+    """The run of bits that an array is, if its numbers are packed."""
+    if array.packed is None:
+        return None
+    if isinstance(array.extent, Fill):
+        return FilledPacking(array.packed, bits_of(array.element))
+    return Packing(array.packed, bits_of(array))
 
 
 def bits_of(type_: Type) -> int:

@@ -12,7 +12,7 @@ import msgspec
 from protogen.copying import replace
 from protogen.model.expressions import Expression, reached, value_of
 from protogen.model.numbers import FreeNumeral
-from protogen.model.packing import Packing
+from protogen.model.packing import FilledPacking
 from protogen.model.parts import Part
 from protogen.model.payload_plan import (
     AnyStep,
@@ -190,7 +190,7 @@ class _Reader:
             return
         match step:
             case RecordStep() | RepeatStep() if step.packing is not None:
-                self._packed(step, step.packing, path, scope)
+                self._packed(step, path, scope)
             case RecordStep():
                 inner = scope.new_child()
                 scope[step.name] = inner.maps[0]
@@ -264,14 +264,16 @@ class _Reader:
             row = self._cursor.take(left, path, "bytes", fault=fault, subject=step.field)
             self.rows.append(row)
 
-    def _packed(
-        self, step: RecordStep | RepeatStep, packing: Packing, path: str, scope: Scope
-    ) -> None:
+    def _packed(self, step: RecordStep | RepeatStep, path: str, scope: Scope) -> None:
         """A row for the bytes of packed numbers, and one for each of the numbers."""
-        is_record = isinstance(step, RecordStep)
+        is_record, packing, filled = isinstance(step, RecordStep), step.packing, 0
+        if isinstance(packing, FilledPacking):
+            filled = 8 * self._cursor.left // packing.width
+            packing = packing.run_of(filled)
+        assert packing is not None
         row = self._cursor.take(packing.size, path, f"packed {packing.order}", subject=step.field)
         row = replace(row, meaning=f"{packing.bits} bits", run="record" if is_record else "list")
-        if not row.cut and row.bytes[-1] & packing.padding:
+        if not row.cut and row.bytes and row.bytes[-1] & packing.padding:
             row = replace(row, fault="the bits behind the last number have to be zero")
         self._short = row.cut
         self.rows.append(row)
@@ -281,7 +283,7 @@ class _Reader:
         steps = step.steps if isinstance(step, RecordStep) else (replace(step, name=""),)
         base = f"{path}." if is_record else path
         members = scope[step.name] = {}
-        for item in packed_numbers(steps):
+        for item in packed_numbers(steps, filled):
             found = _bits(item, run, base, row.offset)
             self.rows.append(found)
             members[item.name] = found.value

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from protogen.model.nesting import inner_types
+from protogen.model.packing import FilledPacking
 from protogen.model.types import (
     Array,
     Delimited,
@@ -19,6 +20,7 @@ from protogen.model.types import (
     Struct,
     Text,
     Type,
+    packing_of,
 )
 
 _Count = Callable[[Extent], int]
@@ -64,6 +66,9 @@ def _size(type_: Type, count: _Count, choose: _Choose) -> int:
         case Text() | Octets():
             return count(type_.extent) + len(type_.terminator)
         case Array():
+            packing = packing_of(type_)
+            if isinstance(packing, FilledPacking):
+                return packing.size_of(count(type_.extent))
             return count(type_.extent) * _size(type_.element, count, choose)
         case Struct():
             return sum(_size_of(field, count, choose) for field in type_.fields)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from protogen.model.expressions import Number, named
 from protogen.model.nesting import can_count
 from protogen.model.types import Counted, Extent, Field, Fill, Fixed, is_integer
@@ -14,9 +16,9 @@ Written = int | str | FillSyntax | None
 
 
 def extent_of(
-    context: Context, written: Written, loc: Loc, element: int, setting: Setting
+    context: Context, written: Written, loc: Loc, element: Fraction | int, setting: Setting
 ) -> Extent:
-    """Number of elements of at least `element` bytes, which `count` or `size` states.
+    """Number of elements of at least `element` bytes each, which `count` or `size` states.
 
     What the schema does not bound is bounded by the frame.
     """
@@ -37,7 +39,7 @@ def extent_of(
 
 
 def _worked_out(
-    context: Context, found: Worked, loc: Loc, element: int, setting: Setting
+    context: Context, found: Worked, loc: Loc, element: Fraction | int, setting: Setting
 ) -> Extent:
     """The number of an expression, which is refused where it is out of bounds."""
     least, greatest = found.bounds
@@ -66,7 +68,9 @@ def _why_not(field: Field) -> tuple[str, str | None]:
     return f"`{field.name}` can't count: it is not an unsigned integer", None
 
 
-def _fill(context: Context, written: FillSyntax, loc: Loc, element: int, setting: Setting) -> Fill:
+def _fill(
+    context: Context, written: FillSyntax, loc: Loc, element: Fraction | int, setting: Setting
+) -> Fill:
     if written.fill is None:
         text = "nothing says where this ends: only a text between separators does so by itself"
         context.error("PG298", loc, text, "take all that is left: `fill: true`, or count it")
@@ -96,7 +100,7 @@ def _no_choice(context: Context, written: FillSyntax, loc: Loc, greatest: int) -
         context.error("PG180", loc, text, f"write the number {greatest} in place of the fill")
 
 
-def _counted_by(field: Field, element: int, room: int | None) -> Counted:
+def _counted_by(field: Field, element: Fraction | int, room: int | None) -> Counted:
     by = named(field.name)
     if isinstance(field.const, int):
         return Counted(by=by, least=field.const, greatest=field.const, stated=True)

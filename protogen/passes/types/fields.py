@@ -6,6 +6,7 @@ Turns the fields of a message or struct into resolved types, outer before inner,
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 
 from protogen.copying import replace
 from protogen.model.expressions import Expression
@@ -39,6 +40,7 @@ from protogen.passes.types.named_types import NamedTypes
 from protogen.passes.types.optional_fields import check_tail, is_optional
 from protogen.passes.types.other_cases import ELSE, check_else, hint_at_else, is_else
 from protogen.passes.types.packing import (
+    bytes_of_element,
     check_packing,
     order_of_elements,
     order_of_fields,
@@ -234,13 +236,14 @@ class FieldBuilder:
         if takes_rest(element):
             text = "elements of an array can't fill the payload"
             self._context.error("PG111", loc, text)
-        if element.sizes.least == 0 and isinstance(written, FillSyntax):
+        order = order_of_elements(self._context, element, item, setting)
+        if element.sizes.least == 0 and isinstance(written, FillSyntax) and order is None:
             text = "an element may be empty, so nothing says how many fill the payload"
             self._context.error("PG118", loc, text)
         return Array(
             element=element,
             extent=self._number_of(element, written, loc, item),
-            packed=order_of_elements(self._context, element, item, setting),
+            packed=order,
         )
 
     def _number_of(self, element: Type, written: Written, loc: Loc, item: Effective) -> Extent:
@@ -250,7 +253,8 @@ class FieldBuilder:
             self._expansion.vary()
             return marked_extent(self._context, until, item.at("until"), element, item.setting)
         if not is_sized_array(item.syntax):
-            return self._extent(written, loc, max(1, element.sizes.least), item.setting)
+            least = bytes_of_element(self._context, element, item)
+            return self._extent(written, loc, least, item.setting)
         extent, size = self._extent(written, loc, 1, item.setting), element.sizes.fixed
         if not size and takes_rest(element):
             return Fixed(count=0)  # Which was reported.
@@ -289,7 +293,9 @@ class FieldBuilder:
             self._context.error_at_key("PG110", item.chain[0][1], text, hint)
         return self._extent(syntax.size, item.at("size"), 1, item.setting)
 
-    def _extent(self, written: Written, loc: Loc, element: int, setting: Setting) -> Extent:
+    def _extent(
+        self, written: Written, loc: Loc, element: Fraction | int, setting: Setting
+    ) -> Extent:
         extent = extent_of(self._context, written, loc, element, setting)
         if not isinstance(extent, Fixed):
             self._expansion.vary()

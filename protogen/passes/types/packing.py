@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from fractions import Fraction
+from itertools import count
 
 from protogen.copying import replace
+from protogen.model.packing import FilledPacking
 from protogen.model.types import Array, BitOrder, Field, Type, is_integer
 from protogen.passes.context import Context
 from protogen.passes.types.declared import Effective
 from protogen.passes.types.setting import Setting
 from protogen.passes.types.sized_arrays import is_sized_array
+from protogen.schema.syntax.fields import Fill
+
+_BYTE = 8
 
 
 def check_packing(context: Context, name: str, item: Effective) -> bool:
@@ -60,16 +66,40 @@ def _is_fixed(item: Effective) -> bool:
     return isinstance(item.syntax.count, int) and item.syntax.count > 0
 
 
+def _is_filled(item: Effective) -> bool:
+    return isinstance(item.syntax.count, Fill) and item.syntax.size is None
+
+
 def packed_elements(context: Context, item: Effective, setting: Setting) -> Setting:
     """The setting of an array's elements, which are packed if the array is."""
     order = item.syntax.packed
-    if order is None or item.syntax.fields is not None or not _is_fixed(item):
-        if order is not None and item.syntax.fields is None:
-            text = "the number of packed integers is always the same, and 1 at least"
-            key = "count" if item.syntax.count is not None else "size"
-            context.error("PG221", item.at(key), text)
+    if order is None or item.syntax.fields is not None:
         return setting
-    return _packed(setting, order)
+    if _is_fixed(item) or _is_filled(item):
+        return _packed(setting, order)
+    text = "the number of packed integers is always the same, or they fill what is left"
+    hint = "write a number from 1 on, or `count: fill`: in a struct with a `size` they fill that"
+    key = "size" if item.syntax.size is not None else "count"
+    context.error("PG221", item.at(key), text, hint)
+    return setting
+
+
+def bytes_of_element(context: Context, element: Type, item: Effective) -> Fraction | int:
+    """The least number of bytes of an element; a part of one where elements are packed.
+
+    Reports packed integers that fill the payload, where their bytes don't tell their number.
+    """
+    if not is_integer(element) or not element.packed:
+        return max(1, element.sizes.least)
+    if element.bits < _BYTE and _is_filled(item):
+        packing = FilledPacking("lsb_first", element.bits)
+        alike = next(n for n in count(1) if packing.size_of(n) == packing.size_of(n + 1))
+        size = "a byte" if alike == 1 else f"{packing.size_of(alike)} bytes"
+        width = "1 bit" if element.bits == 1 else f"{element.bits} bits"
+        text = f"nothing tells how many there are: {alike} and {alike + 1} of {width} take {size}"
+        hint = "write their number, or a switch with a case for each number that there can be"
+        context.error("PG302", item.at("count"), text, hint)
+    return Fraction(element.bits, _BYTE)
 
 
 def packed_fields(item: Effective, setting: Setting) -> Setting:

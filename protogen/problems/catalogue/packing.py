@@ -29,9 +29,9 @@ is packed already. Two neighbours that share bytes are a packed struct of two fi
         "Something that can't be packed",
         """\
 Only integers are packed (with names of values, flags, ranges and scales as elsewhere), and arrays
-of a fixed number of them. Where a run of bits ends has to be the same in every message, so that
-`when` has no place in it, and floats, texts, structs and cases begin at a byte. End the packed
-struct in front of them.
+of them: of a fixed number, or outside of packed structs as many as fill what is left. Where a
+number begins has to be the same in every message, so that `when` has no place among them, and
+floats, texts, structs and cases begin at a byte. End the packed struct in front of them.
 """,
         with_fields("""
             state: {packed: lsb_first, fields: {mode: uint4, angle: uint12, speed: float32}}
@@ -63,5 +63,27 @@ take all 8 bits of a byte. Declare each number by itself: one of 8 to 14 bits ta
 """,
         with_fields("channels: {type: uint11, count: 2, packed: lsb_first}", more="byte_bits: 7"),
         with_fields("channels: {type: uint11, count: 2}", more="byte_bits: 7"),
+    ),
+    Code(
+        "PG302",
+        "unclear-packed-count",
+        "Packed integers to the end, whose number their bytes do not tell",
+        """\
+With `count: fill`, packed integers take all bytes that are left, and these tell how many there are:
+fewer than 8 bits are left in the last byte. If an integer has fewer than 8 bits itself, one more
+may take no byte more, and nothing tells whether it is there. Write how many there are; if there may
+be several numbers of them, a switch has a case for each.
+""",
+        with_fields("""
+            switches: {type: uint4, packed: lsb_first, count: {fill: true, max: 4}}
+        """),
+        with_fields("""
+            more: bool
+            switches:
+              switch: more
+              cases:
+                0: {type: uint4, packed: lsb_first, count: 2}
+                1: {type: uint4, packed: lsb_first, count: 4}
+        """),
     ),
 )

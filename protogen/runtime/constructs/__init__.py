@@ -21,7 +21,7 @@ from construct import (  # type: ignore[import-untyped,unused-ignore]
     Renamed,
 )
 
-from protogen.runtime.constructs.bits import Bit, Bits, Packed
+from protogen.runtime.constructs.bits import Bit, Bits, Packed, PackedFill
 from protogen.runtime.constructs.numbers import (
     Closed,
     Digits,
@@ -81,6 +81,7 @@ __all__ = [
     "OctetsFill",
     "OctetsUntil",
     "Packed",
+    "PackedFill",
     "Padded",
     "Pass",
     "PayloadError",

@@ -7,7 +7,8 @@ from typing import Any, BinaryIO
 
 from construct import Construct  # type: ignore[import-untyped,unused-ignore]
 
-from protogen.runtime.constructs.pieces import Around, PayloadError, Piece, read
+from protogen.runtime.constructs.pieces import Around, PayloadError, Piece, bytes_left, read
+from protogen.runtime.constructs.structs import Counted, Fill, as_list
 from protogen.runtime.errors import ByteError
 from protogen.runtime.payload.bits import BitOrder, BitReader, BitWriter
 from protogen.runtime.payload.number import Number
@@ -54,6 +55,43 @@ class Packed(Around):
 
     def _sizeof(self, context: Any, path: str) -> int:
         return -(-self._bits // 8)
+
+
+class PackedFill(Fill):
+    """Packed elements of `bits` bits, 8 or more, to the end: `least` to `greatest` of them.
+
+    The last byte is filled up with zeros. A byte that has no bit of an element is an error.
+    """
+
+    def __init__(
+        self,
+        order: BitOrder,
+        bits: int,
+        element: Construct,
+        greatest: int | None = None,
+        least: int = 0,
+    ) -> None:
+        super().__init__(element, greatest, least)
+        self._order = order
+        self._bits = bits
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> Any:
+        size, offset = bytes_left(stream), stream.tell()
+        count = 8 * size // self._bits
+        self._check_number(count, path, offset)
+        taken = -(-count * self._bits // 8)
+        if taken != size:
+            problem = f"{count} elements of {self._bits} bits take {taken} bytes, not {size}"
+            raise PayloadError("size", path, offset + taken, problem)
+        return self._packed(count)._parsereport(stream, context, path)
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
+        elements = as_list(obj, path, stream)
+        self._check_number(len(elements), path, stream.tell())
+        return self._packed(len(elements))._build(elements, stream, context, path)
+
+    def _packed(self, count: int) -> Packed:
+        return Packed(self._order, Counted(count, self.subcon))
 
 
 class _Bits(Piece):

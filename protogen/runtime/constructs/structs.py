@@ -85,7 +85,7 @@ class Counted(Around):
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
         count = extent_of(self._count, context, path)
-        elements = _as_list(obj, path, stream)
+        elements = as_list(obj, path, stream)
         if len(elements) != count:
             problem = f"needs exactly {count} elements, not {len(elements)}"
             raise PayloadError("size", path, stream.tell(), problem)
@@ -149,18 +149,20 @@ class Fill(Around):
         return elements
 
     def _in_front(self, count: int, stream: BinaryIO, context: Any, path: str) -> list[Any]:
-        self._check(count, path, stream.tell())
-        self._check_least(count, path, stream.tell())
+        self._check_number(count, path, stream.tell())
         parse = self.subcon._parsereport
         return [parse(stream, context, f"{path} -> [{index}]") for index in range(count)]
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
-        elements = _as_list(obj, path, stream)
-        self._check(len(elements), path, stream.tell())
-        self._check_least(len(elements), path, stream.tell())
+        elements = as_list(obj, path, stream)
+        self._check_number(len(elements), path, stream.tell())
         for index, element in enumerate(elements):
             self.subcon._build(element, stream, context, f"{path} -> [{index}]")
         return obj
+
+    def _check_number(self, count: int, path: str, offset: int) -> None:
+        self._check(count, path, offset)
+        self._check_least(count, path, offset)
 
     def _check(self, count: int, path: str, offset: int) -> None:
         if self._greatest is not None and count > self._greatest:
@@ -202,7 +204,7 @@ class UpToLast(Around):
         return elements
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
-        elements = _as_list(obj, path, stream)
+        elements = as_list(obj, path, stream)
         if not self._least <= len(elements) <= self._greatest:
             problem = f"needs {self._least} to {self._greatest} elements, not {len(elements)}"
             raise PayloadError("size", path, stream.tell(), problem)
@@ -221,7 +223,8 @@ class UpToLast(Around):
         raise construct.SizeofError("the size depends on the elements", path=path)
 
 
-def _as_list(obj: Any, path: str, stream: BinaryIO) -> list[Any]:
+def as_list(obj: Any, path: str, stream: BinaryIO) -> list[Any]:
+    """The elements of a sequence. Raises PayloadError where it is none."""
     if isinstance(obj, str | bytes | Mapping):
         raise PayloadError("value", path, stream.tell(), f"must be a sequence, not {obj!r}")
     try:

@@ -7,6 +7,7 @@ from functools import lru_cache
 
 from protogen.model.expressions import plain_name
 from protogen.model.numbers import FreeNumeral, Numeral
+from protogen.model.packing import FilledPacking
 from protogen.model.protocol import Protocol
 from protogen.model.types import (
     Array,
@@ -28,6 +29,7 @@ from protogen.model.types import (
     Text,
     Type,
     Until,
+    packing_of,
 )
 from protogen.targets.python.formulas import formula
 from protogen.targets.python.literals import call, mapping, octets_in_class, text
@@ -50,7 +52,7 @@ def _any_size(type_: Type, names: Names) -> str:
     if not isinstance(type_, Text | Octets | Array) or not isinstance(type_.extent, Fill):
         return type_format(type_, names)
     if isinstance(type_, Array):
-        return call("_c.Fill", _checked(type_.element, names))
+        return call(*_filled(type_), _checked(type_.element, names))
     return call(f"{_string_kind(type_)}Fill", seven_bit=_seven_bit(type_))
 
 
@@ -212,12 +214,21 @@ def _array(type_: Array, names: Names) -> str:
     element = _checked(type_.element, names)
     if isinstance(type_.extent, Fill):
         bounds = (element, str(type_.extent.greatest))
-        return call("_c.Fill", *bounds, least=least(type_.extent), tail=_tail(type_.extent.tail))
+        tail = _tail(type_.extent.tail)
+        return call(*_filled(type_), *bounds, least=least(type_.extent), tail=tail)
     if isinstance(type_.extent, Marked):
         of = type_.extent
         return call("_c.UpToLast", element, formula(of.mark), str(of.greatest), least=least(of))
     counted = call("_c.Counted", extent(type_.extent), element)
     return counted if type_.packed is None else call("_c.Packed", text(type_.packed), counted)
+
+
+def _filled(type_: Array) -> tuple[str, ...]:
+    """What reads and writes elements that take what is left, and how they are packed."""
+    packing = packing_of(type_)
+    if isinstance(packing, FilledPacking):
+        return "_c.PackedFill", text(packing.order), str(packing.width)
+    return ("_c.Fill",)
 
 
 def _tail(of: Tail | None) -> str | None:

@@ -28,6 +28,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.model.types import Between, Tail
 from protogen.targets.c.payload.between import count_elements, is_text, separator_of, text_size
+from protogen.targets.c.payload.filled_packing import FilledRun
 from protogen.targets.c.payload.number_checks import NumberChecker
 from protogen.targets.c.payload.texts import PaddedText
 from protogen.targets.c.payload.walk import amount, out_of_bounds, times
@@ -125,6 +126,26 @@ class Checker(NumberChecker):
         self._refuse(out_of_bounds(size, count.least, count.greatest, count.greatest + 1), "SIZE")
         self._refuse(f"!{is_text(self.helpers, between, address, size)}", "VALUE")
         self._move(f"{self._offset}U + {size}" if self._offset else size)
+
+    def packed_fill(self, step: RepeatStep, place: str, count: str) -> None:
+        """Packed numbers, as many as there are bytes for; where those never vary there are none."""
+        self._flush()
+        if self._fixed:
+            return
+        self._require(0)
+        run, left, address = FilledRun.of(step), self._left(), self._address()
+        least, greatest = map(run.packing.size_of, (step.count.least, step.count.greatest))
+        self._refuse(out_of_bounds(left, least, greatest, greatest + 1), "SIZE")
+        if run.packing.width > 8 and greatest:
+            spare = self.variable("spare")
+            self.lines.add(f"const uint8_t {spare} = {run.spare(left)};")
+            self._refuse(f"{spare} > 7U", "SIZE")
+            if Check.PADDING in step.checks:
+                self._refuse(run.padding("payload[size - 1U]", spare), "VALUE")
+        if Check.CLOSED in step.checks:
+            self._refuse(f"!{run.are_known(self.helpers)}({address}, {left})", "VALUE")
+        if greatest:
+            self._end()
 
     # --- elements ---------------------------------------------------------------------------------
 

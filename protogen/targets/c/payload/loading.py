@@ -25,6 +25,7 @@ from protogen.model.payload_plan import (
 from protogen.model.types import Between, Float, NumberType, Tail
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.between import count_elements, text_size
+from protogen.targets.c.payload.filled_packing import FilledRun
 from protogen.targets.c.payload.free_numerals import FreeDigits
 from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole
 from protogen.targets.c.payload.numerals import Digits
@@ -136,6 +137,12 @@ class Load(PlacedWalk):
             if item.constant is None:
                 self.lines.add(f"{place} = {number_in(self.helpers, packing, item, self.byte)};")
         self.skip(packing.size)
+
+    def packed_fill(self, step: RepeatStep, place: str, count: str) -> None:
+        """Packed numbers, as many as there are bytes for."""
+        unpack = FilledRun.of(step).unpack(self.helpers)
+        found = f"{unpack}({place}, {self.address()}, {self._left()})"
+        self.lines.add(f"{count} = ({counting_type(step.count.greatest)}){found};")
 
     def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
         """A text, or bytes."""

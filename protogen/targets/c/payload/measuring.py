@@ -17,6 +17,7 @@ from protogen.model.payload_plan import (
     RestStep,
 )
 from protogen.targets.c.lines import Lines
+from protogen.targets.c.payload.filled_packing import FilledRun
 from protogen.targets.c.payload.free_numerals import FreeDigits
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.walk import Walk, times
@@ -79,6 +80,10 @@ class Measure(Walk):
             self._add(int(step.count.between.leads))
         if step.count.until is not None:
             self._add(1)
+
+    def packed_fill(self, step: RepeatStep, place: str, count: str) -> None:
+        """As many packed numbers as there are."""
+        self._add(FilledRun.of(step).size(self.helpers, count))
 
     def repeat(self, step: RepeatStep, place: str, count: int | str) -> None:
         """Elements."""

@@ -210,7 +210,8 @@ class NumberChecker(CheckedWalk):
 
     def packed(self, step: RecordStep | RepeatStep, place: str) -> None:
         """Numbers that are packed; where none of them can be wrong, only what is left behind."""
-        if step.packing is not None and not step.checks - {Check.PADDING} and not _is_needed(step):
+        assert isinstance(step.packing, Packing)
+        if not step.checks - {Check.PADDING} and not _is_needed(step):
             self.run(step.packing, ())
         else:
             self.runs(step, place)
@@ -246,6 +247,7 @@ class NumberChecker(CheckedWalk):
         value, data = step.value, step.data
         match value:
             case RepeatStep() if value.packing is not None:
+                self._right_count(value.count, len(data), 1)
                 self._flush()
                 self._require(len(data))
                 self._offset += len(data)

@@ -32,7 +32,7 @@ class Group(msgspec.Struct, frozen=True):
 
 def groups_of(step: RepeatStep) -> Iterator[Group]:
     """Yield what repeats of an array, and what is left behind that."""
-    assert step.packing is not None
+    assert isinstance(step.packing, Packing)
     every = tuple(packed_numbers([step]))
     bits = step.packing.bits // len(every)
     size = 8 // gcd(bits, 8)

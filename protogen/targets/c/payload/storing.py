@@ -20,6 +20,7 @@ from protogen.model.payload_plan import (
 from protogen.model.types import NumberType
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.between import separator_of
+from protogen.targets.c.payload.filled_packing import FilledRun
 from protogen.targets.c.payload.free_numerals import FreeDigits
 from protogen.targets.c.payload.helpers import Helpers, is_plain, parted
 from protogen.targets.c.payload.numerals import Digits
@@ -175,6 +176,11 @@ class Store(_Output, PlacedWalk):
         self.lines.add(f"{self.helpers.copy()}({self.address()}, {place}, {amount(count)});")
         self.skip(count)
 
+    def packed_fill(self, step: RepeatStep, place: str, count: str) -> None:
+        """As many packed numbers as there are."""
+        pack = FilledRun.of(step).store(self.helpers)
+        self.lines.add(f"{pack}({self.address()}, {place}, {count});")
+
     def _padded(self, text: PaddedText, place: str, count: int | str) -> None:
         store = text.store(self.helpers)
         self.lines.add(f"{store}({self.address()}, {place}, {amount(count)});")
@@ -209,6 +215,11 @@ class Put(_Output):
     def _bytes(self, place: str, count: int | str) -> None:
         write = self.helpers.write_bytes()
         self.lines.add(f"{write}({self._writing}, {place}, {amount(count)});")
+
+    def packed_fill(self, step: RepeatStep, place: str, count: str) -> None:
+        """As many packed numbers as there are."""
+        write = FilledRun.of(step).write(self.helpers, self._prefix, self._writing)
+        self.lines.add(f"{write}({self._writing}, {place}, {count});")
 
     def _padded(self, text: PaddedText, place: str, count: int | str) -> None:
         write = text.write(self.helpers, self._prefix, self._writing)

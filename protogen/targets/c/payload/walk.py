@@ -9,7 +9,7 @@ from protogen.c_language.expressions import FormulaPrinter, type_for
 from protogen.c_language.numbers import constant, integer_type, unsigned, unsigned_type
 from protogen.model.expressions import ArithmeticOperator, Expression, Number, Operand
 from protogen.model.names import free_name
-from protogen.model.packing import Packing
+from protogen.model.packing import FilledPacking, Packing
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -133,6 +133,8 @@ class Walk:
     def step(self, step: AnyStep, place: str) -> None:
         """Walk over a step of any kind."""
         match step:
+            case RepeatStep() if isinstance(step.packing, FilledPacking):
+                self.packed_fill(step, place, str(self.count(step.count)))
             case RecordStep() | RepeatStep() if step.packing is not None:
                 self.packed(step, place)
             case NumberStep():
@@ -169,10 +171,14 @@ class Walk:
         else:
             self.repeat(step, place, step.count.known or 0)
 
+    def packed_fill(self, step: RepeatStep, place: str, count: str) -> None:
+        """Walk over as many packed numbers as there are, each for itself."""
+        self.repeat(step, place, count)
+
     def runs(self, step: RecordStep | RepeatStep, place: str) -> None:
         """Walk over packed numbers, as many at once as take whole bytes."""
         if isinstance(step, RecordStep):
-            assert step.packing is not None
+            assert isinstance(step.packing, Packing)
             self.run(step.packing, members_of(self.helpers, step.steps, f"{place}."))
             return
         behind = 0

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from protogen.model.frame import Frame
 from protogen.model.messages import Message
-from protogen.model.packing import Packing
+from protogen.model.packing import FilledPacking, Packing
 from protogen.model.parts import PayloadPart
 from protogen.model.payload_plan import (
     AnyStep,
@@ -95,7 +95,7 @@ class _PayloadRows:
         match without_constant(step):
             case RecordStep(steps=steps, packing=Packing()):
                 yield from self._packed_fields(steps, path)
-            case RepeatStep(packing=Packing()) as run:
+            case RepeatStep(packing=Packing() | FilledPacking()) as run:
                 yield self._packed_elements(run, 0, path)
             case RecordStep(steps=steps):
                 yield from self.of_record(steps, place, path)

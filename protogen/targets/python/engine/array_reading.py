@@ -7,6 +7,7 @@ from functools import partial
 
 import msgspec
 
+from protogen.model.packing import FilledPacking
 from protogen.model.payload_plan import (
     AnyStep,
     Count,
@@ -29,6 +30,7 @@ from protogen.targets.python.engine.layout import (
     outside_of,
 )
 from protogen.targets.python.engine.lines import Lines
+from protogen.targets.python.engine.packing import unpacked_fill
 from protogen.targets.python.engine.place import Place
 from protogen.targets.python.engine.raw import Raw, member_of
 from protogen.targets.python.formulas import in_python
@@ -88,6 +90,8 @@ class ArrayReader(Converter, Raw):
         """The same for what takes all that is left; nothing stands behind it."""
 
     def _array(self, step: RepeatStep) -> str:
+        if isinstance(step.packing, FilledPacking):
+            return self._packed_fill(step)
         if step.count.mark is not None:
             return self._up_to_last(step, step.count.mark)
         element, size = step.element, step.element.sizes.fixed
@@ -111,6 +115,17 @@ class ArrayReader(Converter, Raw):
         else:
             self._move_to(end)
         return name
+
+    def _packed_fill(self, step: RepeatStep) -> str:
+        """Packed numbers to the end."""
+        data, start = "data", self.place.text
+        if start != "0":
+            data = self.lines.local("data")
+            self.lines.add(f"{data} = data[{start}:]")
+        value = self.lines.local()
+        self.lines.add(f"{value} = {unpacked_fill(self.lines, data, step, self.named)}")
+        self._move_to_end("len(data)")
+        return value
 
     def _fills_message(self, count: Count, size: int) -> bool:
         """True if records are all the rest of a message, whose size says that they are whole.

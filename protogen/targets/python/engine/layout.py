@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
+from protogen.model.packing import Packing
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -35,7 +36,7 @@ def code_of(step: AnyStep) -> str | None:
         return None if is_free else _number_code(value.type)
     if isinstance(value, BytesStep) and value.count.is_fixed:
         return f"{value.count.known}s"
-    if isinstance(value, RecordStep | RepeatStep) and value.packing is not None:
+    if isinstance(value, RecordStep | RepeatStep) and isinstance(value.packing, Packing):
         return f"{value.packing.size}s"
     return None
 

@@ -7,12 +7,13 @@ from itertools import groupby
 
 import msgspec
 
-from protogen.model.packing import Packing
+from protogen.model.packing import FilledPacking, Packing
 from protogen.model.payload_builder import plan_of_struct
 from protogen.model.payload_plan import AnyStep, IntegerStep, RecordStep, RepeatStep
 from protogen.model.payload_walks import PackedNumber, packed_numbers
 from protogen.model.types import Struct
 from protogen.runtime.attributes import attribute
+from protogen.targets.python.engine.layout import outside_of
 from protogen.targets.python.engine.lines import Lines
 from protogen.targets.python.literals import number
 
@@ -47,8 +48,14 @@ def unpacked(lines: Lines, data: str, step: RecordStep | RepeatStep, named: Name
         value = lines.local("s")
         unpack_record(lines, data, value, Record.of_step(step), named)
         return value
-    assert step.packing is not None
+    assert isinstance(step.packing, Packing)
     return _Unpacking(lines, step.packing, data, named).elements(step)
+
+
+def unpacked_fill(lines: Lines, data: str, step: RepeatStep, named: Named) -> str:
+    """Take as many numbers as there are out of the bytes `data`; the expression of the list."""
+    assert isinstance(step.packing, FilledPacking)
+    return _UnpackingFill(lines, step.packing, data, named).elements(step)
 
 
 def unpack_record(lines: Lines, data: str, target: str, record: Record, named: Named) -> None:
@@ -56,16 +63,36 @@ def unpack_record(lines: Lines, data: str, target: str, record: Record, named: N
     _Unpacking(lines, record.packing, data, named).record(target, record)
 
 
-class _Unpacking:
-    """Prints expressions of the numbers of one run."""
+class _Numbers:
+    """Prints expressions of the numbers of one run, which is read as an integer."""
 
-    def __init__(self, lines: Lines, packing: Packing, data: str, named: Named) -> None:
-        """Read the run as an integer, and see that what belongs to no number is zero."""
+    def __init__(
+        self, lines: Lines, packing: Packing | FilledPacking, data: str, named: Named
+    ) -> None:
         self._lines = lines
-        self._packing = packing
         self._named = named
         self._run = lines.local("bits")
         lines.add(f'{self._run} = int.from_bytes({data}, "{packing.byte_order}")')
+
+    def _number(self, shift: str, step: IntegerStep) -> str:
+        type_ = step.type
+        moved = self._run if shift == "0" else f"{self._run} >> {shift}"
+        raw = f"{moved} & {(1 << type_.bits) - 1}"
+        if type_.role == "bool":
+            return f"({raw}) == 1"
+        if not type_.signed:
+            return self._named(raw, step)
+        sign = 1 << type_.bits - 1
+        return self._named(f"(({raw}) ^ {sign}) - {sign}", step)
+
+
+class _Unpacking(_Numbers):
+    """Numbers of a run whose length is known."""
+
+    def __init__(self, lines: Lines, packing: Packing, data: str, named: Named) -> None:
+        """See that what belongs to no number is zero."""
+        super().__init__(lines, packing, data, named)
+        self._packing = packing
         left = 8 * packing.size - packing.bits
         if left:
             is_above = packing.order == "lsb_first"
@@ -101,24 +128,46 @@ class _Unpacking:
     def _placed(self, item: PackedNumber) -> str:
         return self._number(str(self._packing.shift(item.first, item.step.type.bits)), item.step)
 
-    def _number(self, shift: str, step: IntegerStep) -> str:
-        type_ = step.type
-        moved = self._run if shift == "0" else f"{self._run} >> {shift}"
-        raw = f"{moved} & {(1 << type_.bits) - 1}"
-        if type_.role == "bool":
-            return f"({raw}) == 1"
-        if not type_.signed:
-            return self._named(raw, step)
-        sign = 1 << type_.bits - 1
-        return self._named(f"(({raw}) ^ {sign}) - {sign}", step)
+
+class _UnpackingFill(_Numbers):
+    """Numbers of a run that is as long as its bytes say."""
+
+    def __init__(self, lines: Lines, packing: FilledPacking, data: str, named: Named) -> None:
+        super().__init__(lines, packing, data, named)
+        self._packing = packing
+        self._size = f"len({data})"
+
+    def elements(self, step: RepeatStep) -> str:
+        """The list of all elements, after what belongs to none has been seen to be zero."""
+        assert isinstance(step.element, IntegerStep)
+        lines, width, run = self._lines, self._packing.width, self._run
+        count, left = lines.local("n"), lines.local("left")
+        lines.add(f"{count}, {left} = divmod(8 * {self._size}, {width})")
+        lines.refuse_if(f"{left} > 7 or {outside_of(step.count, count)}")
+        is_last_first = self._packing.order == "lsb_first"
+        if width % 8 and is_last_first:
+            lines.refuse_if(f"{run} >> {count} * {width}")
+        elif width % 8:
+            lines.refuse_if(f"{run} & (1 << {left}) - 1")
+            lines.add(f"{run} >>= {left}")
+        places = f"0, {count} * {width}, {width}"
+        if not is_last_first:
+            places = f"({count} - 1) * {width}, -1, -{width}"
+        return f"[{self._number('at', step.element)} for at in range({places})]"
 
 
 def packed(lines: Lines, value: str, step: RecordStep | RepeatStep) -> str:
     """Check the numbers of a record or list; the expression of their bytes."""
     if isinstance(step, RecordStep):
         return packed_record(lines, value, Record.of_step(step))
-    assert step.packing is not None
+    assert isinstance(step.packing, Packing)
     return _Packing(lines, step.packing).elements(value, step)
+
+
+def packed_fill(lines: Lines, value: str, step: RepeatStep) -> str:
+    """Check as many numbers as a list has; the expression of their bytes."""
+    assert isinstance(step.packing, FilledPacking)
+    return _PackingFill(lines, step.packing).elements(value, step)
 
 
 def packed_record(lines: Lines, value: str, record: Record) -> str:
@@ -126,31 +175,83 @@ def packed_record(lines: Lines, value: str, record: Record) -> str:
     return _Packing(lines, record.packing).record(value, record)
 
 
-class _Packing:
-    """Prints checks of the numbers of one run, and statements that join them."""
+class _Joining:
+    """Prints checks of the numbers of one run, and statements that join them to an integer."""
+
+    def __init__(self, lines: Lines, is_last_first: bool) -> None:
+        self._lines = lines
+        self._is_last_first = is_last_first
+        self._run = lines.local("bits")
+
+    def _join(self, value: str, element: AnyStep) -> None:
+        """Join all elements of a list, the ones of greater significance first."""
+        assert isinstance(element, IntegerStep)
+        bits = element.type.bits
+        self._lines.add(f"{self._run} = 0")
+        each = f"reversed({value})" if self._is_last_first else value
+        with self._lines.block(f"for each in {each}:"):
+            self._check("each", element)
+            raw = f"each & {(1 << bits) - 1}" if element.type.signed else "each"
+            self._lines.add(f"{self._run} = {self._run} << {bits} | {raw}")
+
+    def _check(self, value: str, step: IntegerStep) -> None:
+        """See to it that a value may be sent."""
+        type_, field = step.type, step.field
+        if type_.role == "bool":
+            self._lines.refuse_if(f"type({value}) is not bool")
+            return
+        named = type_.enum or type_.flags
+        other = f" and type({value}) is not {self._lines.classes[named.name]}" if named else ""
+        self._lines.refuse_if(f"type({value}) is not int{other}")
+        if type_.enum is not None and type_.is_closed:
+            members = f"frozenset(map(int, {self._lines.classes[type_.enum.name]}))"
+            self._lines.refuse_if(
+                f"{value} not in {self._lines.constants.named('VALUES', members)}"
+            )
+        least, greatest = step.bounds
+        allowed = f"not {number(least)} <= {value} <= {number(greatest)}"
+        if field.ranged and field.special:
+            special = ", ".join(str(item.value) for item in field.special)
+            allowed += f" and {value} not in ({special},)"
+        self._lines.refuse_if(allowed)
+
+
+class _PackingFill(_Joining):
+    """A run of as many numbers as there are."""
+
+    def __init__(self, lines: Lines, packing: FilledPacking) -> None:
+        super().__init__(lines, packing.order == "lsb_first")
+        self._packing = packing
+
+    def elements(self, value: str, step: RepeatStep) -> str:
+        """All elements of a list."""
+        lines, width = self._lines, self._packing.width
+        lines.refuse_if(f"type({value}) is not list or {outside_of(step.count, f'len({value})')}")
+        self._join(value, step.element)
+        size = lines.local("size")
+        lines.add(f"{size} = (len({value}) * {width} + 7) // 8")
+        if width % 8 and not self._is_last_first:
+            lines.add(f"{self._run} <<= 8 * {size} - len({value}) * {width}")
+        return f'{self._run}.to_bytes({size}, "{self._packing.byte_order}")'
+
+
+class _Packing(_Joining):
+    """A run whose length is known."""
 
     def __init__(self, lines: Lines, packing: Packing) -> None:
-        self._lines = lines
+        super().__init__(lines, packing.order == "lsb_first")
         self._packing = packing
-        self._run = lines.local("bits")
 
     @property
     def _bytes(self) -> str:
         return f'{self._run}.to_bytes({self._packing.size}, "{self._packing.byte_order}")'
 
     def elements(self, value: str, step: RepeatStep) -> str:
-        """All elements of a list, the ones of greater significance first."""
-        assert isinstance(step.element, IntegerStep)
-        bits = step.element.type.bits
+        """All elements of a list."""
         self._list(value, step.count.known or 0)
-        self._lines.add(f"{self._run} = 0")
-        is_last_first = self._packing.order == "lsb_first"
-        with self._lines.block(f"for each in {f'reversed({value})' if is_last_first else value}:"):
-            self._check("each", step.element)
-            raw = f"each & {(1 << bits) - 1}" if step.element.type.signed else "each"
-            self._lines.add(f"{self._run} = {self._run} << {bits} | {raw}")
+        self._join(value, step.element)
         left = 8 * self._packing.size - self._packing.bits
-        if left and not is_last_first:
+        if left and not self._is_last_first:
             self._lines.add(f"{self._run} <<= {left}")
         return self._bytes
 
@@ -180,27 +281,6 @@ class _Packing:
                 self._lines.refuse_if(f"{each} != {item.constant}")
             self._check(each, item.step)
             self._put(each, item)
-
-    def _check(self, value: str, step: IntegerStep) -> None:
-        """See to it that a value may be sent."""
-        type_, field = step.type, step.field
-        if type_.role == "bool":
-            self._lines.refuse_if(f"type({value}) is not bool")
-            return
-        named = type_.enum or type_.flags
-        other = f" and type({value}) is not {self._lines.classes[named.name]}" if named else ""
-        self._lines.refuse_if(f"type({value}) is not int{other}")
-        if type_.enum is not None and type_.is_closed:
-            members = f"frozenset(map(int, {self._lines.classes[type_.enum.name]}))"
-            self._lines.refuse_if(
-                f"{value} not in {self._lines.constants.named('VALUES', members)}"
-            )
-        least, greatest = step.bounds
-        allowed = f"not {number(least)} <= {value} <= {number(greatest)}"
-        if field.ranged and field.special:
-            special = ", ".join(str(item.value) for item in field.special)
-            allowed += f" and {value} not in ({special},)"
-        self._lines.refuse_if(allowed)
 
     def _put(self, value: str, item: PackedNumber) -> None:
         type_ = item.step.type

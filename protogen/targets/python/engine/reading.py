@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from protogen.model.expressions import plain_name
 from protogen.model.messages import Message
+from protogen.model.packing import Packing
 from protogen.model.payload_builder import plan_of
 from protogen.model.payload_plan import (
     AnyStep,
@@ -207,7 +208,7 @@ class _Reader(ArrayReader):
         match step:
             case ConstantStep():
                 return self._value(step.value)
-            case RecordStep() | RepeatStep() if step.packing is not None:
+            case RecordStep() | RepeatStep() if isinstance(step.packing, Packing):
                 pass
             case RecordStep():
                 return self._struct(step.type)

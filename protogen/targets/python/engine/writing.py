@@ -7,6 +7,7 @@ from functools import partial
 
 from protogen.model.expressions import plain_name
 from protogen.model.messages import Message
+from protogen.model.packing import FilledPacking, Packing
 from protogen.model.payload_builder import plan_of
 from protogen.model.payload_plan import (
     AnyStep,
@@ -43,7 +44,7 @@ from protogen.targets.python.engine.layout import (
     patterns,
 )
 from protogen.targets.python.engine.lines import Constants, Lines
-from protogen.targets.python.engine.packing import Record, packed, packed_record
+from protogen.targets.python.engine.packing import Record, packed, packed_fill, packed_record
 from protogen.targets.python.engine.raw import Raw, member_of
 from protogen.targets.python.engine.struct_calls import Packed, Packer
 from protogen.targets.python.formats import constant
@@ -205,7 +206,7 @@ class _Writer(Raw):
                     self._text(value, step)
                 else:
                     self._octets(value, step)
-            case RecordStep() | RepeatStep() if step.packing is not None:
+            case RecordStep() | RepeatStep() if isinstance(step.packing, Packing):
                 self._put(step, packed(self.lines, value, step))
             case RecordStep():
                 self.lines.refuse_if(f"type({value}) is not {self.lines.classes[step.type.name]}")
@@ -413,6 +414,9 @@ class _Writer(Raw):
     # --- arrays -----------------------------------------------------------------------------------
 
     def _array(self, value: str, step: RepeatStep, item: Field | None) -> None:
+        if isinstance(step.packing, FilledPacking):
+            self._bytes.piece(packed_fill(self.lines, value, step))
+            return
         self.lines.refuse_if(f"type({value}) is not list")
         self._counted(value, step.count)
         element = step.element
