@@ -28,6 +28,8 @@ _NAMED = ("values", "flags", "bits")
 _LENGTHS = ("size", "until")
 _LAST_ELEMENT: JsonObject = {"type": "object", "required": ["element"]}
 """What ends an array, and no text."""
+_FIXED_COUNT: JsonObject = {"type": "integer", "minimum": 1}
+_MAPPING: JsonObject = {"type": "object"}
 _WRITTEN = ("digits", "code", "chars")
 _MIRRORS = ("repeats", "complements")
 _PART_ROLES = (
@@ -190,8 +192,13 @@ _FIELD_RULES = (
     ),
     _where(
         {"required": ["packed", "count"], "properties": {"fields": False}},
-        "The number of packed integers is always the same.",
-        {"properties": {"count": {"type": "integer", "minimum": 1}}},
+        "The number of packed integers is always the same, or they fill what is left.",
+        {"properties": {"count": {"anyOf": [_FIXED_COUNT, {"const": "fill"}, _MAPPING]}}},
+    ),
+    _where(
+        {**_type_like("[us]int[1-7]|bool"), "required": ["type", "packed", "count"]},
+        "Bytes do not tell the number of integers of fewer than 8 bits.",
+        {"properties": {"count": _FIXED_COUNT}},
     ),
     _where(
         _type_like("sint[0-9]+"),

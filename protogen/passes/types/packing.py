@@ -96,7 +96,8 @@ def bytes_of_element(context: Context, element: Type, item: Effective) -> Fracti
         alike = next(n for n in count(1) if packing.size_of(n) == packing.size_of(n + 1))
         size = "a byte" if alike == 1 else f"{packing.size_of(alike)} bytes"
         width = "1 bit" if element.bits == 1 else f"{element.bits} bits"
-        text = f"nothing tells how many there are: {alike} and {alike + 1} of {width} take {size}"
+        both = f"{alike} and {alike + 1} integers of {width} both take {size}"
+        text = f"nothing tells how many there are: {both}"
         hint = "write their number, or a switch with a case for each number that there can be"
         context.error("PG302", item.at("count"), text, hint)
     return Fraction(element.bits, _BYTE)
