@@ -124,6 +124,8 @@ class _Reader:
                 return self._case(type_, scope)
 
     def _packed(self, type_: Struct | Array, order: str, *, constant: bool) -> Any:
+        if isinstance(type_, Array) and isinstance(type_.extent, Fill):
+            return self._packed_fill(type_.element, type_.extent, order, constant=constant)
         run = _Run(bits_of(self._take(type_.sizes.least), order), order)
         if isinstance(type_, Array):
             found = run.numbers(type_, constant=constant)
@@ -136,6 +138,18 @@ class _Reader:
         if any(run.bits):
             raise Wrong("value")
         return found
+
+    def _packed_fill(self, element: Type, extent: Fill, order: str, *, constant: bool) -> Any:
+        """Numbers as long as there are bits for one; the bits behind the last are less than 8."""
+        assert isinstance(element, Integer)
+        run = _Run(bits_of(self._take(self._left), order), order)
+        count, left = divmod(len(run.bits), element.bits)
+        if left >= 8 or not extent.least <= count <= extent.greatest:
+            raise Wrong("size")
+        padding = run.bits[len(run.bits) - left :]
+        if any(padding):
+            raise Wrong("value")
+        return [run.value(element, constant=constant) for _ in range(count)]
 
     def _number(self, type_: Integer | Float, *, constant: bool) -> int | float:
         if isinstance(type_, Integer) and type_.is_free:

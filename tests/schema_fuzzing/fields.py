@@ -11,7 +11,7 @@ from protogen.copying import replace
 from schema_fuzzing import expressions, forms
 from schema_fuzzing.names import FIELDS, fresh
 from schema_fuzzing.numbers import ORDERS, counter, integer, number
-from schema_fuzzing.packed import can_pack, packed_arrays, packed_structs
+from schema_fuzzing.packed import can_pack, packed_arrays, packed_fills, packed_structs
 from schema_fuzzing.separated import written_numbers
 from schema_fuzzing.setting import ELSE, NOTHING, Built, Declared, Selector, Setting, Size
 
@@ -220,6 +220,7 @@ def _kinds(setting: Setting) -> list[str]:
         kinds += ["packed array", "packed struct"]
     if setting.may_fill:
         kinds += ["fill"] * 8
+        kinds += ["packed fill"] * 4 if can_pack(setting) else []
         if setting.byte_bits == 8:
             kinds += ["written"] * 3
     if any(_fits(declared, setting) for declared in setting.types):
@@ -542,6 +543,7 @@ _ITEMS: Mapping[str, Callable[[Setting], st.SearchStrategy[Built]]] = {
     "struct": _struct,
     "declared": _declared,
     "packed array": packed_arrays,
+    "packed fill": packed_fills,
     "packed struct": packed_structs,
     "fill": _fill,
     "written": _written,

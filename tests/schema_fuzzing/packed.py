@@ -59,6 +59,29 @@ def _arrays(draw: st.DrawFn, setting: Setting, room: int) -> tuple[dict[str, Any
 
 
 @st.composite
+def packed_fills(draw: st.DrawFn, setting: Setting) -> Built:
+    """Packed integers of 8 bits or more that take what the payload has left."""
+    data, bits = draw(_numbers(setting, min(64, 8 * setting.budget)))
+    if bits < 8:
+        bits = draw(st.integers(8, min(64, 8 * setting.budget)))
+        data = {"type": f"{draw(st.sampled_from(['uint', 'sint']))}{bits}"}
+    data = {key: value for key, value in data.items() if key not in ("const", "default")}
+    most = 8 * setting.budget // bits
+    if setting.room is None or not setting.exact or draw(forms.one_in(4)):
+        most = draw(st.integers(0, min(_GREATEST_COUNT, most)))
+        extent: Any = {"fill": True, "max": most}
+    else:
+        most = 8 * setting.room // bits
+        extent = draw(st.sampled_from(["fill", {"fill": True}]))
+    least, room = 0, min(most, 8 * setting.budget // bits) - 2
+    if isinstance(extent, dict) and room > 0 and draw(st.booleans()):
+        least = extent["min"] = draw(st.integers(1, room))
+    size = Size(-(-least * bits // 8), -(-most * bits // 8))
+    data = {**data, "count": extent, "packed": draw(BIT_ORDERS)}
+    return Built(data, size, fills=True)
+
+
+@st.composite
 def packed_structs(draw: st.DrawFn, setting: Setting) -> Built:
     """A struct of packed integers, one at least."""
     room, bits = 8 * setting.budget, 0
