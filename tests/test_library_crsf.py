@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
+from random import Random
 from typing import Any
 
 import pytest
@@ -133,6 +134,60 @@ def crc(data: bytes, poly: int) -> int:
         for _ in range(8):
             found = found << 1 & 0xFF ^ (poly if found & 0x80 else 0)
     return found
+
+
+def broadcast(content: bytes) -> bytes:
+    """A frame for all, with its checksum worked out bit by bit."""
+    return bytes((0xC8, len(content) + 1, *content, crc(content, 0xD5)))
+
+
+def some_channels(first: int, layout: int, channels: list[int]) -> bytes:
+    """Channels one bit at a time, each with its least significant bit first."""
+    width = 10 + layout
+    bits = "".join(f"{channel:0{width}b}"[::-1] for channel in channels)
+    data = bytes(int(bits[at : at + 8][::-1], 2) for at in range(0, len(bits), 8))
+    return broadcast(bytes((0x17, first | layout << 5)) + data)
+
+
+def fields_of(module: Any, engine: str, frame: bytes) -> Values:
+    (event,) = module.Decoder("device", engine).feed(frame)
+    assert module.PROTOCOL.encode_line(event.as_json()) == frame
+    fields: Values = event.as_json()["fields"]
+    return fields
+
+
+@pytest.mark.parametrize("engine", ["fast", "construct"])
+@pytest.mark.parametrize("layout", range(4))
+def test_some_channels_in_a_resolution_of_choice(engine: str, layout: int) -> None:
+    module: Any = module_at(FOLDER / "crsf.yaml")
+    random = Random(layout)
+    for count in range(1 + 59 * 8 // (10 + layout)):
+        first = random.randrange(32)
+        channels = [random.getrandbits(10 + layout) for _ in range(count)]
+        fields = fields_of(module, engine, some_channels(first, layout, channels))
+        head = {"first": first, "layout": layout}
+        assert fields == {"head": head, "channels": {"value": channels}}
+
+
+@pytest.mark.parametrize("engine", ["fast", "construct"])
+def test_channels_with_digital_switches_are_bytes(engine: str) -> None:
+    module: Any = module_at(FOLDER / "crsf.yaml")
+    fields = fields_of(module, engine, broadcast(b"\x17\xa4\1\2\3"))
+    assert fields == {"head": {"first": 4, "layout": 5}, "channels": "010203"}
+
+
+@pytest.mark.parametrize("engine", ["fast", "construct"])
+@pytest.mark.parametrize(
+    "content",
+    [b"\x17\x20\0\0\0\0\0\x10", b"\x17\x20\0\0\0\0"],
+    ids=["a bit that is left", "a byte that is left"],
+)
+def test_behind_some_channels_are_zeros_up_to_the_end_of_the_byte(
+    engine: str, content: bytes
+) -> None:
+    module: Any = module_at(FOLDER / "crsf.yaml")
+    (event,) = module.Decoder("device", engine).feed(broadcast(content))
+    assert event.as_json()["event"] == "unknown"
 
 
 @pytest.mark.parametrize("engine", ["fast", "construct"])
