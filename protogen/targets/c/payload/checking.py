@@ -141,7 +141,8 @@ class Checker(NumberChecker):
             self.lines.add(f"const uint8_t {spare} = {run.spare(left)};")
             self._refuse(f"{spare} > 7U", "SIZE")
             if Check.PADDING in step.checks:
-                self._refuse(run.padding("payload[size - 1U]", spare), "VALUE")
+                is_set = run.padding("payload[size - 1U]", spare)
+                self._refuse(f"size > {self._sum(self._offset)} && {is_set}", "VALUE")
         if Check.CLOSED in step.checks:
             self._refuse(f"!{run.are_known(self.helpers)}({address}, {left})", "VALUE")
         if greatest:

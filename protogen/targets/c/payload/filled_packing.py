@@ -60,8 +60,8 @@ class FilledRun(msgspec.Struct, frozen=True):
     def padding(self, byte: str, spare: str) -> str:
         """The condition that such bits of the last byte are set."""
         if self._is_least_first:
-            return f"{spare} > 0U && {byte} >> (8U - {spare}) != 0U"
-        return f"{spare} > 0U && ({byte} & ((1U << {spare}) - 1U)) != 0U"
+            return f"{byte} >> (8U - {spare}) != 0U"
+        return f"({byte} & ((1U << {spare}) - 1U)) != 0U"
 
     # --- reading ----------------------------------------------------------------------------------
 
@@ -105,7 +105,8 @@ class FilledRun(msgspec.Struct, frozen=True):
             yield f"        value = ({kind})((({wide})value << 8U) | at[i]);"
             yield "    } else {"
             yield f"        bits = (uint8_t)(bits - {width});"
-            yield f"        value = ({kind})((({wide})value << (8U - bits)) | at[i] >> bits);"
+            upper, lower = f"({wide})value << (8U - bits)", f"({wide})(at[i] >> bits)"
+            yield f"        value = ({kind})(({upper}) | {lower});"
             yield from (f"        {line}" for line in each)
             yield f"        value = ({kind})(at[i] & ((1U << bits) - 1U));"
         yield "    }"
