@@ -47,6 +47,11 @@ class Packing(msgspec.Struct, frozen=True):
         return -(-self.bits // 8)
 
     @property
+    def sizes(self) -> SizeSet:
+        """Wire bytes, as the only size that there is."""
+        return SizeSet.exactly(self.size)
+
+    @property
     def byte_order(self) -> ByteOrder:
         """The order of bytes in which the run is one integer."""
         return _BYTE_ORDERS[self.order]
@@ -94,11 +99,6 @@ class FilledPacking(msgspec.Struct, frozen=True):
         """Wire bytes of any of these numbers of numbers."""
         step = 1 if self.width % 8 else self.width // 8 * counts.step
         return SizeSet.between(self.size_of(counts.least), self.size_of(counts.greatest), step)
-
-    def count_in(self, size: int) -> int | None:
-        """How many numbers take just so many bytes; None where no number of them does."""
-        count = 8 * size // self.width
-        return count if self.size_of(count) == size else None
 
     def run_of(self, count: int) -> Packing:
         """The run of so many numbers."""

@@ -179,7 +179,7 @@ class Struct:
     def __post_init__(self) -> None:
         stored = any(field.is_stored or field.has_count for field in self.fields)
         run = run_of(self)
-        sizes = total(self.fields) if run is None else SizeSet.exactly(run.size)
+        sizes = total(self.fields) if run is None else run.sizes
         object.__setattr__(self, "sizes", sizes)
         object.__setattr__(self, "holds_values", stored)
         object.__setattr__(self, "needs", _needed_by(self.fields))
@@ -212,12 +212,10 @@ class Array(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def sizes(self) -> SizeSet:
         """Wire bytes."""
-        match packing_of(self):
-            case Packing(size=size):
-                return SizeSet.exactly(size)
-            case FilledPacking() as filled:
-                return filled.sizes_of(self.extent.counts)
-        return self.element.sizes.times(self.extent.counts)
+        packing, counts = packing_of(self), self.extent.counts
+        if isinstance(packing, FilledPacking):
+            return packing.sizes_of(counts)
+        return self.element.sizes.times(counts) if packing is None else packing.sizes
 
 
 class Case(msgspec.Struct, frozen=True, kw_only=True):
@@ -310,11 +308,9 @@ def run_of(struct: Struct) -> Packing | None:
 
 def packing_of(array: Array) -> Packing | FilledPacking | None:
     """The run of bits that an array is, if its numbers are packed."""
-    if array.packed is None:
-        return None
-    if isinstance(array.extent, Fill):
+    if array.packed is not None and isinstance(array.extent, Fill):
         return FilledPacking(array.packed, bits_of(array.element))
-    return Packing(array.packed, bits_of(array))
+    return None if array.packed is None else Packing(array.packed, bits_of(array))
 
 
 def bits_of(type_: Type) -> int:
@@ -428,9 +424,7 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def integer(self) -> Integer | None:
         """The integer that the field holds, or of which it is an array."""
-        type_ = self.type
-        if not isinstance(type_, Integer) and isinstance(type_, Array):
-            type_ = self.element
+        type_ = self.element
         return type_ if isinstance(type_, Integer) else None
 
     @property
