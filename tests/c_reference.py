@@ -144,7 +144,7 @@ class _Reader:
         assert isinstance(element, Integer)
         run = _Run(bits_of(self._take(self._left), order), order)
         count, left = divmod(len(run.bits), element.bits)
-        if left >= 8 or not extent.least <= count <= extent.greatest:
+        if left >= 8 or (count not in extent.counts and not constant):
             raise Wrong("size")
         padding = run.bits[len(run.bits) - left :]
         if any(padding):
@@ -261,10 +261,10 @@ class _Reader:
                 raise Wrong("size")
             return [self._value(type_.element, scope) for _ in range(count)]
         while self._left:
-            if len(found) == type_.extent.greatest:
+            if len(found) == type_.extent.greatest and not constant:
                 raise Wrong("size")
             found.append(self._value(type_.element, scope))
-        if len(found) < type_.extent.least:
+        if len(found) < type_.extent.least and not constant:
             raise Wrong("size")
         return found
 

@@ -57,6 +57,10 @@ class FilledRun(msgspec.Struct, frozen=True):
         operand = f"({size})" if " " in size else size
         return f"(uint8_t)({operand} % {self.packing.width}U * 8U % {self.packing.width}U)"
 
+    def misfit(self, size: str) -> str:
+        """The condition that no number of numbers takes as many bytes; empty where any can."""
+        return f"{self.spare(size)} > 7U" if self.packing.width > 8 else ""
+
     def padding(self, byte: str, spare: str) -> str:
         """The condition that such bits of the last byte are set."""
         if self._is_least_first:

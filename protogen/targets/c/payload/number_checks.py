@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from protogen.c_language.numbers import hexadecimal, integer_type, unsigned
-from protogen.model.packing import Packing
+from protogen.model.packing import FilledPacking, Packing
 from protogen.model.payload_plan import (
     BytesStep,
     Check,
@@ -23,6 +23,7 @@ from protogen.model.payload_plan import (
 from protogen.model.payload_walks import packed_numbers
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.checked_places import CheckedWalk
+from protogen.targets.c.payload.filled_packing import FilledRun
 from protogen.targets.c.payload.free_numerals import FreeDigits
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import loaded
@@ -247,8 +248,11 @@ class NumberChecker(CheckedWalk):
         value, data = step.value, step.data
         match value:
             case RepeatStep() if value.packing is not None:
-                self._right_count(value.count, len(data), 1)
                 self._flush()
+                if isinstance(value.packing, FilledPacking):
+                    self._require(0)
+                    self._refuse(FilledRun.of(value).misfit(self._left()), "SIZE")
+                self._right_count(value.count, len(data), 1)
                 self._require(len(data))
                 self._offset += len(data)
                 self._same(data)
@@ -294,7 +298,8 @@ class NumberChecker(CheckedWalk):
         if found.by is not None:
             self._refuse(self.differs(found.by, count), "VALUE")
         elif found.fills:
-            here = f"size - {self._sum(self._offset)}" if self._at or self._offset else "size"
+            here = self._left()
+            self._refuse(f"({here}) % {unsigned(size)} != 0U" if size > 1 else "", "SIZE")
             self._refuse(f"{here} != {unsigned(count * size)}", "VALUE")
 
     def _same(self, data: bytes) -> None:
