@@ -272,6 +272,8 @@ class _Sampler:
             self.size += bare.count.between.leads + len(value)
             return value
         fixed = step.sizes.fixed
+        if fixed is None and isinstance(step, ConstantStep):
+            fixed = len(step.data)
         self.size += fixed if fixed is not None else len(value) // (1 if is_text else 2)
         return value
 
