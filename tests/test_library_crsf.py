@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
+from contextlib import suppress
 from random import Random
 from typing import Any
 
@@ -67,8 +68,9 @@ class Radio:
 
     def found(self, endpoint: str, data: bytes) -> Iterator[bytes]:
         assert endpoint == "device"
-        for sync, kind, content in self._telemetry.frames_from_bytes(deque(data)):
-            yield self._around(sync, bytes((kind, *content)))
+        with suppress(IndexError):  # It takes a size of 0 for a frame, which it reads beyond.
+            for sync, kind, content in self._telemetry.frames_from_bytes(deque(data)):
+                yield self._around(sync, bytes((kind, *content)))
 
 
 def battery(read: dict[str, float]) -> Values:
