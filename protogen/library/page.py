@@ -24,9 +24,9 @@ one and states what a device does differently; `protogen init --from library:NAM
 schema. Each is compared with an implementation of the protocol that is not ours, at least 500
 frames each way; what that one only makes, or only reads, is compared one way, as its section says.
 Of a stream with one damaged byte in a hundred, no frame is lost that the other one finds, wherever
-it begins to read. Where it is wrong, a decision of the schema says so. A protocol is said completely
-where its frames and all layouts of its messages can be written; a message that a schema does not
-list is an unknown one to a decoder, and is added by `extends`.
+it begins to read. Where it is wrong, a decision of the schema says so. A protocol is said
+completely where its frames and all layouts of its messages can be written; a message that a schema
+does not list is an unknown one to a decoder, and is added by `extends`.
 
 """
 _BEGIN = "<!-- library -->\n"
