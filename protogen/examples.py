@@ -150,8 +150,13 @@ class _Verification:
         decoder = self._module.Decoder(sender=self._sender.name)
         numbers = self._numbers()
         # What is out of bounds is said where the parts are compared.
-        told = (part for part in self._frame.told if part.holds(numbers[part.name]))
-        decoder.tell(**{part.name: numbers[part.name] for part in told})
+        told = (part for part in self._frame.told_identity if part.holds(numbers[part.name]))
+        decoder.tell(**arguments({part.name: numbers[part.name] for part in told}))
+        layout = self._sender.layout
+        for part in filter(None, (layout.told_length,)):
+            value = layout.told_of(wire).get(part.name, 0)
+            if layout.counted_payload(part, value) is not None:
+                decoder.tell(**arguments({part.name: value}))
         events = [*decoder.feed(wire), *decoder.flush()]
         bad = next((event for event in events if isinstance(event, InvalidEvent)), None)
         if bad is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from functools import cache
 from itertools import chain, zip_longest
 from pathlib import Path
@@ -159,7 +160,8 @@ def _tell(module: Any, sender: str, decoder: Any, data: bytes) -> None:
     """Tell Python what the bytes of a step tell C: the number of a part, and its value."""
     parts = [part for spec in module.PROTOCOL.forms(sender) for part in spec.frame.told]
     names = list(dict.fromkeys(part.name for part in parts))
-    decoder.tell(**{names[data[0]]: int.from_bytes(data[1:], "big")})
+    with suppress(ValueError):  # A length that no frame has, which C does not take either.
+        decoder.tell(**{names[data[0]]: int.from_bytes(data[1:], "big")})
 
 
 def _event(event: Any, *, has_forms: bool = False) -> CEvent:

@@ -92,9 +92,9 @@ def endpoint_of(name: str, case: Case) -> str:
     return protocol_of(FOLDER / f"{name}.yaml").sender(case.sender).endpoint
 
 
-def told_before(name: str, case: Case) -> dict[str, int]:
+def told_before(name: str, case: Case, frame: bytes) -> dict[str, int]:
     """What a receiver of a case is told, where its frame does not say what it is."""
-    return told_of(protocol_of(FOLDER / f"{name}.yaml").sender(case.sender), case)
+    return told_of(protocol_of(FOLDER / f"{name}.yaml").sender(case.sender), case, frame)
 
 
 def compare_frames(name: str, peer: Peer, drawn: Iterable[Case]) -> None:
@@ -104,7 +104,7 @@ def compare_frames(name: str, peer: Peer, drawn: Iterable[Case]) -> None:
         ours = encoded(name, case)
         theirs = peer.frame(case)
         assert ours == theirs, case
-        (event,) = engine.events(case.sender, [theirs], told_before(name, case))
+        (event,) = engine.events(case.sender, [theirs], told_before(name, case, theirs))
         assert (event.message, event.values) == (case.message, case.values)
         assert peer.values(case, ours) == case.values, case
 
@@ -179,10 +179,11 @@ def bursts_of(name: str, drawn: Sequence[Case]) -> list[Burst]:
     alone = ends_idle(name, drawn[0])
     bursts: dict[tuple[object, ...], Burst] = {}
     for index, case in enumerate(drawn):
-        told = told_before(name, case)
+        frame = encoded(name, case)
+        told = told_before(name, case, frame)
         key = (index if alone else None, *told.items())
         burst = bursts.setdefault(key, Burst(told, b"", []))
-        data = burst.data + encoded(name, case)
+        data = burst.data + frame
         burst.frames.append(range(len(burst.data), len(data)))
         bursts[key] = burst._replace(data=data)
     return list(bursts.values())

@@ -51,6 +51,8 @@ SIZED = ROOT / "tests" / "framings" / "sized_arrays.yaml"
 """Arrays whose number of bytes is told, which a decoder checks."""
 TOLD = ROOT / "tests" / "told_schemas" / "answers.yaml"
 """Frames whose identity is told, at any time."""
+LENGTHS = ROOT / "tests" / "told_schemas" / "lengths.yaml"
+"""Frames whose length is told, at any time: also to a decoder of two forms."""
 DECODES = [
     (path, machine)
     for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS)
@@ -71,6 +73,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
         (FORMS, "messages", WIDE),
         (TOLD, "all", WIDE),
         (TOLD, "messages", NARROW),
+        (LENGTHS, "all", WIDE),
         (BITS, "messages", NARROW),
     ]
 )

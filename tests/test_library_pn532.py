@@ -305,7 +305,7 @@ def test_frames_without_zeros_are_those_between_zeros(nfcpy: Nfcpy, messages: An
     for case in drawn(messages, bare=True):
         ours = engine.frame(case.sender, case.message, case.values, case.parts)
         assert b"\0" + ours + b"\0" == nfcpy.frame(case)
-        (event,) = engine.events(case.sender, [ours], told_before("pn532", case))
+        (event,) = engine.events(case.sender, [ours], told_before("pn532", case, ours))
         assert (event.message, event.values) == (case.message, case.values)
 
 

@@ -17,10 +17,21 @@ from test_c_decoder import ALL, MESSAGES, SEEDS
 
 from protogen.capture import CaptureError, columns
 from protogen.fuzzing.c_calls import Step
+from protogen.model.parts import ToldLength
 
 FOLDER = ROOT / "tests" / "told_schemas"
 ANSWERS, MODES = FOLDER / "answers.yaml", FOLDER / "modes.yaml"
-ENDPOINTS = [(ANSWERS, "gauge"), (ANSWERS, "probe"), (MODES, "motor"), (MODES, "motor_answer")]
+LENGTHS = FOLDER / "lengths.yaml"
+ENDPOINTS = [
+    (ANSWERS, "gauge"),
+    (ANSWERS, "probe"),
+    (MODES, "motor"),
+    (MODES, "motor_answer"),
+    (LENGTHS, "store"),
+    (LENGTHS, "radar"),
+    (LENGTHS, "meter"),
+    (LENGTHS, "meter_alarm"),
+]
 EVERY_ENDPOINT = pytest.mark.parametrize(("path", "endpoint"), ENDPOINTS, ids=name_of)
 ENGINE = pytest.mark.parametrize("engine", ["fast", "construct"])
 
@@ -285,16 +296,20 @@ def told_steps(path: Path, endpoint: str, dice: Random) -> list[Step]:
     protocol = protocol_of(path)
     forms = [item for item in protocol.senders if endpoint in (item.name, item.endpoint)]
     materials = [material_of(path, item.name) for item in forms]
-    count = len(dict.fromkeys(part.name for item in forms for part in item.frame.told))
+    parts = list({part.name: part for item in forms for part in item.frame.told}.values())
     steps: list[Step] = []
     for _ in range(30):
-        material = dice.choice(materials)
+        form, material = dice.choice(list(zip(forms, materials, strict=True)))
         piece = bytearray(dice.choice(material.frames))
         if dice.random() < 0.3:
             piece[dice.randrange(len(piece))] = dice.choice(material.marks)
         if dice.random() < 0.7:
-            number = dice.randrange(count)
-            steps.append(("tell", bytes((number,)) + dice.randrange(6).to_bytes(4, "big")))
+            number = dice.randrange(len(parts))
+            value = dice.randrange(6)
+            if isinstance(parts[number], ToldLength) and dice.random() < 0.8:
+                fitting = form.plan.told_size(len(piece)).get(parts[number].name, 0)
+                value = min(fitting + dice.choice((0, 0, 0, 1, 300)), parts[number].type.greatest)
+            steps.append(("tell", bytes((number,)) + value.to_bytes(4, "big")))
         kind = "feed" if dice.random() < 0.5 else "push"
         steps += [(kind, part) for part in portions(bytes(piece), dice)]
         if dice.random() < 0.1:

@@ -22,6 +22,8 @@ from protogen.model.parts import (
     Part,
     PartType,
     PayloadPart,
+    ToldIdentity,
+    ToldLength,
     ToldPart,
     TypedPart,
     ValuePart,
@@ -204,7 +206,7 @@ class _Frames:
 
     def _told(self, old: ToldPart, new: ToldPart, renamed: dict[str, str]) -> Iterator[Change]:
         """What receivers take a frame for, beside what they are told."""
-        was, now = ((part.default, part.once, _tellers(part)) for part in (old, new))
+        was, now = ((it.telling.default, it.telling.once, _tellers(it)) for it in (old, new))
         setters = tuple(sorted(renamed.get(name, name) for name in was[2]))
         if (*was[:2], setters) != now:
             words = named(_telling(old), _telling(new))
@@ -232,14 +234,15 @@ class _Frames:
 
 
 def _tellers(part: ToldPart) -> tuple[str, ...]:
-    return tuple(sorted(item.text for item in part.set_by))
+    return tuple(sorted(item.text for item in part.telling.set_by))
 
 
 def _telling(part: ToldPart) -> str:
     """What tells a part that is not sent, for how long, and its value before, in words."""
-    by = f"told by {' and '.join(_tellers(part))}" if part.set_by else "told by the program"
-    once = ", for one frame" if part.once else ""
-    return f"{part.shown(part.default)}, {by}{once}"
+    telling = part.telling
+    by = f"told by {' and '.join(_tellers(part))}" if telling.set_by else "told by the program"
+    once = ", for one frame" if telling.once else ""
+    return f"{part.shown(telling.default)}, {by}{once}"
 
 
 def _origin(mirror: MirrorBits, renamed: dict[str, str]) -> tuple[str, bool]:
@@ -320,8 +323,11 @@ def _placed_result(part: ChecksumPart) -> str:
     return f"{taken}{part.algorithm.name} in {part.type.label}"
 
 
+_KINDS = {ToldIdentity: "told identity", ToldLength: "told length"}
+
+
 def _kind(part: Part) -> str:
-    name = type(part).__name__.removesuffix("Part").lower()
+    name = _KINDS.get(type(part)) or type(part).__name__.removesuffix("Part").lower()
     if isinstance(part, ChoicePart):
         return f"one of the literals {_alternatives(part)}"
     if isinstance(part, TypedPart):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Hashable, Iterator, Mapping
+from contextlib import suppress
 from functools import cached_property
 from types import ModuleType
 from typing import Any
@@ -21,6 +22,7 @@ from protogen.model.reading.dissect import Cursor, Row, dissect
 from protogen.model.reading.readings import physical, value_name
 from protogen.model.reading.wire import plain
 from protogen.model.types import Field, NumberType
+from protogen.runtime.attributes import arguments
 from protogen.runtime.decoder import Decoder
 from protogen.runtime.framing.extraction import payload_of
 from protogen.runtime.values import as_dict
@@ -125,14 +127,8 @@ class Side:
 
     def _understood(self, sender: str, told: Mapping[str, int]) -> dict[str, int]:
         """What this version's receivers can be told, in which it may differ from the other."""
-        parts = {
-            part.name: part for form in self.protocol.forms(sender) for part in form.frame.told
-        }
-        return {
-            name: value
-            for name, value in told.items()
-            if name in parts and parts[name].holds(value)
-        }
+        parts = {part.name for form in self.protocol.forms(sender) for part in form.frame.told}
+        return {name: value for name, value in told.items() if name in parts}
 
     def reads(
         self,
@@ -147,7 +143,10 @@ class Side:
         then so is what is in them.
         """
         decoder = self._decoder(sender)
-        decoder.tell(**self._understood(sender, told or {}))
+        for name, value in self._understood(sender, told or {}).items():
+            with suppress(ValueError):  # It takes no such frame.
+                decoder.tell(**arguments({name: []}))
+                decoder.tell(**arguments({name: value}))
         events = [*decoder.feed(frame), *decoder.flush()]
         found = [event for event in events if event.kind == "message"]
         if not found:

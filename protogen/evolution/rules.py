@@ -72,7 +72,7 @@ RULES: tuple[Rule, ...] = (
     Rule(
         "frame-told",
         _W,
-        "receivers learn another way which message a frame is",
+        "receivers learn in another way what frames do not say",
         _TOGETHER,
         by_frame=False,
     ),

@@ -16,7 +16,7 @@ from protogen.evolution.change import Change, Mark
 from protogen.evolution.compare import Comparison
 from protogen.evolution.observe import Reading, Side
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
-from protogen.model.messages import Message, told_before
+from protogen.model.messages import Message
 from protogen.model.protocol import Sender
 
 ROUNDS = 64
@@ -197,7 +197,7 @@ class Witnesses:
             frame = one.frame(sender.name, message.name, values, parts)
             if frame is None:
                 continue
-            told = told_before(sender.frame, message, parts)
+            told = sender.plan.told_before(message, parts, len(frame))
             sent = one.reads(sender.endpoint, frame, told=told)
             if sent.message != message.name:
                 continue  # A frame that its own side can't tell proves nothing.

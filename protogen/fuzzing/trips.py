@@ -12,7 +12,7 @@ import msgspec
 from protogen.copying import replace
 from protogen.fuzzing.engine import Engine, Refused, Seen
 from protogen.fuzzing.samples import Values, boundary_rounds, samples, samples_at_least
-from protogen.model.messages import Message, told_before
+from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 
 
@@ -110,16 +110,16 @@ def _trip(engine: Engine, sender: Sender, case: Case) -> Outcome:
     return Outcome(case, problem=problem, frame=frame)
 
 
-def told_of(sender: Sender, case: Case) -> dict[str, int]:
+def told_of(sender: Sender, case: Case, frame: bytes) -> dict[str, int]:
     """What the receiver of a case has to be told before its frame."""
     message = next(item for item in sender.messages if item.name == case.message)
-    return told_before(sender.frame, message, case.parts)
+    return sender.plan.told_before(message, case.parts, len(frame))
 
 
 def _wrong_with_events(
     engine: Engine, sender: Sender, case: Case, payload: bytes, frame: bytes
 ) -> str:
-    told = told_of(sender, case)
+    told = told_of(sender, case, frame)
     events = engine.events(case.sender, [frame], told)
     single = engine.events(case.sender, [bytes((byte,)) for byte in frame], told)
     if not same_events(events, single):

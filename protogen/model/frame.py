@@ -17,6 +17,8 @@ from protogen.model.parts import (
     MirrorBits,
     Part,
     PayloadPart,
+    ToldIdentity,
+    ToldLength,
     ToldPart,
     UnsentPart,
     ValuePart,
@@ -57,7 +59,7 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     virtual: tuple[VirtualPart, ...] = ()
     """The parts that go into checksums and are not sent."""
     told: tuple[ToldPart, ...] = ()
-    """The identity parts that are not sent."""
+    """The parts that receivers are told, and that are not sent."""
     transparency: Transparency | None = None
     limit: int | None = None
     """Wire bytes that no frame exceeds, where the schema bounds them."""
@@ -67,12 +69,15 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     @cached_property
     def declared(self) -> tuple[Part, ...]:
         """All parts in the order of the schema, those that are not sent among them."""
-        unsent: tuple[UnsentPart, ...] = (*self.virtual, *self.told)
+        places: list[tuple[int, UnsentPart]] = [
+            *((part.place, part) for part in self.virtual),
+            *((part.telling.place, part) for part in self.told),
+        ]
         found: list[Part] = []
         for index, part in enumerate(self.parts):
-            found += [item for item in unsent if item.place == index]
+            found += [item for place, item in places if place == index]
             found.append(part)
-        return (*found, *(item for item in unsent if item.place >= len(self.parts)))
+        return (*found, *(item for place, item in places if place >= len(self.parts)))
 
     def virtual_part(self, name: str) -> VirtualPart | None:
         """The part of that name that is not sent; None if there is none."""
@@ -126,7 +131,12 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     @cached_property
     def identity(self) -> tuple[IdentityPart, ...]:
         """The identity parts: those that receivers are told, and the others in wire order."""
-        return (*self.told, *self.sent_identity)
+        return (*self.told_identity, *self.sent_identity)
+
+    @cached_property
+    def told_identity(self) -> tuple[ToldIdentity, ...]:
+        """The identity parts that receivers are told."""
+        return tuple(part for part in self.told if isinstance(part, ToldIdentity))
 
     @cached_property
     def sent_identity(self) -> tuple[IdentityPart, ...]:
@@ -169,13 +179,19 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
 
     @cached_property
     def lengths(self) -> tuple[LengthPart, ...]:
-        """The length parts in wire order."""
-        return tuple(part for part in self.numbers if isinstance(part, LengthPart))
+        """The length that receivers are told, or those that are sent, in wire order."""
+        numbers = (*self.told, *self.numbers)
+        return tuple(part for part in numbers if isinstance(part, LengthPart))
 
     @property
     def length(self) -> LengthPart | None:
         """The length that decides where the frame ends, if there is one: the first."""
         return self.lengths[0] if self.lengths else None
+
+    @property
+    def told_length(self) -> ToldLength | None:
+        """The length that receivers are told, if there is one."""
+        return next((part for part in self.told if isinstance(part, ToldLength)), None)
 
     @cached_property
     def checksums(self) -> tuple[ChecksumPart, ...]:
@@ -186,7 +202,7 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
     def shown_parts(self) -> tuple[IdentityPart | CounterPart | ValuePart, ...]:
         """The parts that events show."""
         kinds = IdentityPart | CounterPart | ValuePart
-        return (*self.told, *(part for part in self.numbers if isinstance(part, kinds)))
+        return (*self.told_identity, *(part for part in self.numbers if isinstance(part, kinds)))
 
     @cached_property
     def caller_parts(self) -> tuple[CounterPart | ValuePart, ...]:

@@ -6,9 +6,10 @@ The *head* is the parts in front of the payload, the *tail* those behind it, wit
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from enum import Enum, auto
 from functools import cached_property
+from typing import Any
 
 import msgspec
 
@@ -153,10 +154,14 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     def size_known_at(self) -> int | None:
         """Bytes of content that tell the payload's size; None if they are not all in the head."""
         if self.length is not None:
-            return None if self.length.over_wire else self.part(self.length.part.name).end
+            return None if self.length.over_wire else self._length_end(self.length)
         if not self.sent_identity:
             return 0 if self.groups and all(g.fixed is not None for g in self.groups) else None
         return self.part(self.sent_identity[-1].name).end if self.identity_is_early else None
+
+    def _length_end(self, length: LengthPlan) -> int:
+        """Bytes of content up to the end of the length; none of one that is told."""
+        return 0 if self.frame.told_length else self.part(length.part.name).end
 
     @property
     def is_trimmed(self) -> bool:
@@ -194,6 +199,26 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         if self.region.insertion is not None:
             return content + len(self.end_bytes) + content // len(self.region.insertion.sequence)
         return self.region.longest * content + len(self.end_bytes)
+
+    def told_size(self, wire: int) -> dict[str, int]:
+        """The length that a receiver is told of a frame of so many bytes, if it is told one.
+
+        In such a frame, nothing is stuffed.
+        """
+        part = self.frame.told_length
+        if part is None or self.length is None:
+            return {}
+        payload = wire - self.head_size - self.tail_size - len(self.end_bytes)
+        return {part.name: self.length.counted(max(0, payload))}
+
+    def told_before(self, message: Message, given: Mapping[str, Any], wire: int) -> dict[str, Any]:
+        """What a receiver has to be told before a frame of the message, of so many bytes.
+
+        `given` has values of its parts.
+        """
+        identity = dict(zip(self.frame.identity, message.identity, strict=True))
+        told = {it.name: given.get(it.name, identity[it]) for it in self.frame.told_identity}
+        return {**told, **self.told_size(wire)}
 
     # --- parts ------------------------------------------------------------------------------------
 
@@ -242,7 +267,7 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     @property
     def is_told_alone(self) -> bool:
         """True if there is an identity, and nothing of it is sent."""
-        return bool(self.frame.told) and not self.sent_identity
+        return bool(self.frame.told_identity) and not self.sent_identity
 
     @property
     def identity_bits(self) -> int:
@@ -285,8 +310,8 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
             return None
         if all(map(self.takes_any_size, self.groups)):
             return None
-        told = [self.length.part, *self.sent_identity[-1:]]
-        return max(self.part(part.name).end for part in told)
+        ends = (self.part(part.name).end for part in self.sent_identity[-1:])
+        return max((self._length_end(self.length), *ends))
 
     @property
     def shown(self) -> tuple[PlacedPart, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
 
@@ -118,12 +117,6 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     def chooses(self, index: int) -> bool:
         """True if the identity part of this index has several values."""
         return self.identities is not None and self.identities.values(index) > 1
-
-
-def told_before(frame: Frame, message: Message, given: Mapping[str, Any]) -> dict[str, Any]:
-    """What a receiver has to be told before a frame of the message, with these values of parts."""
-    identity = dict(zip(frame.identity, message.identity, strict=True))
-    return {part.name: given.get(part.name, identity[part]) for part in frame.told}
 
 
 def given_parts(frame: Frame, message: Message) -> tuple[NumberPart, ...]:

@@ -120,8 +120,8 @@ class Teller(msgspec.Struct, frozen=True):
         return f"{self.message}.{self.name}" if self.message else self.name
 
 
-class ToldPart(IdentityPart, frozen=True, kw_only=True):
-    """An identity that is not sent: a receiver is told it, by its program or by other frames."""
+class Telling(msgspec.Struct, frozen=True, kw_only=True):
+    """How a receiver learns a number that is not sent: from its program, or from other frames."""
 
     place: int
     """Parts that stand in front of it."""
@@ -131,6 +131,12 @@ class ToldPart(IdentityPart, frozen=True, kw_only=True):
     """True if what was told is that of one frame, and then the default is again."""
     set_by: tuple[Teller, ...] = ()
     """What tells it in frames that a receiver takes."""
+
+
+class ToldIdentity(IdentityPart, frozen=True, kw_only=True):
+    """An identity that is not sent: a receiver is told it."""
+
+    telling: Telling
 
     @property
     def size(self) -> int:
@@ -149,6 +155,21 @@ class LengthPart(NumberPart, frozen=True, kw_only=True):
     """True if it counts them as they are on the wire, stuffing included."""
     agrees_with: str | None = None
     """The first length of the frame, which decides where it ends, if this is another one."""
+
+
+class ToldLength(LengthPart, frozen=True, kw_only=True):
+    """A length that is not sent: a receiver is told it. It is the only one of its frame."""
+
+    telling: Telling
+
+    @property
+    def size(self) -> int:
+        """Bytes before stuffing: none."""
+        return 0
+
+
+ToldPart = ToldIdentity | ToldLength
+"""A number that is not sent, and that a receiver is told."""
 
 
 class CounterPart(NumberPart, frozen=True, kw_only=True):

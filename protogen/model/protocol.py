@@ -192,9 +192,14 @@ class Protocol(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def told(self) -> tuple[str, ...]:
-        """Names of the identity parts that are not sent, and that receivers are told."""
+        """Names of the parts that are not sent, and that receivers are told."""
         parts = (part for sender in self.senders for part in sender.frame.told)
         return tuple(dict.fromkeys(part.name for part in parts))
+
+    def is_told_length(self, name: str) -> bool:
+        """True if the part called so is a length that receivers are told."""
+        lengths = (sender.frame.told_length for sender in self.senders)
+        return any(part is not None and part.name == name for part in lengths)
 
     @property
     def is_told(self) -> bool:

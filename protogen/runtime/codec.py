@@ -130,14 +130,14 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
     ) -> FrameEvent[MessageT_co, PartsT_co]:
         """The event of exactly one valid frame. Raises DecodeError.
 
-        Without `sender`, any endpoint may have sent it. `told` has identities that are not sent, by
-        the names of their parts. Raises TypeError for what is not like bytes, ValueError for what
-        can't be told.
+        Without `sender`, any endpoint may have sent it. `told` has the parts that are not sent, by
+        their names; without a length it is that of these bytes. Raises TypeError for what is not
+        like bytes, ValueError for what can't be told.
         """
         senders = self.forms(sender)
         given = Told(senders)
         given.tell(told or {})
-        return read_frame(senders, octets(frame), given.begin_frame())
+        return read_frame(senders, octets(frame), given.of_one_frame(told or {}))
 
     def decode(
         self,
@@ -148,9 +148,9 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
     ) -> MessageT_co:
         """The message of exactly one frame, as the reference reads it. Raises DecodeError.
 
-        Without `sender`, any endpoint may have sent it. `told` has identities that are not sent, by
-        the names of their parts. Raises TypeError for what is not like bytes, ValueError for what
-        can't be told.
+        Without `sender`, any endpoint may have sent it. `told` has the parts that are not sent, by
+        their names; without a length it is that of these bytes. Raises TypeError for what is not
+        like bytes, ValueError for what can't be told.
         """
         check_engine(engine)
         event = self.read(frame, sender, told)

@@ -15,7 +15,7 @@ from protogen.runtime.framing.frame import AfterEnd, Anywhere
 from protogen.runtime.framing.machine import Candidate, Cut, Failure
 from protogen.runtime.framing.prefix import Prefix, prefix_of
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
-from protogen.runtime.framing.told import GivenIdentity
+from protogen.runtime.framing.told import GivenNumber
 from protogen.runtime.search import Search
 
 Engine = Literal["fast", "construct"]
@@ -229,21 +229,22 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
 
     @property
     def told(self) -> Mapping[str, int]:
-        """What holds of identities that are not sent, by the names of their parts."""
+        """What holds of parts that are not sent, by their names."""
         return self._told.current
 
-    def tell(self, /, **values: GivenIdentity) -> None:
-        """Tell identities that are not sent, such as what was asked for, by their parts' names.
+    def tell(self, /, **values: GivenNumber) -> None:
+        """Tell parts that are not sent, such as what was asked for, by their names.
 
         They hold for the frame that comes next and those behind it, or for one where the schema
         says so. Several values are those of frames that follow each other, of which the last stays.
-        Raises ValueError where there is no such part, or it can't have the value.
+        Raises ValueError where there is no such part, it can't have the value, or no frame has the
+        length.
         """
         self._told.tell(values)
         self._restart()
 
     def hear(self, event: Event[Any, Any]) -> None:
-        """Take what another decoder found on the same bus, which may tell an identity here."""
+        """Take what another decoder found on the same bus, which may tell something here."""
         if isinstance(event, InvalidEvent):
             return
         numbers = event.codec.layout.numbers_of(event.parts)

@@ -67,6 +67,10 @@ def _at_most_one_of(words: str, keys: Iterable[str]) -> JsonObject:
     return {"$comment": words, "oneOf": [*alone, _none_of(keys)]}
 
 
+def _without(role: str) -> list[str]:
+    return [key for key in _PART_ROLES if key != role]
+
+
 def _where(condition: JsonObject, words: str, rule: JsonObject) -> JsonObject:
     return {"$comment": words, "if": condition, "then": rule}
 
@@ -220,7 +224,8 @@ _FIELD_RULES = (
 )
 
 _PART_RULES = (
-    _at_most_one_of("A part does one of these.", _PART_ROLES),
+    _at_most_one_of("A part does one of these.", _without("told")),
+    _at_most_one_of("A part does one of these, and a length may be told.", _without("counts")),
     _where(_any_of(_PART_ROLES[1:-1]), "A part that is a number has a type.", _with("type")),
     _where(
         _with("idle"),
@@ -263,9 +268,15 @@ _PART_RULES = (
     ),
     _where(
         _any_of(("virtual", "told")),
-        "What is not sent has no bounds, and no delimiter can be mistaken for it.",
-        _none_of(("range", "unprotected")),
+        "No delimiter can be mistaken for what is not sent.",
+        _none_of(("unprotected",)),
     ),
+    _where(
+        {**_any_of(("virtual", "told")), **_none_of(("counts",))},
+        "What is not sent has no bounds, but for lengths.",
+        _none_of(("range",)),
+    ),
+    _where(_with("told", "counts"), "What is told is not stuffed.", _none_of(("over",))),
     _where(_with("told"), "What is told has no bytes, and so no order.", _none_of(("byte_order",))),
     *(_bounded(f"uint{bits}", 0, 2**bits - 1) for bits in (8, 16, 32)),
     _where(_with("over"), "This is for a checksum or a length.", _any_of(("algorithm", "counts"))),

@@ -30,8 +30,10 @@ _GREATEST = re.compile(r"#define (\w+)_PAYLOAD_MAX (\d+)[uU]")
 _ARRAY = re.compile(r"\[(\d+)\];")
 _PUSH = re.compile(r"(?:void|enum \w+) (\w+)_decoder_push\(")
 _LIMIT = re.compile(r"struct (\w+)_decoder \{[^}]* limit;")
-_TELLS = re.compile(r"void ((\w+)_decoder_tell_\w+)\(\s*struct \w+ \*decoder,\s*(uint\d+_t) \w+\);")
-"""What tells a decoder an identity that is not sent."""
+_TELLS = re.compile(
+    r"(?:void|bool) ((\w+)_decoder_tell_\w+)\(\s*struct \w+ \*decoder,\s*(uint\d+_t) \w+\);"
+)
+"""What tells a decoder a part that is not sent."""
 _POLLS = re.compile(r"void (\w+)_decoder_init\(struct \w+ \*decoder\);")
 """A decoder whose `push` returns which message is complete, and takes no handler."""
 
@@ -64,7 +66,7 @@ _ENDLESS = """static void prove_{prefix}_push(void) {{
 }}
 """
 _TELL = """        }} else if (any) {{
-            {function}(&decoder, ({type})Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU));
+            (void){function}(&decoder, ({type})Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU));
 """
 _ENDS = """    if (event->payload_size > 0) {
         /* EVA has to show that these two bytes are there. `decode` is shown to read no others. */

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from protogen.model.framing import Anywhere, StartLiteral, StartSet
-from protogen.model.messages import Message, told_before
+from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.api import EncodeError
 from protogen.runtime.attributes import arguments, attribute
@@ -117,7 +117,7 @@ def check_decoded(
     shown: dict[str, int | str],
 ) -> None:
     """frame -> message, as one event and by `decode`."""
-    told = told_before(sender.frame, message, shown)
+    told = sender.plan.told_before(message, shown, len(frame))
     (event,) = events_of(module, sender, [frame], told=told)
     assert event.kind == "message", event
     assert (event.offset, event.raw, event.message) == (0, frame, made)

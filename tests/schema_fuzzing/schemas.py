@@ -16,7 +16,7 @@ from schema_fuzzing.numbers import ORDERS
 from schema_fuzzing.parts import Maker, PartPlan, every_payload_byte
 from schema_fuzzing.setting import Declared
 from schema_fuzzing.shapes import shapes_of
-from schema_fuzzing.told import add_told
+from schema_fuzzing.told import add_told, add_told_length
 from schema_fuzzing.types import declared_types
 from schema_fuzzing.virtual import add_virtual
 
@@ -82,6 +82,7 @@ class _Drawing:
         data.update(self._extras(finished, found))
         add_virtual(self._draw, data, self._byte_bits, self._orders)
         add_told(self._draw, data)
+        add_told_length(self._draw, data)
         return Schema(data, tuple(shapes_of(data, finished, self._byte_bits)))
 
     def _of(self, keyed: Mapping[str, Any], sender: str) -> Any:

@@ -36,6 +36,7 @@ COMMON = (
     "several identities", "overload by size", "overload by undecidable", "unspecified payload",
     "empty message",
     "separated fields", "separated fields, one in front", "virtual part", "told part",
+    "told length",
     "type: ascii", "type: bytes", "type: bool", "type: byte", "type: char", "type: float32",
     "type: float64", "type: decimal", "type: hexadecimal", "type: struct", "type: switch",
     "declared struct", "declared number",
@@ -73,8 +74,10 @@ def shapes_of(
     yield "one frame for all" if "" in frames else f"frames of {len(frames)} senders"
     written = data["frame"]
     for parts in [written] if "payload" in written else written.values():
-        if any("told" in part for part in parts.values()):
+        if any("told" in part and "counts" not in part for part in parts.values()):
             yield "told part"
+        if any("told" in part and "counts" in part for part in parts.values()):
+            yield "told length"
     order = data.get("byte_order")
     yield f"byte order: {'each sender' if isinstance(order, dict) else order}"
     for frame in frames.values():

@@ -1,4 +1,4 @@
-"""Identities that are not sent, put into a schema that was drawn."""
+"""Parts that are told, and not sent, put into a schema that was drawn."""
 
 from __future__ import annotations
 
@@ -32,23 +32,70 @@ def add_told(draw: st.DrawFn, data: Data) -> None:
     taken |= {name for item in written for part in item.values() for name in part.get("bits", ())}
     name = draw(fresh(PARTS, taken))
     _identify(draw, data, key, parts, name)
+    part = _telling(draw, draw(st.sampled_from(["uint8", "uint16", "uint32"])), 255)
     items = list(parts.items())
     last = len(items) - ("idle" in items[-1][1])  # Nothing stands behind a silence.
-    items.insert(draw(st.integers(0, last)), (name, _part(draw)))
+    items.insert(draw(st.integers(0, last)), (name, part))
     if key:
         frame[key] = dict(items)
     else:
         data["frame"] = dict(items)
 
 
-def _part(draw: st.DrawFn) -> Data:
-    part: Data = {
-        "type": draw(st.sampled_from(["uint8", "uint16", "uint32"])),
-        "told": True,
-        **draw(forms.about()),
-    }
+def add_told_length(draw: st.DrawFn, data: Data) -> None:
+    """Put a told length into some frames that have none, and that nothing is stuffed in."""
+    frame = data["frame"]
+    is_shared = "payload" in frame
+    written = [frame] if is_shared else list(frame.values())
+    taken = {name for parts in written for name in parts}
+    taken |= {name for parts in written for part in parts.values() for name in part.get("bits", ())}
+    for sender, parts in ({"": frame} if is_shared else dict(frame)).items():
+        stuffed = data.get("transparency", {})
+        if (stuffed and is_shared) or sender in stuffed or not _takes_a_length(parts):
+            continue
+        if draw(forms.one_in(2)):
+            continue
+        part = {**_telling(draw, "uint16", 3000), **draw(_counted(parts))}
+        items = list(parts.items())
+        items.insert(draw(st.integers(0, len(items))), (draw(fresh(PARTS, taken)), part))
+        if is_shared:
+            data["frame"] = dict(items)
+        else:
+            frame[sender] = dict(items)
+
+
+def _takes_a_length(parts: Data) -> bool:
+    """True if a length changes nothing about how frames start, and none is without bytes."""
+    every = [*parts.values(), *(it for part in parts.values() for it in _bits_of(part))]
+    if any("counts" in part or "idle" in part for part in every):
+        return False
+    first, *_, last = parts.values()
+    if "literal" in first and "literal" in last and first["literal"] == last["literal"]:
+        return False
+    is_marked = "literal" in first or not any(key in first for key in ("range", "bits"))
+    return is_marked and any(_is_always_there(part) for part in parts.values())
+
+
+def _is_always_there(part: Data) -> bool:
+    return "literal" in part or ("type" in part and "when" not in part and "told" not in part)
+
+
+def _bits_of(part: Data) -> list[Data]:
+    return [item for item in part.get("bits", {}).values() if isinstance(item, dict)]
+
+
+@st.composite
+def _counted(draw: st.DrawFn, parts: Data) -> Data:
+    """What a length counts: some parts that are sent, the payload among them."""
+    sent = [name for name, part in parts.items() if not {"told", "virtual"} & part.keys()]
+    chosen = [name for name in sent if name == "payload" or draw(forms.one_in(3))]
+    return {"counts": draw(forms.run(chosen, sent))}
+
+
+def _telling(draw: st.DrawFn, type_: str, greatest: int) -> Data:
+    part: Data = {"type": type_, "told": True, **draw(forms.about())}
     if draw(st.booleans()):
-        part["default"] = draw(st.integers(0, 255))
+        part["default"] = draw(st.integers(0, greatest))
     if draw(forms.one_in(3)):
         part["once"] = True
     return part

@@ -88,7 +88,7 @@ def _part(part: ValuePart | CounterPart) -> st.SearchStrategy[int | str]:
 def all_parts(frame: Frame, message: Message, given: dict[str, int | str]) -> dict[str, int | str]:
     """Parts that an event shows: identity, counters and values."""
     identity = dict(zip((part.name for part in frame.identity), message.identity, strict=True))
-    shown: dict[str, int | str] = {part.name: identity[part.name] for part in frame.told}
+    shown: dict[str, int | str] = {part.name: identity[part.name] for part in frame.told_identity}
     for part in frame.numbers:
         if isinstance(part, IdentityPart):
             shown[part.name] = given.get(part.name, part.shown(identity[part.name]))

@@ -115,7 +115,8 @@ def _hint_at_told(codec: Codec) -> None:
     """Say what may be missing where frames do not say what they are, and nothing was told."""
     if codec.protocol.is_told:
         name = codec.protocol.told[0]
-        text = f"some frames do not say what they are: give --told {name}=NUMBER"
+        what = "how long" if codec.protocol.is_told_length(name) else "what"
+        text = f"some frames do not say {what} they are: give --told {name}=NUMBER"
         typer.echo(f"hint: {text}, or a log of both ways (--tagged)", err=True)
 
 

@@ -25,6 +25,8 @@ from protogen.model.parts import (
     NumberPart,
     Part,
     PayloadPart,
+    ToldIdentity,
+    ToldLength,
     ToldPart,
     TypedPart,
     VirtualPart,
@@ -58,7 +60,8 @@ def annotate(
     The `wire` of all rows, joined, is `data`. Bytes that are no frame are taken apart as far as
     they look like one. With `covers`, `data` holds only those parts, without transparency, as a
     document prints them. The payload is that of `message`, if given, whatever the identity says.
-    `told` has the values of identity parts that are not sent; the others have their defaults.
+    `told` has the values of parts that are not sent; other identities have their defaults, and the
+    length is that of `data`.
     Raises KeyError if there is no such sender.
     """
     known = protocol.sender(sender)
@@ -100,6 +103,7 @@ class _Frame:
         self._wire = wire
         self._given = message
         self._cursor = Cursor(wire.units, 0)
+        self._size = self._cursor.left
         transparency = sender.frame.transparency
         self._coded = "" if transparency is None else transparency.first
         self._rows: list[Row] = []
@@ -153,13 +157,23 @@ class _Frame:
         return part.is_optional and (payload is None or not payload.content)
 
     def _told(self, part: ToldPart) -> None:
-        """A part of the identity that is not sent: as told, or as the given message has it."""
-        index = self._sender.frame.identity.index(part)
-        default = part.default if self._given is None else self._given.identity[index]
-        value = self._told_values.get(part.name, default)
-        self._numbers[part.name] = value
+        """A part that is not sent: as told, or as the given message or its frame has it."""
+        value = self._told_values.get(part.name, self._assumed(part))
         row = self._cursor.take(0, part.name, part.type.label, subject=part, value_type=part.type)
-        self._rows.append(row.reads(value, "told, not sent"))
+        if isinstance(part, ToldIdentity):
+            self._numbers[part.name] = value
+            self._rows.append(row.reads(value, "told, not sent"))
+            return
+        row = self._number(part, value, row)
+        self._rows.append(replace(row, meaning=f"{row.meaning}; told, not sent"))
+
+    def _assumed(self, part: ToldPart) -> int:
+        """What a part is where nothing was told."""
+        if isinstance(part, ToldLength):
+            return self._sender.plan.told_size(self._size)[part.name]
+        if self._given is None:
+            return part.telling.default
+        return self._given.identity[self._sender.frame.identity.index(part)]
 
     def _virtual(self, part: VirtualPart) -> None:
         """A part without bytes, which the checksums that cover it may need."""

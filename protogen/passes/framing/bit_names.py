@@ -48,5 +48,7 @@ def _names(written: Iterable[str]) -> list[str]:
 
 def place_of_number(loc: Loc, frame: Frame, name: str) -> Loc:
     """The place of a number of a frame, which is a part or some bits of one."""
+    if any(part.name == name for part in frame.told):
+        return (*loc, name)
     holder = frame.holder(name).name
     return (*loc, holder) if holder == name else (*loc, holder, "bits", name)

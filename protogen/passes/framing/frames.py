@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from protogen.copying import field_names
 from protogen.model.frame import Frame
 from protogen.model.origin import About
@@ -14,6 +16,9 @@ from protogen.model.parts import (
     Part,
     PartType,
     PayloadPart,
+    Telling,
+    ToldIdentity,
+    ToldLength,
     ToldPart,
     UnsentPart,
     ValuePart,
@@ -38,7 +43,7 @@ from protogen.passes.framing.part_bits import Others, bits_part
 from protogen.passes.framing.part_digits import digits_type, is_written, part_type_hint
 from protogen.passes.framing.part_values import number_of, text_bounds, text_type
 from protogen.passes.framing.silences import check_silence, silence_of
-from protogen.passes.framing.told_parts import tellers
+from protogen.passes.framing.told_parts import lone_length, tellers
 from protogen.passes.framing.transparencies import transparency_of
 from protogen.passes.framing.trimming import trimmed
 from protogen.passes.framing.virtual_parts import check_virtual_parts
@@ -64,6 +69,8 @@ _ROLES: dict[str, frozenset[str]] = {
     "type": _NUMBER | {"size", "default"},
     PAYLOAD: frozenset({"unprotected", "trailing_zeros", "longer"}),
 }
+_TOLD_LENGTH = frozenset({"counts", "range"})
+"""Further keys of a part that is told, where it is a length."""
 _TOLD_BITS = (8, 16, 32, 64)
 """So that each value that C can hold is one of the part."""
 _IDENTITY_BITS = 64
@@ -138,6 +145,8 @@ class FrameBuilder:
             limit=self._written.limit,
             silence=silence,
         )
+        if not lone_length(self._context, self._written, frame):
+            return None
         agreed = self._lengths.agreed(frame)
         if agreed is None:
             return None
@@ -176,7 +185,7 @@ class FrameBuilder:
             text = f"the identity has {bits} bits together, and {_IDENTITY_BITS} are the most"
             hint = "make one of its parts a value: a part with a `type` and no `id`"
             last = frame.identity[-1]
-            if isinstance(last, ToldPart):
+            if isinstance(last, ToldIdentity):
                 place: Loc = (*self._loc, last.name, "told")
             else:
                 place = (*place_of_number(self._loc, frame, last.name), "id")
@@ -237,21 +246,29 @@ class FrameBuilder:
             )
         given = {name: getattr(part, name) for name in field_names(type(part))}
         if role == "told":
-            return ToldPart(
-                **given,
-                place=self._parts_before(part.name),
-                default=self._default(item, part) or 0,
-                once=item.once is not None,
-                set_by=tellers(item.set_by),
-            )
+            return self._told(item, part, given)
         if role == "id":
             return IdentityPart(**given)
         if role == "counts":
             over_wire = item.over == "wire"
-            counts = self._lengths.counted((*self._loc, part.name), item.counts or ())
-            return LengthPart(**given, counts=counts, over_wire=over_wire)
+            return LengthPart(**given, counts=self._counted(item, part), over_wire=over_wire)
         kind = CounterPart if role == "counter" else ValuePart
         return kind(**given, default=self._default(item, part))
+
+    def _told(self, item: PartSyntax, part: NumberPart, given: dict[str, Any]) -> Part:
+        """A number that receivers are told: a length, or else an identity."""
+        telling = Telling(
+            place=self._parts_before(part.name),
+            default=self._default(item, part) or 0,
+            once=item.once is not None,
+            set_by=tellers(item.set_by),
+        )
+        if item.counts is None:
+            return ToldIdentity(**given, telling=telling)
+        return ToldLength(**given, counts=self._counted(item, part), telling=telling)
+
+    def _counted(self, item: PartSyntax, part: NumberPart) -> tuple[str, ...]:
+        return self._lengths.counted((*self._loc, part.name), item.counts or ())
 
     def _parts_before(self, name: str) -> int:
         """Parts that are sent in front of the one called so."""
@@ -279,7 +296,10 @@ class FrameBuilder:
                 "give it a literal, id, counts, counter, algorithm, or at least a type",
             )
             return None
-        strange = sorted(written - _ROLES[role] - _COMMON_KEYS)
+        known = _ROLES[role] | _COMMON_KEYS
+        if role == "told" and "counts" in written:
+            known |= _TOLD_LENGTH
+        strange = sorted(written - known)
         for key in strange:
             text = f"`{key}` does not go together with `{role}`"
             self._context.error_at_key("PG131", (*self._loc, name, key), text)

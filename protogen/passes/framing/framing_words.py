@@ -46,7 +46,8 @@ def finds_end(frame: Frame, start: Start, end: End | None, messages: list[Messag
         told = f"{told}{_agreeing(frame)}"
         return f"after {frame.silence.text} of silence, and nowhere else{told}"
     if frame.length is not None:
-        where = f"`{frame.length.name}` gives the size{_agreeing(frame)}"
+        told = ", which a receiver is told," if frame.told_length else ""
+        where = f"`{frame.length.name}`{told} gives the size{_agreeing(frame)}"
         return where if end is None else f"{where}; {_hex(end.bytes)} must follow"
     if end is None:
         is_fixed = all(message.sizes.fixed is not None for message in messages)

@@ -6,7 +6,15 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from protogen.copying import replace
 from protogen.model.frame import Frame
-from protogen.model.parts import BitsPart, LengthPart, MirrorBits, Part, PayloadPart, written_apart
+from protogen.model.parts import (
+    BitsPart,
+    LengthPart,
+    MirrorBits,
+    Part,
+    PayloadPart,
+    ToldLength,
+    written_apart,
+)
 from protogen.model.sizes import SizeSet
 from protogen.passes.context import Context, Loc
 from protogen.passes.framing.bit_names import place_of_number
@@ -40,7 +48,7 @@ class Lengths:
         for holder in filter(None, parts):
             behind = behind or isinstance(holder, PayloadPart)
             for part in written_apart([holder]):
-                if isinstance(part, LengthPart):
+                if isinstance(part, LengthPart) and not isinstance(part, ToldLength):
                     name = part.name
                     place = (name,) if name == holder.name else (holder.name, "bits", name)
                     found.append((behind, place))

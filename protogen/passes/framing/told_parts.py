@@ -1,4 +1,4 @@
-"""Identity parts that are not sent: how they are written, and what tells them to receivers."""
+"""Parts that receivers are told: how they are written, and what tells them."""
 
 from __future__ import annotations
 
@@ -6,10 +6,20 @@ from collections.abc import Iterable, Iterator
 
 from protogen.model.frame import Frame
 from protogen.model.messages import Message
-from protogen.model.parts import CounterPart, IdentityPart, PartType, Teller, ToldPart, ValuePart
+from protogen.model.parts import (
+    CounterPart,
+    IdentityPart,
+    PartType,
+    Teller,
+    ToldLength,
+    ToldPart,
+    ValuePart,
+)
 from protogen.model.types import Array, Field, Type
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
+from protogen.passes.framing.capacity import least_around, payload_range
+from protogen.passes.framing.written_frames import WrittenFrame
 from protogen.problems import hint_for
 
 _TELLING = IdentityPart | CounterPart | ValuePart
@@ -26,8 +36,40 @@ def _split(written: str) -> tuple[str, str]:
     return (message, field) if dot else ("", written)
 
 
+def lone_length(context: Context, written: WrittenFrame, frame: Frame) -> bool:
+    """True if a length that is told, if there is one, is all that gives a frame its size.
+
+    What is wrong with it is reported.
+    """
+    told = frame.told_length
+    if told is None:
+        return True
+    others = [part.name for part in frame.lengths if part is not told]
+    beside = "" if not others else f"`{others[0]}`"
+    if frame.transparency is not None:
+        beside = "the delimiter behind what is stuffed"
+    if frame.silence is not None:
+        beside = f"the silence `{frame.silence.name}`"
+    if beside:
+        text = f"`{told.name}` is told and gives the size of a frame, and so does {beside}"
+        context.error_at_key("PG308", (*written.loc, told.name), text, "keep one of them")
+        return False
+    return _has_bytes(context, written, frame, told)
+
+
+def _has_bytes(context: Context, written: WrittenFrame, frame: Frame, told: ToldLength) -> bool:
+    """True if there is no frame without a byte, which would be one at any place."""
+    carried = payload_range(frame)
+    if carried is None or carried.least > 0 or least_around(frame, empty=True) > 0:
+        return True
+    text = f"`{told.name}` may say that a frame has no bytes, which would be one anywhere"
+    hint = f"bound it: `range: [1, {told.greatest}]`"
+    context.error_at_key("PG307", (*written.loc, told.name), text, hint)
+    return False
+
+
 def check_told(context: Context, draft: Draft) -> None:
-    """Check what tells identities that are not sent: numbers that receivers of them take."""
+    """Check what tells parts that are not sent: numbers that receivers of them take."""
     known: dict[tuple[str, str], ToldPart] = {}
     for sender, frame in draft.frames.items():
         for part in frame.told:
@@ -42,19 +84,21 @@ def check_told(context: Context, draft: Draft) -> None:
             _check_beside(context, frame, context.frames[sender].loc)
         for part in frame.told:
             loc: Loc = (*context.frames[sender].loc, part.name, "set_by")
-            for index, teller in enumerate(part.set_by):
+            for index, teller in enumerate(part.telling.set_by):
                 _Telling(context, draft, loc, index, part).check(teller)
 
 
 def _rule(part: ToldPart) -> tuple[object, ...]:
     """What is the same in all forms of an endpoint's frames, as they have one value of it."""
-    return part.type.bits, part.default, part.once, part.set_by
+    telling = part.telling
+    bounds = (part.least, part.greatest, part.counts) if isinstance(part, ToldLength) else ()
+    return part.type.bits, bounds, telling.default, telling.once, telling.set_by
 
 
 def _check_beside(context: Context, frame: Frame, loc: Loc) -> None:
     """Report what does not go together with identities that are not sent."""
-    told = frame.told[0]
-    if frame.virtual:
+    if frame.virtual and frame.told_identity:
+        told = frame.told_identity[0]
         text = f"`{frame.virtual[0].name}` has a value for each identity, and `{told.name}` is one"
         hint = "a frame has virtual parts or told ones"
         context.error_at_key("PG306", (*loc, told.name), f"{text} that is not sent", hint)
@@ -68,7 +112,7 @@ class _Telling:
     ) -> None:
         self._context = context
         self._draft = draft
-        self._loc = (*loc, index) if len(part.set_by) > 1 else loc
+        self._loc = (*loc, index) if len(part.telling.set_by) > 1 else loc
         self._part = part
 
     def check(self, teller: Teller) -> None:
@@ -120,7 +164,7 @@ class _Telling:
         self._check_bits(f"`{teller.text}`", number)
 
     def _check_bits(self, shown: str, type_: PartType) -> None:
-        if type_.is_text or type_.greatest > self._part.greatest:
+        if type_.is_text or type_.greatest > self._part.type.greatest:
             text = f"{shown} has values that `{self._part.name}` can't hold"
             self._report(text, f"make `{self._part.name}` as wide")
 

@@ -203,8 +203,11 @@ def _false_start(frame: Frame, start: Start) -> str:
 def _other_size(frame: Frame, start: Start, messages: list[Message]) -> str:
     """Without a mark, a frame that is read too long or too short moves all that follow."""
     sizes = {message.sizes for message in messages}
+    told = frame.told_length is not None
     alike = frame.length is None and len(sizes) == 1 and sizes.pop().fixed is not None
-    if not isinstance(start, Anywhere) or start.checked or alike or frame.silence is not None:
+    if not isinstance(start, Anywhere) or start.checked or alike or told:
+        return ""
+    if frame.silence is not None:
         return ""
     return "a wrong byte that makes another size of a frame: those behind it are cut elsewhere"
 
@@ -302,6 +305,8 @@ def _stuffing(frame: Frame) -> str:
 
 def _misread_size(frame: Frame, end: End | None, messages: list[Message]) -> str:
     """The sentence about wrong sizes; empty where none goes unnoticed."""
+    if frame.told_length is not None:
+        return ""  # Its size is not read.
     if frame.silence is not None or (end is not None and end.protected):
         return ""  # It then stands in the wrong place.
     if frame.length is not None:
@@ -316,6 +321,8 @@ def _misread_absence(frame: Frame, messages: list[Message]) -> str:
     optional = any(part.when_payload for part in frame.checksums)
     always = any(not part.when_payload for part in frame.checksums)
     if length is None or not optional or always or frame.silence is not None:
+        return ""
+    if frame.told_length is not None:
         return ""
     if _is_seen(frame, length) or _lengths_behind(frame):
         return ""

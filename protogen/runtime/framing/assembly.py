@@ -82,9 +82,10 @@ def check_cut(
 ) -> None:
     """Raise EncodeError unless a decoder takes exactly these bytes for the frame.
 
-    `numbers` has the values of parts, those that the decoder is told among them.
+    `numbers` has the values of parts, identities that the decoder is told among them.
     """
-    verdict, _ = verdict_on(sender, wire, told=numbers)
+    told = {**numbers, **sender.layout.told_size(len(payload))}
+    verdict, _ = verdict_on(sender, wire, told=told)
     if verdict.size < len(wire):
         problem = f"a decoder would end the frame behind {verdict.size} of its {len(wire)} bytes"
         raise EncodeError("payload", problem)
@@ -174,6 +175,8 @@ class _Assembly:
             raise EncodeError("payload", problem)
         if self._layout.spec.seven_bit and not self._payload.isascii():
             raise EncodeError("payload", "a byte has its most significant bit set")
+        if self._layout.told_length is not None:
+            self._length(self._layout.told_length)
 
     def _on_wire(self, names: Iterable[str]) -> bytes:
         """These parts, those under transparency encoded."""

@@ -62,6 +62,12 @@ class Content:
         self._next = -1  # Where the part that is due ends.
         self._literal = b""  # What its bytes have to be.
         self._clear_bits = False  # Whether their most significant bit has to be clear.
+
+    def begin(self) -> None:
+        """Take what was told, before the first byte. Raises Rejected where no frame has it."""
+        told = self._layout.told_length
+        if told is not None:
+            self._read_length(told)
         if not self._layout.sent_identity:
             self._identify()
         self._enter()
@@ -144,7 +150,7 @@ class Content:
         elif isinstance(part, NumberPart) and not isinstance(part, ChecksumPart):
             self._read(part, data)
         numbers = (part, *members_of(part))
-        if self._layout.length in numbers:
+        if self._layout.length in numbers and self._layout.length is not self._layout.told_length:
             self._read_length(self._layout.length)
         if self._layout.early_identity and self._completes_identity(numbers):
             self._identify()

@@ -44,21 +44,6 @@ class IdentityPart(NamedTuple):
         return self.number.size
 
 
-class ToldPart(NamedTuple):
-    """An identity part that is not sent: a receiver is told it.
-
-    `default` is its value before. `once`: what was told holds for one frame. `set_by` are the
-    numbers of frames that tell it: those of a part, which have no message, or of its field.
-    """
-
-    name: str
-    number: Number
-    default: int = 0
-    once: bool = False
-    set_by: tuple[tuple[str, str], ...] = ()
-    """Name of a part and nothing, or of a message and a field."""
-
-
 class LengthPart(NamedTuple):
     """The number of bytes of the parts that it `counts`, before any stuffing or on the wire.
 
@@ -78,6 +63,22 @@ class LengthPart(NamedTuple):
     def size(self) -> int:
         """Bytes before any stuffing."""
         return self.number.size
+
+
+class ToldPart(NamedTuple):
+    """A part that is not sent: a receiver is told it. It is an identity, or a `length`.
+
+    `default` is its value before. `once`: what was told holds for one frame. `set_by` are the
+    numbers of frames that tell it: those of a part, which have no message, or of its field.
+    """
+
+    name: str
+    number: Number
+    default: int = 0
+    once: bool = False
+    set_by: tuple[tuple[str, str], ...] = ()
+    """Name of a part and nothing, or of a message and a field."""
+    length: LengthPart | None = None
 
 
 class ValuePart(NamedTuple):
@@ -393,7 +394,7 @@ class FrameSpec(NamedTuple):
     """Parts that are not sent. A frame whose identity gives one of them no value can't be verified:
     it fails as one with a wrong checksum does."""
     told: tuple[ToldPart, ...] = ()
-    """Identity parts that are not sent."""
+    """Parts that receivers are told, and that are not sent."""
     silence: float | None = None
     """Seconds of silence that end a frame, where nothing else does."""
 

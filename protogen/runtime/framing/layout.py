@@ -73,7 +73,11 @@ class Layout:
         }
         apart = written_apart(self.parts)
         self.sent_identity = tuple(part for part in apart if isinstance(part, IdentityPart))
-        self.identity: tuple[IdentityPart | ToldPart, ...] = (*spec.told, *self.sent_identity)
+        self.told_identity = tuple(part for part in spec.told if part.length is None)
+        self.identity: tuple[IdentityPart | ToldPart, ...] = (
+            *self.told_identity,
+            *self.sent_identity,
+        )
         self.values = tuple(part for part in apart if isinstance(part, ValuePart))
         held = early if spec.rescans else ()
         self.bounded = tuple(part for part in self.values if part in held or part.values)
@@ -114,7 +118,13 @@ class Layout:
     def lengths(self) -> tuple[LengthPart, ...]:
         """The first tells where the frame ends, and the others have to agree with it."""
         apart = written_apart(self.parts)
-        return tuple(part for part in apart if isinstance(part, LengthPart))
+        sent = (part for part in apart if isinstance(part, LengthPart))
+        return (*(part.length for part in self.spec.told if part.length), *sent)
+
+    @cached_property
+    def told_length(self) -> LengthPart | None:
+        """The length that a receiver is told, if there is one."""
+        return self.length if any(part.length for part in self.spec.told) else None
 
     @cached_property
     def holders(self) -> Mapping[str, str]:
@@ -155,7 +165,7 @@ class Layout:
     def _shown(self) -> tuple[ToldPart | IdentityPart | ValuePart, ...]:
         apart = written_apart(self.parts)
         sent = (part for part in apart if isinstance(part, IdentityPart | ValuePart))
-        return (*self.spec.told, *sent)
+        return (*self.told_identity, *sent)
 
     def _empty_frame(self) -> bytes:
         if isinstance(self.spec.start, AfterEnd):
@@ -221,6 +231,21 @@ class Layout:
     def counted(self, part: LengthPart, payload: int) -> int:
         """The value of a length part for a payload of that size."""
         return payload + self._counted_around[part.name, payload > 0]
+
+    def told_size(self, payload: int) -> dict[str, int]:
+        """What a receiver has to be told of the size of a frame with a payload of that size."""
+        told = self.told_length
+        return {} if told is None else {told.name: self.counted(told, payload)}
+
+    def told_of(self, frame: bytes) -> dict[str, int]:
+        """The same of the bytes of a whole frame."""
+        size = self.payload_size(len(frame) - len(self.end))
+        return {} if size is None else self.told_size(size)
+
+    def bounds(self, part: LengthPart) -> tuple[int, int]:
+        """The least and the greatest value of a length part that a receiver takes."""
+        greatest = self.counted(part, self.spec.greatest_payload)
+        return max(part.least, self.counted(part, 0)), min(part.greatest, greatest)
 
     def counted_payload(self, part: LengthPart, value: int) -> int | None:
         """The payload's size for a value of a length part; None if a receiver takes none such."""

@@ -47,7 +47,7 @@ class Candidate:
     ) -> None:
         """With `shares_start`, the end of the frame before is also this one's start.
 
-        `told` has the values of identity parts that are not sent.
+        `told` has the values of parts that are not sent.
         """
         self.sender = sender
         self._spec = sender.frame
@@ -75,8 +75,9 @@ class Candidate:
             self._take_over(self._layout.start)
 
     def _refusal(self) -> Rejected | None:
-        """What is wrong before the first byte: what was told is no message that has a size."""
+        """What is wrong before the first byte: no frame has what was told, or it has no size."""
         try:
+            self._content.begin()
             self._cross()
         except Rejected as why:
             return why
@@ -101,9 +102,10 @@ class Candidate:
         """Take the next byte. None: the candidate needs more."""
         self._wire.append(byte)
         try:
-            if self._refused is not None:
+            if self._refused is None:
+                self._take(byte)
+            elif len(self._wire) > self._layout.start_size:
                 raise self._refused
-            self._take(byte)
             if self._cut is None and len(self._wire) >= self._spec.given_up_at:
                 raise Rejected("length", f"no frame has more than {self._spec.greatest} bytes")
         except Rejected as why:

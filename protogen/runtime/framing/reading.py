@@ -36,6 +36,7 @@ def _read_as(
 ) -> FrameEvent[MessageT_co, PartsT_co]:
     if not may_start(sender.layout, data):
         raise DecodeError("noise", "no frame starts so")
+    told = {**sender.layout.told_of(data), **told}
     cut = _cut(sender, data, told)
     try:
         message = sender.read(cut.numbers, cut.payload)

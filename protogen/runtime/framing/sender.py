@@ -231,7 +231,8 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
 
     def told_among(self, numbers: Sequence[int]) -> dict[str, int]:
         """The values of the identity parts that are not sent, which come first in an event."""
-        return {part.name: value for part, value in zip(self.frame.told, numbers, strict=False)}
+        told = self.layout.told_identity
+        return {part.name: value for part, value in zip(told, numbers, strict=False)}
 
     def show(self, numbers: Sequence[int]) -> PartsT_co:
         """The parts that an event shows, of their numbers."""

@@ -292,8 +292,9 @@ class Part(Syntax):
     )
     told: OnlyTrue | None = Field(
         None,
-        description="The part tells which message this is, and is not sent: a receiver is told it, "
-        "as it is told what was asked where an answer does not say so.",
+        description="The part tells which message this is or, with `counts`, how long the frame "
+        "is, and is not sent: a receiver is told it, as it is told what was asked where an answer "
+        "does not say so.",
     )
     set_by: NumberNames | None = Field(
         None,

@@ -19,6 +19,7 @@ from protogen.model.parts import (
     NumberPart,
     Part,
     PayloadPart,
+    ToldLength,
     ToldPart,
     TypedPart,
     ValuePart,
@@ -53,10 +54,7 @@ def part(item: Part) -> str:
         case IdentityPart():
             return call("_rt.IdentityPart", name, number(item))
         case LengthPart():
-            counts = f"counts={tuple_of(map(text, item.counts))}"
-            wire = "True" if item.over_wire else None
-            given = {**_bounds(item), "over_wire": wire}
-            return call("_rt.LengthPart", name, number(item), counts, **given)
+            return _length_part(item, number(item))
         case CounterPart() | ValuePart():
             kind = "_rt.CounterPart" if isinstance(item, CounterPart) else "_rt.ValuePart"
             default = None if item.default is None else str(item.default)
@@ -71,6 +69,12 @@ def part(item: Part) -> str:
     raise TypeError(f"{type(item).__name__} is no part that a frame has")
 
 
+def _length_part(item: LengthPart, number_: str) -> str:
+    counts = f"counts={tuple_of(map(text, item.counts))}"
+    given = {**_bounds(item), "over_wire": "True" if item.over_wire else None}
+    return call("_rt.LengthPart", text(item.name), number_, counts, **given)
+
+
 def mirror(item: MirrorBits) -> str:
     """Bits that follow from another number."""
     flips = f"0x{item.flips:02X}" if item.inverted else None
@@ -78,17 +82,20 @@ def mirror(item: MirrorBits) -> str:
 
 
 def told_part(item: ToldPart) -> str:
-    """One identity part that is not sent."""
+    """One part that is not sent."""
+    telling = item.telling
     set_by = tuple_of(
         tuple_of((text(it.message or it.name), text(it.name if it.message else "")))
-        for it in item.set_by
+        for it in telling.set_by
     )
+    number_ = f"_rt.Number({item.type.bits})"
     given = {
-        "default": str(item.default) if item.default else None,
-        "once": "True" if item.once else None,
-        "set_by": set_by if item.set_by else None,
+        "default": str(telling.default) if telling.default else None,
+        "once": "True" if telling.once else None,
+        "set_by": set_by if telling.set_by else None,
+        "length": _length_part(item, number_) if isinstance(item, ToldLength) else None,
     }
-    return call("_rt.ToldPart", text(item.name), f"_rt.Number({item.type.bits})", **given)
+    return call("_rt.ToldPart", text(item.name), number_, **given)
 
 
 def virtual_part(plan: VirtualPlan) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from protogen.model.messages import Message
-from protogen.model.parts import ChoicePart, CounterPart, IdentityPart, ToldPart, ValuePart
+from protogen.model.parts import ChoicePart, CounterPart, IdentityPart, ToldIdentity, ValuePart
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.attributes import argument, attribute
 from protogen.targets import descriptions
@@ -182,7 +182,7 @@ def _part_attributes(sender: Sender) -> tuple[Attribute, ...]:
 
 def _role(part: IdentityPart | CounterPart | ValuePart) -> str:
     match part:
-        case ToldPart():
+        case ToldIdentity():
             return "Tells which message this is, and is not sent: a decoder is told it"
         case IdentityPart():
             return "Tells which message this is"

@@ -70,12 +70,14 @@ class _Search(PushDecoder, frozen=True, dict=True):
 
 
 class FormsTold(msgspec.Struct, frozen=True):
-    """An identity that is not sent, of all forms that have a part of its name."""
+    """A part that is not sent, of all forms that have one of its name."""
 
     part: ToldView
     """What all of them say about it."""
     fields: tuple[str, ...]
     """The candidates of these forms, as members of the decoder."""
+    prefixes: tuple[str, ...]
+    """Prefixes of their functions."""
 
 
 class FormsDecoder(NamedDecoder, frozen=True, dict=True):
@@ -114,18 +116,23 @@ class FormsDecoder(NamedDecoder, frozen=True, dict=True):
 
     @cached_property
     def told(self) -> tuple[FormsTold, ...]:
-        """The identities that are not sent."""
-        fields: dict[str, list[str]] = {}
-        views: dict[str, ToldView] = {}
+        """The parts that are not sent."""
+        found: dict[str, list[tuple[ToldView, Form]]] = {}
         for form in self.forms:
             for view in form.candidate.told_parts:
-                views.setdefault(view.member, view)
-                fields.setdefault(view.member, []).append(form.field)
-        return tuple(FormsTold(view, tuple(fields[name])) for name, view in views.items())
+                found.setdefault(view.member, []).append((view, form))
+        return tuple(
+            FormsTold(
+                part=items[0][0],
+                fields=tuple(form.field for _, form in items),
+                prefixes=tuple(form.candidate.prefix for _, form in items),
+            )
+            for items in found.values()
+        )
 
     def told_once(self, form: Form) -> tuple[FormsTold, ...]:
         """What was told of a frame of this form, and holds no more behind it."""
-        return tuple(it for it in self.told if it.part.part.once and form.field in it.fields)
+        return tuple(it for it in self.told if it.part.once and form.field in it.fields)
 
     # --- the search -------------------------------------------------------------------------------
 

@@ -94,8 +94,11 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
     for part in view.told_parts:
         found.append(Member(part.type, part.kept, f"What was told of {part.name}."))
         found.append(Member(part.type, part.own, "The same of the candidate."))
-        if part.part.once:
+        if part.once:
             found.append(Member("uint8_t", part.is_new, "1: it was told since that began."))
+    if view.told_length is not None:
+        about = "Why no frame has the length that was told, if none has."
+        found.append(Member("uint8_t", "refused", about))
     if view.all_events:
         offset = "Offset of the first byte that is in no event yet."
         found.insert(0, Member("uint32_t", "offset", offset))

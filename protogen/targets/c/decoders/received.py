@@ -265,15 +265,20 @@ class ReceivedFrame(NamedDecoder, frozen=True, dict=True):
 
     @cached_property
     def told_parts(self) -> tuple[ToldView, ...]:
-        """The identity parts that the decoder is told."""
+        """The parts that the decoder is told."""
         return told_of(self.plan, self.names)
+
+    @property
+    def told_length(self) -> ToldView | None:
+        """The length that the decoder is told, if there is one."""
+        return next((part for part in self.told_parts if part.is_length), None)
 
     @cached_property
     def parts(self) -> tuple[ToldView | PartView, ...]:
         """The parts that events show."""
         member = self.names.member
         sent = (PartView(item, member(item.name), self.numbers) for item in self.plan.shown)
-        return (*self.told_parts, *sent)
+        return (*(part for part in self.told_parts if not part.is_length), *sent)
 
     @cached_property
     def checksums(self) -> tuple[ChecksumView, ...]:

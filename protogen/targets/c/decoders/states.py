@@ -148,7 +148,7 @@ class PushStates(ReceivedFrame, frozen=True, dict=True):
         """True if it matters how many bytes a candidate has on the wire."""
         if self.all_events or self.keeps_wire or not self.simple or self.plan.shares_delimiter:
             return True
-        if self.plan.is_cut_off:
+        if self.plan.is_cut_off or self.told_length is not None:
             return True
         return self.plan.start not in (StartRule.LITERAL, StartRule.SET)
 

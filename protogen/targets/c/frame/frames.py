@@ -180,6 +180,8 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
     @cached_property
     def lengths(self) -> tuple[tuple[str, str, str], ...]:
         """The lengths as variables: type, name and value."""
+        if self.plan.frame.told_length is not None:
+            return ()
         first = [(self.length_type, "length", self.length)] if self.length else []
         return (*first, *map(self._further, self.plan.further_lengths))
 
@@ -371,6 +373,8 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
 
     def _lengths_on(self, side: Side) -> Iterator[tuple[str, str, str]]:
         """The lengths on one side of the payload, as variables."""
+        if not self.lengths:
+            return
         for part, variable in zip(self.plan.frame.lengths, self.lengths, strict=True):
             if self.plan.part(part.name).place.side is side:
                 yield variable

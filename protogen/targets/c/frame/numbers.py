@@ -16,6 +16,7 @@ from protogen.model.parts import (
     MirrorBits,
     NumberPart,
     PartType,
+    ToldLength,
     ToldPart,
 )
 from protogen.targets.c.frame.expressions import byte, less_absent
@@ -112,7 +113,7 @@ class PartView(msgspec.Struct, frozen=True):
 
 
 class ToldView(msgspec.Struct, frozen=True):
-    """An identity that is not sent, which events show as a decoder was told it."""
+    """A part that is not sent. Events show an identity as a decoder was told it."""
 
     part: ToldPart
     member: str
@@ -151,9 +152,20 @@ class ToldView(msgspec.Struct, frozen=True):
         return f"new_{self.member}"
 
     @property
+    def once(self) -> bool:
+        """True if what was told is that of one frame."""
+        return self.part.telling.once
+
+    @property
+    def is_length(self) -> bool:
+        """True if it is a length, of which some values are no frame's."""
+        return isinstance(self.part, ToldLength)
+
+    @property
     def flips(self) -> str:
         """What the value is kept with, by an exclusive or, so that zeros are the default."""
-        return f" ^ {hexadecimal(self.part.default)}" if self.part.default else ""
+        default = self.part.telling.default
+        return f" ^ {hexadecimal(default)}" if default else ""
 
     def keeps(self, value: str) -> str:
         """A value as it is kept."""
@@ -165,7 +177,7 @@ class ToldView(msgspec.Struct, frozen=True):
 
 
 def told_of(plan: FramePlan, names: Names) -> tuple[ToldView, ...]:
-    """The views of the identities that are not sent."""
+    """The views of the parts that are told, and not sent."""
     return tuple(ToldView(part, names.member(part.name)) for part in plan.frame.told)
 
 

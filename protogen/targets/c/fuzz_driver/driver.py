@@ -14,7 +14,7 @@ from protogen.fuzzing.c_driver import (
     Driver,
 )
 from protogen.model.messages import given_parts
-from protogen.model.parts import NumberPart, ToldPart
+from protogen.model.parts import NumberPart, ToldIdentity
 from protogen.model.protocol import Protocol
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.forms import FormsDecoder
@@ -120,7 +120,7 @@ def _frames(unit: Unit, indices: Mapping[str, int]) -> tuple[DrivenFrame, ...]:
 def _given(item: MessageFrame) -> list[NumberPart]:
     """The parts that the caller of a message's functions gives: those that are sent."""
     parts = given_parts(item.frame.plan.frame, item.message)
-    return [part for part in parts if not isinstance(part, ToldPart)]
+    return [part for part in parts if not isinstance(part, ToldIdentity)]
 
 
 def _frame_of(unit: Unit, frames: tuple[DrivenFrame, ...]) -> dict[tuple[str, str], DrivenFrame]:

@@ -22,6 +22,8 @@ from protogen.model.parts import (
     NumberPart,
     Part,
     PayloadPart,
+    ToldIdentity,
+    ToldLength,
     ToldPart,
     TypedPart,
     ValuePart,
@@ -155,7 +157,8 @@ def role(part: Part) -> str:
 
 _ROLE_WORDS: tuple[tuple[type[Part], str], ...] = (
     (LiteralPart, "Fixed."),
-    (ToldPart, "Identity, not sent."),
+    (ToldIdentity, "Identity, not sent."),
+    (ToldLength, "Length, not sent."),
     (IdentityPart, "Identity."),
     (LengthPart, "Length."),
     (CounterPart, "Counter."),
@@ -246,6 +249,13 @@ def _unmarked(decision: str) -> str:
 
 def _jobs(part: NumberPart) -> tuple[str, ...]:
     match part:
+        case ToldIdentity():
+            text = "Tells which message it is, and is not sent: a receiver is told it."
+            return (text, *_telling(part))
+        case ToldLength():
+            counted = part_names(part.counts)
+            text = f"Number of bytes of {counted}, which is not sent: a receiver is told it."
+            return (text, *_telling(part))
         case LengthPart():
             over = ", as they are on the wire" if part.over_wire else ""
             first = part.agrees_with
@@ -257,18 +267,22 @@ def _jobs(part: NumberPart) -> tuple[str, ...]:
             return _choice_roles(part)
         case ValuePart():
             return ("The sender gives it.", _default(part))
-        case ToldPart():
-            return _told_jobs(part)
         case _:
             return ("Tells which message it is.",)
 
 
-def _told_jobs(part: ToldPart) -> tuple[str, ...]:
-    by = f"By {part_names([item.text for item in part.set_by])}." if part.set_by else ""
-    lasts = "What it is told holds for one frame." if part.once else ""
-    before = f"{raw_text(part.default, part.type)} before."
-    text = "Tells which message it is, and is not sent: a receiver is told it."
-    return (text, by, lasts, before)
+def _telling(part: ToldPart) -> tuple[str, ...]:
+    """What tells a part that is not sent, for how long, and its value before."""
+    telling = part.telling
+    by = f"By {part_names([item.text for item in telling.set_by])}." if telling.set_by else ""
+    lasts = "What it is told holds for one frame." if telling.once else ""
+    return (by, lasts, _before(part))
+
+
+def _before(part: ToldPart) -> str:
+    if isinstance(part, ToldLength) and not part.holds(part.telling.default):
+        return "No bytes are a frame before."
+    return f"{raw_text(part.telling.default, part.type)} before."
 
 
 def _default(part: CounterPart | ValuePart) -> str:
