@@ -61,8 +61,8 @@ LAYOUTS = {
     **{name: (code, "") for name, code in (RESULTS | EVENTS).items()},
 }
 """Codes, and the data behind them: it makes none."""
-LOADING = ["data", "block_taken", "go_on_at"]
-"""What is sent while a display is loaded."""
+LOADING = ["data", "packet", "leave", "packet_refused", "block_taken", "go_on_at"]
+"""What is sent while a display is loaded, or files are written."""
 MARK = b"omok "
 
 
@@ -279,9 +279,9 @@ def test_blocks_of_files_and_their_answers_are_the_same(
         file = dice.randbytes(size)
         upload.load(file, tmp_path / "file.tft", [taken] * (1 + -(-size // 4096)))
         receiver = module.Decoder("data")
+        receiver.tell(announced=[len(block) for block in upload.blocks])
         read = b""
-        for block in upload.blocks:
-            (event,) = (*receiver.feed(block), *receiver.idle())
+        for event, block in zip(receiver.feed(b"".join(upload.blocks)), upload.blocks, strict=True):
             assert module.encode(event.message) == block
             read += event.message.data
             blocks += 1
@@ -299,6 +299,43 @@ def test_another_answer_than_the_one_byte_ends_its_loading(
     assert event.message.offset == 0x110000
     with pytest.raises(OSError, match="0800001100"):
         upload.load(b"tft", tmp_path / "file.tft", [b"\x05", newer])
+
+
+def modbus(data: bytes) -> int:
+    """CRC-16/MODBUS, bit by bit: 0xA001 reflected, from FFFF."""
+    found = 0xFFFF
+    for byte in data:
+        found ^= byte
+        for _ in range(8):
+            found = found >> 1 ^ (0xA001 if found & 1 else 0)
+    return found
+
+
+def test_packets_of_files_are_those_that_programs_lay_out() -> None:
+    """It writes no files. The header is that of programs which do; the checksum is worked out."""
+    module, dice = module_at(FOLDER / "nextion.yaml"), Random(2)
+    assert modbus(b"123456789") == 0x4B37
+    for number in (0, 1, 255, 256, 0xFFFE):
+        data = dice.randbytes(dice.randrange(1, 64))
+        head = bytes.fromhex("3A A1 BB 44 7F FF FE")
+        plain = head + pack("<BHH", 0, number, len(data)) + data
+        summed = head + pack("<BHH", 1, number, len(data) + 2) + data + pack("<H", modbus(data))
+        packet = module.Packet(data=data)
+        assert module.encode(packet, sender="file", number=number) == plain
+        assert module.encode(packet, sender="checked_file", number=number) == summed
+        assert module.decode(summed, "checked_file") == packet
+    leave = head + bytes.fromhex("00 FF FF 00 00")
+    assert module.encode(module.Leave()) == leave
+    assert [item.message.NAME for item in module.Decoder("file").feed(plain + leave)] == [
+        "packet",
+        "leave",
+    ]
+
+
+def test_bytes_of_a_file_are_as_many_as_were_asked_for() -> None:
+    decoder = module_at(FOLDER / "nextion.yaml").Decoder("content")
+    decoder.tell(announced=[4, 2])
+    assert [item.raw for item in decoder.feed(b"abcdef")] == [b"abcd", b"ef"]
 
 
 def test_no_frame_is_lost_that_it_finds(nextion: Nextion, drawn: list[Case]) -> None:
