@@ -408,3 +408,17 @@ def test_one_form_of_frame_is_told() -> None:
     given = ("--sender", "motor_answer", "--hex", module.encode(module.Speed(speed=-2)).hex())
     code, text = told("decode", str(MODES), *given, "--told", "mode=1")
     assert (code, text.split()) == (0, ["0", "speed", "speed=-2"])
+
+
+def test_what_tells_a_part_may_have_another_name(tmp_path: Path) -> None:
+    """It is the same number of the same frames; a teller that is left out is not."""
+    text = ANSWERS.read_text("utf-8")
+    path = tmp_path / "answers.yaml"
+    path.write_text(
+        text.replace("command", "order").replace("kinds", "sorts").replace("pick", "choose")
+    )
+    code, output = told("breaking", str(ANSWERS), str(path))
+    assert (code, "[frame-told]" in output) == (0, False), output
+    path.write_text(text.replace("[command, pick.kind]", "command"))
+    code, output = told("breaking", str(ANSWERS), str(path))
+    assert (code, "[frame-told]" in output) == (1, True)

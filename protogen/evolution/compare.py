@@ -14,6 +14,7 @@ from protogen.evolution.compare_frames import compare_frames, renamed_parts
 from protogen.evolution.compare_reserved import compare_reserved
 from protogen.evolution.rules import BY_NAME, Category
 from protogen.evolution.shapes import shape
+from protogen.evolution.tellers import renamed_tellers
 from protogen.model.frame_plan import EndRule, FramePlan
 from protogen.model.identities import Identities
 from protogen.model.messages import Message
@@ -57,14 +58,37 @@ def _changes(
     yield from _link(old.link, new.link)
     yield from compare_reserved(old, new, endpoints, messages)
     yield from _forms(old, new, endpoints)
+    tellers = renamed_tellers(
+        ((sender.frame, other.frame) for sender, other in _pairs(old, new, endpoints)),
+        _kept_messages(old, new, messages),
+    )
+    for sender, other in _pairs(old, new, endpoints):
+        yield from compare_frames(sender, other, tellers)
+        yield from _overloads(sender, other, messages)
+        yield from _identities(sender, other, new, messages)
+        yield from _virtual(sender, other, messages)
+    yield from _messages(old, new, endpoints, messages)
+
+
+def _pairs(
+    old: Protocol, new: Protocol, endpoints: dict[str, str]
+) -> Iterator[tuple[Sender, Sender]]:
+    """The senders that both versions have."""
     for sender in old.senders:
         other = _counterpart(sender, new, endpoints)
         if other is not None:
-            yield from compare_frames(sender, other)
-            yield from _overloads(sender, other, messages)
-            yield from _identities(sender, other, new, messages)
-            yield from _virtual(sender, other, messages)
-    yield from _messages(old, new, endpoints, messages)
+            yield sender, other
+
+
+def _kept_messages(
+    old: Protocol, new: Protocol, messages: dict[str, str]
+) -> Iterator[tuple[Message, Message]]:
+    """The messages that both versions have."""
+    after = {message.name: message for message in new.messages}
+    for message in old.messages:
+        name = messages.get(message.name, message.name)
+        if name in after:
+            yield message, after[name]
 
 
 # --- messages -------------------------------------------------------------------------------------

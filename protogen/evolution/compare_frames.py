@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from protogen.copying import replace
@@ -34,9 +34,12 @@ from protogen.model.transparency import Encoding, Escape, Insertion, Substitutio
 from protogen.passes.framing.capacity import payload_range
 
 
-def compare_frames(old: Sender, new: Sender) -> Iterator[Change]:
-    """Yield what changed around the payloads of a sender."""
-    yield from _Frames(old, new).compare(old.frame, new.frame)
+def compare_frames(old: Sender, new: Sender, tellers: Mapping[str, str]) -> Iterator[Change]:
+    """Yield what changed around the payloads of a sender.
+
+    `tellers` has the new names of what tells parts that are not sent.
+    """
+    yield from _Frames(old, new, tellers).compare(old.frame, new.frame)
     before, after = old.framing.greatest, new.framing.greatest
     if before != after:
         yield Change(
@@ -48,8 +51,8 @@ def compare_frames(old: Sender, new: Sender) -> Iterator[Change]:
 
 
 class _Frames:
-    def __init__(self, old: Sender, new: Sender) -> None:
-        self._old, self._new = old, new
+    def __init__(self, old: Sender, new: Sender, tellers: Mapping[str, str]) -> None:
+        self._old, self._new, self._tellers = old, new, tellers
         self._sender = old.name
 
     def _change(self, rule: str, part: str, text: str) -> Change:
@@ -112,7 +115,7 @@ class _Frames:
         if isinstance(old, NumberPart) and isinstance(new, NumberPart):
             yield from self._number(old, new, renamed)
             if isinstance(old, ToldPart) and isinstance(new, ToldPart):
-                yield from self._told(old, new, renamed)
+                yield from self._told(old, new)
         elif isinstance(old, BitsPart) and isinstance(new, BitsPart):
             yield from self._bits(old, new, renamed)
         elif isinstance(old, ChecksumPart) and isinstance(new, ChecksumPart):
@@ -204,10 +207,10 @@ class _Frames:
             words = named(_coverage(old), _coverage(new))
             yield self._change("frame-checksum-coverage", old.name, words)
 
-    def _told(self, old: ToldPart, new: ToldPart, renamed: dict[str, str]) -> Iterator[Change]:
+    def _told(self, old: ToldPart, new: ToldPart) -> Iterator[Change]:
         """What receivers take a frame for, beside what they are told."""
         was, now = ((it.telling.default, it.telling.once, _tellers(it)) for it in (old, new))
-        setters = tuple(sorted(renamed.get(name, name) for name in was[2]))
+        setters = tuple(sorted(self._tellers.get(name, name) for name in was[2]))
         if (*was[:2], setters) != now:
             words = named(_telling(old), _telling(new))
             yield self._change("frame-told", old.name, words)
