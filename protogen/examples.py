@@ -190,7 +190,8 @@ class _Verification:
         """The values, encoded, are the example's bytes."""
         parts = {name: reading.parts[name] for name in self._chosen}
         try:
-            message = self._class.from_payload(reading.message.to_payload(strict=False))
+            held = self._class.__held__(reading.message.__holds__())
+            message = self._class.from_payload(reading.message.to_payload(strict=False), **held)
             made = self._encoded(message, parts, strict=False)
         except EncodeError as error:
             self._report("PG161", str(error))

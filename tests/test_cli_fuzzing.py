@@ -19,7 +19,7 @@ from protogen.compiler import compile_file
 from protogen.copying import replace
 from protogen.fuzzing.engine import NOTHING_TOLD, Refused, Seen, Told
 from protogen.fuzzing.python_engine import PythonEngine
-from protogen.fuzzing.samples import Values, boundary_rounds, samples
+from protogen.fuzzing.samples import NOTHING_HELD, Held, Values, boundary_rounds, samples
 from protogen.fuzzing.trips import case_count, cases, same, smallest, try_case
 from protogen.live.codec import module_of
 from protogen.model.protocol import Protocol
@@ -244,7 +244,7 @@ class Broken(PythonEngine):
 
 
 class ForgetsSign(Broken):
-    def values(self, message: str, payload: bytes) -> Values:
+    def values(self, message: str, payload: bytes, held: Held = NOTHING_HELD) -> Values:
         return {name: abs(value) for name, value in super().values(message, payload).items()}
 
 
@@ -269,7 +269,7 @@ class RefusesFrames(Broken):
 
 
 class Crashes(Broken):
-    def values(self, message: str, payload: bytes) -> Values:
+    def values(self, message: str, payload: bytes, held: Held = NOTHING_HELD) -> Values:
         raise KeyError("speed")
 
 
@@ -352,7 +352,7 @@ def test_an_engine_may_refuse_what_would_be_cut_elsewhere() -> None:
         def payload(self, message: str, values: Values) -> bytes:
             return bytes.fromhex(values["data"])
 
-        def values(self, message: str, payload: bytes) -> Values:
+        def values(self, message: str, payload: bytes, held: Held = NOTHING_HELD) -> Values:
             return {"data": payload.hex()}
 
         def frame(self, sender: str, message: str, values: Values, parts: Values) -> bytes:

@@ -35,6 +35,8 @@ class Contents(msgspec.Struct, frozen=True, dict=True):
     payload: bytes = b""
     sent: int | None = None
     """Bytes of it that were in the frame, where zeros at its end were left out."""
+    numbers: tuple[tuple[str, int], ...] = ()
+    """Those of the frame that are fields, by the names of their parts."""
 
     @cached_property
     def filled(self) -> frozenset[str]:
@@ -44,7 +46,8 @@ class Contents(msgspec.Struct, frozen=True, dict=True):
 
     @cached_property
     def _rows(self) -> list[Row]:
-        found = dissect(plan_of(self.fields), Cursor(plain(self.payload), 0))
+        cursor = Cursor(plain(self.payload), 0)
+        found = dissect(plan_of(self.fields), cursor, dict(self.numbers))
         return [row for row in found if row.value_type is not None]
 
     @cached_property
@@ -154,7 +157,8 @@ class Side:
         event = found[0]
         name = event.message.NAME
         sent = len(payload_of(event.codec, event.raw))
-        contents = Contents(self.protocol.message(name).fields, event.payload, sent)
+        numbers = event.message.__holds__().items()
+        contents = Contents(self.protocol.message(name).fields, event.payload, sent, (*numbers,))
         if like is not None and like.contents == contents:
             contents = like.contents
         parts = {f"frame.{part}": str(value) for part, value in as_dict(event.parts).items()}

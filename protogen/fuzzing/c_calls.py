@@ -13,7 +13,7 @@ import msgspec
 
 from protogen.fuzzing.c_driver import DrivenDecoder, DrivenPart, Driver
 from protogen.fuzzing.c_values import Answers, number, pack, unpack
-from protogen.fuzzing.samples import Values
+from protogen.fuzzing.samples import NOTHING_HELD, Held, Values
 
 OK, SIZE, VALUE, ENCODING, RANGE, SPACE = range(6)
 """The results of generated functions."""
@@ -102,10 +102,12 @@ class Calls:
         head = b"P" + number(index, 2) + number(room, 4)
         return Call(head + pack(model.plan, values), _read_encoded)
 
-    def decode(self, message: str, payload: bytes) -> Call[Decoded]:
-        """Decode a payload."""
+    def decode(self, message: str, payload: bytes, held: Held = NOTHING_HELD) -> Call[Decoded]:
+        """Decode a payload; `held` are the fields that are parts of the frame."""
         index = self._driver.message(message)
         request = b"D" + number(index, 2) + number(len(payload), 4) + payload
+        for item in self._driver.messages[index].held:
+            request += number(int(held[item.name]), item.size)
         return Call(request, lambda answers: self._decoded(answers, index))
 
     def _decoded(self, answers: Answers, index: int) -> Decoded:

@@ -32,7 +32,25 @@ class DrivenPart(msgspec.Struct, frozen=True):
     @property
     def size(self) -> int:
         """Bytes of the type."""
-        return int(self.type.removeprefix("uint").removesuffix("_t")) // 8
+        return _size(self.type)
+
+
+def _size(kind: str) -> int:
+    """Bytes of an unsigned integer, or of a boolean."""
+    return 1 if kind == "bool" else int(kind.removeprefix("uint").removesuffix("_t")) // 8
+
+
+class DrivenField(msgspec.Struct, frozen=True):
+    """A field that is a part of the frame, as an argument."""
+
+    name: str
+    """In the schema."""
+    type: str
+
+    @property
+    def size(self) -> int:
+        """Bytes of the type."""
+        return _size(self.type)
 
 
 class DrivenMessage(msgspec.Struct, frozen=True):
@@ -44,6 +62,8 @@ class DrivenMessage(msgspec.Struct, frozen=True):
     """The function that takes or writes the struct's values."""
     encode: str
     decode: str
+    held: tuple[DrivenField, ...] = ()
+    """Further arguments of `decode`."""
 
 
 class DrivenFrame(msgspec.Struct, frozen=True):

@@ -9,7 +9,7 @@ from protogen.fuzzing.c_driver import Driver
 from protogen.fuzzing.c_library import CLibrary
 from protogen.fuzzing.c_values import Unfit
 from protogen.fuzzing.engine import NOTHING_TOLD, Refused, Seen, Told
-from protogen.fuzzing.samples import Values
+from protogen.fuzzing.samples import NOTHING_HELD, Held, Values
 
 _WHY = ("", "size", "value", "encoding", "out of range", "no space")
 
@@ -30,9 +30,9 @@ class CEngine:
         except Unfit:
             raise Refused(_WHY[RANGE]) from None
 
-    def values(self, message: str, payload: bytes) -> Values:
-        """Decode the fields alone."""
-        decoded = self._library.do(self._calls.decode(message, payload))
+    def values(self, message: str, payload: bytes, held: Held = NOTHING_HELD) -> Values:
+        """Decode the fields alone; `held` are those that are parts of the frame."""
+        decoded = self._library.do(self._calls.decode(message, payload, held))
         if decoded.values is None:
             raise ValueError(f"{payload.hex()} is refused: {_WHY[decoded.result]}")
         return decoded.values

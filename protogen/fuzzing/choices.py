@@ -29,6 +29,7 @@ from protogen.model.payload_plan import (
     Formula,
     IntegerStep,
     OptionalStep,
+    PartStep,
     RecordStep,
     Reference,
     RegionStep,
@@ -252,6 +253,26 @@ def scalar_choices(
             return _float_choices(step)
         case BytesStep():
             return _text_choices(step, lengths)
+
+
+class HeldPart(msgspec.Struct, frozen=True):
+    """A part of the frame that a message may have as a field."""
+
+    choices: Choices
+    holds: Callable[[int], bool]
+    """True for the numbers that the part may be."""
+
+
+def held_choices(step: PartStep, part: HeldPart, need: Need | None) -> Choices:
+    """Choices for a field that is a part of the frame: what both may be, where there is any."""
+    own = scalar_choices(step, (0, 0), need)
+    values = list(filter(part.holds, own.boundaries)) or part.choices.boundaries
+
+    def draw(random: Random) -> Any:
+        value = own.draw(random)
+        return value if part.holds(value) else random.choice(values)
+
+    return Choices(values, draw)
 
 
 def constant_value(step: ConstantStep) -> Any:

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import msgspec
 
-from protogen.fuzzing.samples import Values
+from protogen.fuzzing.samples import NOTHING_HELD, Held, Values
 
 Told = Mapping[str, int]
 """Values of identity parts that are not sent, by their names."""
@@ -40,8 +40,8 @@ class Engine(Protocol):
     def payload(self, message: str, values: Values) -> bytes:
         """Encode the fields alone. Raises Refused."""
 
-    def values(self, message: str, payload: bytes) -> Values:
-        """Decode the fields alone."""
+    def values(self, message: str, payload: bytes, held: Held = NOTHING_HELD) -> Values:
+        """Decode the fields alone; `held` are those that are parts of the frame."""
 
     def frame(self, sender: str, message: str, values: Values, parts: Values) -> bytes:
         """Encode a whole frame. Raises Refused."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
 from protogen.fuzzing.engine import NOTHING_TOLD, Refused, Seen, Told
-from protogen.fuzzing.samples import Values
+from protogen.fuzzing.samples import NOTHING_HELD, Held, Values
 from protogen.runtime.attributes import arguments
 from protogen.runtime.codec import Protocol
 from protogen.runtime.decoder import Decoder
@@ -38,9 +38,9 @@ class PythonEngine:
             raise Refused(str(error)) from None
         return payload
 
-    def values(self, message: str, payload: bytes) -> Values:
-        """Decode the fields alone."""
-        values: Values = self._messages[message].from_payload(payload).to_dict()
+    def values(self, message: str, payload: bytes, held: Held = NOTHING_HELD) -> Values:
+        """Decode the fields alone; `held` are those that are parts of the frame."""
+        values: Values = self._messages[message].from_payload(payload, **held).to_dict()
         return values
 
     def frame(self, sender: str, message: str, values: Values, parts: Values) -> bytes:

@@ -6,19 +6,23 @@ structs.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from functools import partial
 from itertools import count, islice
 from random import Random
+from types import MappingProxyType
 from typing import Any
 
 from protogen.fuzzing.choices import (
     SEVEN_BITS,
     Choices,
+    HeldPart,
     Need,
     any_of,
     bytes_choices,
     constant_value,
     count_choices,
+    held_choices,
     lengths_of,
     needs_of,
     part_choices,
@@ -29,8 +33,10 @@ from protogen.fuzzing.choices import (
 from protogen.fuzzing.last_elements import Mark
 from protogen.model.expression_bounds import linear
 from protogen.model.frame import Frame
+from protogen.model.identities import Runs
 from protogen.model.messages import Message
 from protogen.model.packing import FilledPacking, Packing
+from protogen.model.parts import ChoicePart, CounterPart, ValuePart
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -41,6 +47,7 @@ from protogen.model.payload_plan import (
     Formula,
     IntegerStep,
     OptionalStep,
+    PartStep,
     RecordStep,
     Reference,
     RegionStep,
@@ -58,6 +65,9 @@ _TRIES = 100
 
 Values = dict[str, Any]
 """Names of fields or parts with their values."""
+Held = Mapping[str, int]
+"""Fields that are parts of the frame, which the payload alone does not have."""
+NOTHING_HELD: Held = MappingProxyType({})
 
 
 class Boundaries:
@@ -158,22 +168,38 @@ def _boundary_samples(message: Message, frame: Frame) -> Iterator[tuple[Values, 
 
 def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, Values] | None:
     """A sample; None where its payload has a size that the frame does not let it have."""
-    sizes = _carried(message, frame)
+    sizes, held = _carried(message, frame), _held_parts(message, frame)
     if message.unspecified:
         fields = {message.fields[0].name: chooser.choose(unspecified_choices(message, sizes))}
     else:
-        sampler = _Sampler(sizes)
+        sampler = _Sampler(sizes, held)
         try:
             fields = sampler.record(message.plan.steps, chooser)
         except _UnfitError:
             return None
         if sampler.size not in sizes:
             return None
-    parts = {part.name: chooser.choose(part_choices(part)) for part in frame.caller_parts}
+    parts = {name: chooser.choose(part.choices) for name, part in held.items()}
+    return fields, parts | {field.part: int(fields[field.name]) for field in message.held}
+
+
+def _held_parts(message: Message, frame: Frame) -> dict[str, HeldPart]:
+    """The parts that senders choose in frames of a message."""
+    found = {part.name: _value_part(part) for part in frame.caller_parts}
     for index, part in enumerate(frame.identity):
         if message.chooses(index):
-            parts[part.name] = chooser.choose(run_choices(part, message.told_by.runs[index]))
-    return fields, parts
+            runs = message.told_by.runs[index]
+            found[part.name] = HeldPart(run_choices(part, runs), partial(_is_in, runs))
+    return found
+
+
+def _value_part(part: CounterPart | ValuePart) -> HeldPart:
+    is_one = part.values.__contains__ if isinstance(part, ChoicePart) else part.holds
+    return HeldPart(part_choices(part), is_one)
+
+
+def _is_in(runs: Runs, value: int) -> bool:
+    return any(first <= value <= last for first, last in runs)
 
 
 def _is_trailing(step: AnyStep) -> bool:
@@ -198,7 +224,9 @@ class _UnfitError(Exception):
 class _Sampler:
     """Chooses values step by step; those in front count and select what follows."""
 
-    def __init__(self, sizes: SizeSet) -> None:
+    def __init__(self, sizes: SizeSet, held: Mapping[str, HeldPart]) -> None:
+        self._held = held
+        """Parts of the frame, which may be fields."""
         self.size = 0
         """Bytes of the values so far."""
         self._sizes = sizes
@@ -245,6 +273,8 @@ class _Sampler:
                 return self._value(step.step, chooser.inside(rounds)) if is_there else None
             case RegionStep():
                 return self._region(step, chooser)
+            case PartStep():
+                return chooser.choose(held_choices(step, self._held[step.part], need))
             case ConstantStep():
                 return self._taken(step, constant_value(step))
             case _:

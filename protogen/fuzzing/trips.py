@@ -97,7 +97,9 @@ def _try_alone(engine: Engine, protocol: Protocol, case: Case) -> Outcome:
 
 def _trip(engine: Engine, sender: Sender, case: Case) -> Outcome:
     payload = engine.payload(case.message, case.values)
-    back = engine.values(case.message, payload)
+    message = next(item for item in sender.messages if item.name == case.message)
+    held = {field.name: case.values[field.name] for field in message.held}
+    back = engine.values(case.message, payload, held)
     if not same(back, case.values):
         return Outcome(case, problem=f"the payload {payload.hex()} gives other values: {back}")
     try:

@@ -153,6 +153,10 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True, dict=True, cache_hash=Tru
         """True if nothing of the identity stands behind the payload."""
         return set(self.sent_identity) <= set(written_apart(self.head))
 
+    def is_known_early(self, name: str) -> bool:
+        """True if the number of that name is known when the payload begins."""
+        return any(part.name == name for part in (*self.told, *written_apart(self.head)))
+
     def holder(self, name: str) -> Part:
         """The part of that name, or the one that has it among its bits; raises KeyError."""
         for part in self.parts:

@@ -77,6 +77,11 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return plan_of(self.fields)
 
     @property
+    def held(self) -> tuple[Field, ...]:
+        """The fields that are parts of the frame; they come first."""
+        return tuple(field for field in self.fields if field.part)
+
+    @property
     def cut_size(self) -> int | None:
         """Bytes that receivers know of a longer payload; None where its fields say how long it is.
 

@@ -246,6 +246,13 @@ class IntegerStep(NumberStep, frozen=True, kw_only=True, eq=False, dict=True):
         return allowed(self.field, self.type)
 
 
+class PartStep(IntegerStep, frozen=True, kw_only=True, eq=False, dict=True):
+    """An integer that is a part of the frame: the payload has no bytes of it."""
+
+    part: str
+    """The part."""
+
+
 class BytesStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """A text, or bytes that nobody interprets."""
 

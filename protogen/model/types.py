@@ -363,6 +363,8 @@ class Field(msgspec.Struct, frozen=True, kw_only=True):
     """The optional field in front, without which this one is not there either."""
     region: Fixed | Counted | None = None
     """Bytes that what it holds has to take, just as many, where they are told."""
+    part: str = ""
+    """The part of the frame whose number it is, so that it takes no bytes of the payload."""
     renamed_from: str | None = None
     """Name in the version before, where that was another one."""
     about: About = NOTHING

@@ -21,6 +21,7 @@ from protogen.passes.framing.trimming import check_trimmed
 from protogen.passes.messages.building import resolve_messages
 from protogen.passes.messages.examples import attach_examples, resolve_exchanges
 from protogen.passes.messages.identities import check_identities
+from protogen.passes.messages.part_fields import check_part_fields
 from protogen.passes.messages.virtual_values import check_shared_values
 from protogen.passes.names.checking import check_names
 from protogen.passes.names.decisions import resolve_decisions
@@ -45,6 +46,7 @@ PASSES: tuple[Pass, ...] = (
     check_identities,
     check_shared_values,
     check_told,
+    check_part_fields,
     check_trimmed,
     check_cut,
     resolve_reserved,

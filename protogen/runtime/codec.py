@@ -14,7 +14,7 @@ from protogen.runtime.framing.frame import CounterPart
 from protogen.runtime.framing.lines import encode_line as line_to_bytes
 from protogen.runtime.framing.lines import split_parts
 from protogen.runtime.framing.reading import read_frame
-from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
+from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec, with_held
 from protogen.runtime.framing.told import Told
 from protogen.runtime.payload.message import Message, build_payload
 from protogen.runtime.payload.number import GivenValue
@@ -210,7 +210,7 @@ def _frame(
     parts: Mapping[str, GivenValue],
     strict: bool,
 ) -> bytes:
-    identity, given = sender.choose_identity(type(message), parts)
+    identity, given = sender.choose_identity(type(message), with_held(message, parts))
     carried = sender.layout.payload.trimmed(payload)
     return encode_frame(sender, identity, carried, given, strict)
 

@@ -74,7 +74,9 @@ class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
         """The message's bytes: with zeros that a frame leaves out, without what is not known."""
         told = self.codec.told_among(self.numbers)
         payload = payload_of(self.codec, self.raw, told)
-        return self.codec.layout.payload.fitted(payload, self.message.__known_of__(payload))
+        numbers = dict(zip(self.codec.layout.shown, self.numbers, strict=True))
+        known = self.message.__known_of__(payload, numbers)
+        return self.codec.layout.payload.fitted(payload, known)
 
     def __repr__(self) -> str:
         shown = ("offset", "raw", "sender", "parts", "message")

@@ -67,13 +67,13 @@ def annotate(
     known = protocol.sender(sender)
     if covers is None:
         parts, wire = known.frame.declared, unstuff(known.plan, data)
-        if not known.frame.virtual:
-            return _Frame(known, parts, wire, message, told=told or {}).rows()
-        first = _Frame(known, parts, wire, message)
-        first.rows()  # What is not sent follows from the identity, which may stand behind it.
-        return _Frame(known, parts, wire, message, first.identity).rows()
+        first = _Frame(known, parts, wire, message, told=told)
+        rows = first.rows()
+        if not first.looks_ahead:
+            return rows
+        return _Frame(known, parts, wire, message, first.identity, told, first.numbers).rows()
     held = [part for part in known.frame.parts if part.name in covers]
-    return _Frame(known, held, Wire(plain(data)), message).rows()
+    return _Frame(known, held, Wire(plain(data)), message, numbers=told).rows()
 
 
 class _Found(msgspec.Struct, frozen=True):
@@ -94,8 +94,9 @@ class _Frame:
         message: Message | None,
         identity: Identity | None = None,
         told: Mapping[str, int] | None = None,
+        numbers: Mapping[str, int] | None = None,
     ) -> None:
-        """With the identity, where some other reading has found it."""
+        """With the identity and numbers, where some other reading has found them."""
         self._told_values = told or {}
         self._identity = identity
         self._sender = sender
@@ -108,7 +109,22 @@ class _Frame:
         self._coded = "" if transparency is None else transparency.first
         self._rows: list[Row] = []
         self._found: dict[str, _Found] = {}
-        self._numbers: dict[str, int] = {}
+        self._numbers = dict(numbers or {})
+
+    @property
+    def numbers(self) -> Mapping[str, int]:
+        """The numbers that were read, by the names of their parts."""
+        return self._numbers
+
+    @property
+    def looks_ahead(self) -> bool:
+        """True if something in front may have needed what stands behind it.
+
+        What is not sent follows from the identity, and a field may be a part behind the payload.
+        """
+        frame = self._sender.frame
+        held = (field.part for message in self._sender.messages for field in message.held)
+        return bool(frame.virtual) or not all(map(frame.is_known_early, held))
 
     def rows(self) -> tuple[Row, ...]:
         """Read all parts."""
@@ -330,12 +346,12 @@ class _Frame:
         offset, size = inside.offset, inside.left
         own = message.sizes.greatest
         if self._is_cut(message) and message.cut_size is not None and size > own:
-            return dissect(message.plan, inside.part(own))
+            return dissect(message.plan, inside.part(own), self._numbers)
         missing = own - size
         if missing <= 0 or not self._sender.plan.is_trimmed:
-            return dissect(message.plan, inside)
+            return dissect(message.plan, inside, self._numbers)
         zeros = Cursor([*inside.rest(), *[Unit(0, b"")] * missing], offset)
-        return list(_as_sent(dissect(message.plan, zeros), size))
+        return list(_as_sent(dissect(message.plan, zeros, self._numbers), size))
 
     def _is_cut(self, message: Message | None) -> bool:
         """True if receivers leave what is behind the fields of a message."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections import ChainMap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import msgspec
@@ -26,6 +26,7 @@ from protogen.model.payload_plan import (
     Formula,
     IntegerStep,
     OptionalStep,
+    PartStep,
     PayloadPlan,
     RecordStep,
     RegionStep,
@@ -168,15 +169,19 @@ class Cursor:
         return Cursor(self._next(count), offset)
 
 
-def dissect(plan: PayloadPlan, cursor: Cursor) -> list[Row]:
-    """Return a row for each field, member and element, up to the first that has no bytes."""
-    reader = _Reader(cursor)
+def dissect(plan: PayloadPlan, cursor: Cursor, parts: Mapping[str, int]) -> list[Row]:
+    """Return a row for each field, member and element, up to the first that has no bytes.
+
+    `parts` has the numbers of the frame, which some fields are.
+    """
+    reader = _Reader(cursor, parts)
     reader.record(plan.steps, "", ChainMap())
     return reader.rows
 
 
 class _Reader:
-    def __init__(self, cursor: Cursor) -> None:
+    def __init__(self, cursor: Cursor, parts: Mapping[str, int]) -> None:
+        self._parts = parts
         self._cursor = cursor
         self._short = False
         self.rows: list[Row] = []
@@ -199,15 +204,28 @@ class _Reader:
                 self._elements(step, path, scope)
             case ChooseStep():
                 self._case(step, path, scope)
-            case ConstantStep():
-                self._step(step.value, path, scope)
             case OptionalStep():
                 if self._is_there(step, scope):
                     self._step(step.step, path, scope)
             case RegionStep():
                 self._region(step, path, scope)
+            case ConstantStep():
+                self._step(step.value, path, scope)
             case _:
-                self._scalar(step, path, scope)
+                self._single(step, path, scope)
+
+    def _single(self, step: ScalarStep, path: str, scope: Scope) -> None:
+        if isinstance(step, PartStep):
+            self._part(step, path, scope)
+        else:
+            self._scalar(step, path, scope)
+
+    def _part(self, step: PartStep, path: str, scope: Scope) -> None:
+        """A number of the frame, of which the payload has no bytes; unknown ones are 0."""
+        value = scope[step.name] = self._parts.get(step.part, 0)
+        label = f"part {step.part}"
+        row = self._cursor.take(0, path, label, subject=step.field, value_type=step.type)
+        self.rows.append(row.reads(value, _meaning(step, value), _fault(step, value)))
 
     def _is_there(self, step: OptionalStep, scope: Scope) -> bool:
         match step.presence:

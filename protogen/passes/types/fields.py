@@ -47,6 +47,7 @@ from protogen.passes.types.packing import (
     packed_elements,
     packed_fields,
 )
+from protogen.passes.types.part_fields import BITS, check_part_field
 from protogen.passes.types.separators import character, check_separated, text_between, with_absent
 from protogen.passes.types.setting import Setting
 from protogen.passes.types.sized_arrays import (
@@ -96,7 +97,8 @@ class FieldBuilder:
         for name, item in syntax.items():
             if filler and not can_be_followed(built[filler]):
                 self._behind(filler, (*loc, name))
-            inner = setting.inside(name, behind, scope, first=not built, last=[name] == final)
+            first = all(field.part for field in built.values())
+            inner = setting.inside(name, behind, scope, first=first, last=[name] == final)
             built[name] = self.field(name, item, (*loc, name), inner)
             check_tail(self._context, omitted, built[name], (*loc, name))
             if omitted:
@@ -121,6 +123,8 @@ class FieldBuilder:
         effective = self._effective(item, loc, setting)
         if not all(has_one_form(self._context, *link) for link in effective.chain[1:]):
             return unknown
+        if effective.syntax.part is not None:
+            return self._part_field(name, effective, unknown)
         check_keys(self._context, name, effective)
         if not check_packing(self._context, name, effective):
             return unknown
@@ -130,6 +134,14 @@ class FieldBuilder:
         found = meaning.attach(self._context, name, type_, effective)
         optional = is_optional(self._context, name, effective)
         return replace(found, when=self._when(effective), region=region, optional=optional)
+
+    def _part_field(self, name: str, item: Effective, unknown: Field) -> Field:
+        """A field that is a part of the frame, a number without bytes."""
+        if not check_part_field(self._context, name, item, item.setting.outer.maps[0].values()):
+            return unknown
+        item = replace(item, setting=replace(item.setting, layout=BITS, position=None))
+        found = meaning.attach(self._context, name, self._element(item, item.setting), item)
+        return replace(found, part=item.syntax.part or "")
 
     def _effective(self, item: FieldSyntax, loc: Loc, setting: Setting) -> Effective:
         return self._declarations.effective(item, loc, setting)

@@ -380,6 +380,31 @@ class Region(Around):
         return fixed_extent(self._size, path)
 
 
+class Part(Piece):
+    """A number of the frame, of which the payload has no bytes.
+
+    Parsing takes it by its name, `FORMAT.parse(payload, mode=2)`; building leaves it to the frame.
+    """
+
+    def __init__(self, name: str, role: type[int] = int) -> None:
+        super().__init__()
+        self._name = name
+        self._role = role
+
+    def _parse(self, stream: BinaryIO, context: Any, path: str) -> int:
+        try:
+            return self._role(context._params[self._name])
+        except KeyError:
+            problem = f"the frame says what it is: parse(..., {self._name}=...)"
+            raise PayloadError("value", path, stream.tell(), problem) from None
+
+    def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
+        return obj
+
+    def _sizeof(self, context: Any, path: str) -> int:
+        return 0
+
+
 class Whole(Around):
     """A format that has to take all bytes."""
 
@@ -391,11 +416,13 @@ class Whole(Around):
         return parsed
 
 
-def prefix_size(format: Construct, data: bytes) -> int:
+def prefix_size(format: Construct, data: bytes, held: Mapping[str, int]) -> int:
     """Number of bytes at the start of `data` that the format takes.
+
+    `held` has the numbers of the frame among its fields.
 
     Raises PayloadError; its `missing` is greater than 0 where `data` is a good start but too short.
     """
     stream = io.BytesIO(data)
-    format.parse_stream(stream)
+    format.parse_stream(stream, **held)
     return stream.tell()

@@ -268,7 +268,7 @@ class Content:
         assert self._group is not None
         start = bytes(self.bytes[self._layout.head_size :])
         try:
-            self._set_payload(self._group.measure(start))
+            self._set_payload(self._group.measure(start, self.numbers))
         except PayloadFault as error:
             if not error.missing or len(start) + error.missing > self._room:
                 raise Rejected(error.reason, error.problem) from None

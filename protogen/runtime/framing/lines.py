@@ -8,7 +8,7 @@ from typing import Any
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.assembly import encode_frame
 from protogen.runtime.framing.frame import IdentityPart, ToldPart
-from protogen.runtime.framing.sender import SenderSpec
+from protogen.runtime.framing.sender import SenderSpec, with_held
 from protogen.runtime.identities import Identity
 from protogen.runtime.payload.number import Characters, given_number
 
@@ -46,7 +46,7 @@ def _encode_message(sender: SenderSpec[Any, Any], line: Mapping[str, Any]) -> by
     except EncodeError as error:
         raise error.inside("fields") from None
     parts = _parts(line) if "parts" in line else {}
-    identity, given = sender.choose_identity(message, parts)
+    identity, given = sender.choose_identity(message, with_held(record, parts))
     carried = sender.layout.payload.trimmed(payload)
     return encode_frame(sender, identity, carried, given, strict=False)
 

@@ -63,24 +63,29 @@ class IdentityGroup(Generic[MessageT_co]):
         is_cut = self._part.longest is not None and message.TELLS_ITS_END
         return is_cut and size > message.SIZES.least
 
-    def _known(self, payload: bytes) -> bytes:
+    def _known(self, payload: bytes, numbers: Mapping[str, int]) -> bytes:
         """What a frame has of a payload, cut or filled up to what is known of it."""
         message, size = self.messages[0], len(payload)
         if self._leaves(message, size):
-            return self._part.fitted(payload, message.__known_of__(payload))
+            return self._part.fitted(payload, message.__known_of__(payload, numbers))
         return self._part.fitted(payload, self._own)
 
-    def measure(self, start: bytes) -> int:
-        """The size of the payload that starts so; PayloadError with `missing` if it is longer."""
+    def measure(self, start: bytes, numbers: Mapping[str, int]) -> int:
+        """The size of the payload that starts so; PayloadError with `missing` if it is longer.
+
+        `numbers` are those of the frame in front of it.
+        """
         from protogen.runtime.constructs import prefix_size  # It takes long to import.
 
-        return prefix_size(self.messages[0].FORMAT, start)
+        message = self.messages[0]
+        return prefix_size(message.FORMAT, start, message.__held__(numbers))
 
-    def read(self, payload: bytes) -> MessageT_co:
+    def read(self, payload: bytes, numbers: Mapping[str, int]) -> MessageT_co:
         """The message of a frame's payload. Raises PayloadError: size, value or encoding."""
-        payload = self._known(payload)
+        payload = self._known(payload, numbers)
         fitting = (message for message in self.messages if len(payload) in message.SIZES)
-        return next(fitting, self.messages[0]).parse_payload(payload)
+        message = next(fitting, self.messages[0])
+        return message.parse_payload(payload, **message.__held__(numbers))
 
 
 class VirtualBytes:
@@ -227,7 +232,7 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         Raises PayloadError where the payload is not the message's: size, value or encoding.
         """
         group = self.group(self.identity(numbers))
-        return None if group is None else group.read(payload)
+        return None if group is None else group.read(payload, numbers)
 
     def told_among(self, numbers: Sequence[int]) -> dict[str, int]:
         """The values of the identity parts that are not sent, which come first in an event."""
@@ -262,6 +267,20 @@ class SenderSpec(Generic[MessageT_co, PartsT_co]):
         """The message called `name`, if this endpoint sends one."""
         every: tuple[Any, ...] = (*self.messages, *self.encode_only)
         return next((message for message in every if name == message.NAME), None)
+
+
+def with_held(message: Message, parts: Mapping[str, Any]) -> dict[str, Any]:
+    """The parts of a message's frame: those given, and those that it has as fields.
+
+    Raises EncodeError where one is given that differs from the field.
+    """
+    found = dict(parts)
+    for part, value in message.__holds__().items():
+        if found.get(part) not in (None, value):
+            problem = f"is {value}, as the message says, and not {found[part]!r}"
+            raise EncodeError(part, problem)
+        found[part] = value
+    return found
 
 
 def _one_of(message: type[Message], index: int, part: IdentityPart | ToldPart, value: Any) -> int:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from protogen.runtime.attributes import attribute
 from protogen.runtime.errors import DecodeError, EncodeError, NeedsReference, PayloadFault
 from protogen.runtime.identities import Identities
 from protogen.runtime.payload.number import GivenValue
@@ -119,6 +121,8 @@ class Message(Record):
     """Bytes that are known of a longer payload, where sizes vary by what is left out."""
     TELLS_ITS_END: ClassVar[bool] = False
     """True if sizes vary, and the fields say where they end."""
+    HELD: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    """Fields that are numbers of the frame, with the names of these parts."""
 
     __read__: ClassVar[Callable[[bytes], Any] | None] = None
     """Gives the message of a payload, as the fast engine reads it. Raises where it can't."""
@@ -140,8 +144,19 @@ class Message(Record):
         return cls.SIZES.fixed if cls.CUT_SIZE is None else cls.CUT_SIZE
 
     @classmethod
-    def __known_of__(cls, payload: bytes) -> int | None:
+    def __held__(cls, numbers: Mapping[str, int]) -> dict[str, int]:
+        """The fields that are numbers of the frame, out of all numbers of one."""
+        return {name: numbers[part] for name, part in cls.HELD.items()}
+
+    def __holds__(self) -> dict[str, int]:
+        """The numbers of the frame that are fields, by the names of these parts."""
+        return {part: int(getattr(self, attribute(name))) for name, part in self.HELD.items()}
+
+    @classmethod
+    def __known_of__(cls, payload: bytes, numbers: Mapping[str, int]) -> int | None:
         """Bytes that are known of this payload; None where its fields take all of it.
+
+        `numbers` are those of the frame.
 
         Raises construct's kind of error where it is no payload: PayloadError.
         """
@@ -149,7 +164,7 @@ class Message(Record):
             return cls.__known__()
         from protogen.runtime.constructs import prefix_size  # It takes long to import.
 
-        return prefix_size(cls.FORMAT, payload)
+        return prefix_size(cls.FORMAT, payload, cls.__held__(numbers))
 
     def __encode__(self, module: object, sender: str | None, *parts: GivenValue) -> bytes:
         """The frame, as the fast engine of this module makes it. Raises where it can't.
@@ -172,29 +187,32 @@ class Message(Record):
         return build_payload(self, strict)
 
     @classmethod
-    def from_payload(cls, payload: bytes) -> Self:
-        """The message of a payload's bytes. Raises DecodeError: size, value or encoding."""
+    def from_payload(cls, payload: bytes, **held: int) -> Self:
+        """The message of a payload's bytes. Raises DecodeError: size, value or encoding.
+
+        `held` gives the fields that are parts of the frame.
+        """
         read = cls.__read__
         if read is not None and type(payload) is bytes:
             with suppress(Exception):  # The reference says what is wrong.
                 message: Self = read(payload)
                 return message
         try:
-            return cls.parse_payload(payload)
+            return cls.parse_payload(payload, **held)
         except PayloadFault as error:
             raise DecodeError(
                 error.reason, error.problem, offset=error.offset, path=error.path
             ) from None
 
     @classmethod
-    def parse_payload(cls, payload: bytes) -> Self:
+    def parse_payload(cls, payload: bytes, **held: int) -> Self:
         """The same, but raises construct's kind of error: PayloadError."""
         from protogen.runtime.constructs import PayloadError, Whole  # It takes long to import.
 
         if len(payload) not in cls.SIZES:
             problem = f"{cls.NAME} has {cls.SIZES} bytes of payload, not {len(payload)}"
             raise PayloadError("size", "", min(len(payload), cls.SIZES.greatest), problem)
-        raw = Whole(cls.FORMAT).parse(payload)
+        raw = Whole(cls.FORMAT).parse(payload, **held)
         rule, scope = _rule(cls)
         message: Self = rule.from_wire(raw, scope)
         return message

@@ -285,6 +285,11 @@ class FieldSyntax(Syntax):
         description="Character that fills up an ascii field of a fixed size, such as a blank; NUL "
         "if not said.",
     )
+    part: Annotated[Name, Ref(Kind.PART)] | None = Field(
+        None,
+        description="The field is the number of this part of the frame and takes no bytes of the "
+        "payload. Expressions of the fields behind it may name it; the encoder writes the part.",
+    )
     when: ExpressionText | None = Field(
         None,
         description="The field is there only where this expression over earlier fields is true "

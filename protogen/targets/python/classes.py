@@ -19,7 +19,14 @@ from protogen.targets.escape import paragraphs, python_comment
 from protogen.targets.python import describing
 from protogen.targets.python import frames as tables
 from protogen.targets.python.formats import constant, field_format, is_empty
-from protogen.targets.python.literals import bracketed, call, octets_in_class, text, tuple_of
+from protogen.targets.python.literals import (
+    bracketed,
+    call,
+    mapping,
+    octets_in_class,
+    text,
+    tuple_of,
+)
 from protogen.targets.python.names import Names, RecordNames
 from protogen.targets.python.rules import field_rule
 from protogen.targets.python.spelling import member_name
@@ -135,9 +142,16 @@ def message_class(item: Message, identity: str, names: Names, *, is_cut: bool) -
         f"SIZES = {_sizes(item.sizes)}",
         *cut,
         *(("TELLS_ITS_END = True",) if is_cut and item.tells_its_end else ()),
+        *((f"HELD = {_held(item)}",) if item.held else ()),
     )
     doc = docstring(describing.message(item), _INDENT)
     return _record(item, "_rt.Message", doc, constants, names)
+
+
+def _held(item: Message) -> str:
+    """The fields that are parts of the frame."""
+    expression = mapping({text(field.name): text(field.part) for field in item.held})
+    return wrapped(expression, _INDENT + len("HELD = "), _INDENT, after=0)
 
 
 def _identities(identities: Identities) -> str:

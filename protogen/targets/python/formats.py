@@ -39,12 +39,20 @@ from protogen.targets.python.presence import where_present
 
 def field_format(field: Field, names: Names) -> str:
     """The declaration of a field, its constant included."""
-    found = _checked(field.type, names)
+    found = _part(field, names) if field.part else _checked(field.type, names)
     if field.const is not None:
         found = call("_c.Fixed", _any_size(field.type, names), constant(field))
     if field.region is not None:
         found = call("_c.Region", extent(field.region), found)
     return where_present(field, found, conditional="_c.When", trailing="_c.IfLeft")
+
+
+def _part(field: Field, names: Names) -> str:
+    """The declaration of a number that the frame has."""
+    found = call("_c.Part", text(field.name), *(["bool"] if field.is_bool else []))
+    if isinstance(field.type, Integer) and field.type.enum and field.type.is_closed:
+        return call("_c.Closed", found, names.classes[field.type.enum.name])
+    return found
 
 
 def _any_size(type_: Type, names: Names) -> str:

@@ -14,6 +14,7 @@ from protogen.model.parts import BitsPart, NumberPart
 from protogen.targets.c.decoders.groups import (
     Alternatives,
     GroupView,
+    ReceivedMessage,
     alternatives_of,
     key_from,
     key_type,
@@ -279,6 +280,11 @@ class ReceivedFrame(NamedDecoder, frozen=True, dict=True):
         member = self.names.member
         sent = (PartView(item, member(item.name), self.numbers) for item in self.plan.shown)
         return (*(part for part in self.told_parts if not part.is_length), *sent)
+
+    def held_in_content(self, item: ReceivedMessage) -> str:
+        """The numbers of the frame that a check takes, out of `content`, as further arguments."""
+        values = {part.member: part.value("0") for part in self.parts}
+        return "".join(f", {values[member]}" for member in item.parts)
 
     @cached_property
     def checksums(self) -> tuple[ChecksumView, ...]:

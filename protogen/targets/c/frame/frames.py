@@ -7,6 +7,7 @@ second buffer is needed.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cached_property
 
@@ -63,6 +64,11 @@ class Argument(msgspec.Struct, frozen=True):
     doc: str
     refused: str
     """The condition of a value out of range; empty where all of the type's are in it."""
+
+    def called(self, name: str) -> Argument:
+        """The same where it has another name."""
+        refused = re.sub(rf"\b{re.escape(self.name)}\b", lambda _: name, self.refused)
+        return replace(self, name=name, refused=refused)
 
 
 class ByteStore(msgspec.Struct, frozen=True):

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 from functools import cached_property
 
 import msgspec
 
 from protogen.c_language.numbers import hexadecimal
-from protogen.model.messages import Message
-from protogen.model.parts import IdentityPart
+from protogen.copying import replace
+from protogen.model.messages import Message, given_parts
+from protogen.model.parts import ChoicePart, IdentityPart
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.frames import Argument, FrameView, one_of
@@ -78,17 +80,45 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
         """The identity parts that are sent, with their places among all and their arguments."""
         plan = self.decoder.plan
         for part, argument in zip(plan.sent_identity, self.frame.identity, strict=True):
-            yield plan.identity.index(part), part, argument
+            yield plan.identity.index(part), part, self._own(argument)
 
     @cached_property
-    def arguments(self) -> tuple[Argument, ...]:
-        """The parts that the caller gives: those of several identities first."""
+    def _members(self) -> dict[str, str]:
+        """The parts of the frame that are members of the message."""
+        return {number.part: f"message->{number.member}" for number in self.view.held}
+
+    def _own(self, argument: Argument) -> Argument:
+        """A part of the frame, out of the message where that has it."""
+        member = self._members.get(argument.part)
+        if member is None:
+            return argument
+        own = argument.called(member)
+        return replace(own, refused="") if self._is_validated(argument.part) else own
+
+    def _is_validated(self, name: str) -> bool:
+        """True if the message's own bounds of a part of the frame leave nothing to refuse."""
+        parts = given_parts(self.frame.plan.frame, self.message)
+        part = next(part for part in parts if part.name == name)
+        field = next(field for field in self.message.held if field.part == name)
+        if isinstance(part, ChoicePart) or field.least is None or field.greatest is None:
+            return False
+        ends = [field.least, field.greatest, *(Fraction(entry.value) for entry in field.special)]
+        return part.least <= min(ends) and max(ends) <= part.greatest
+
+    @cached_property
+    def values(self) -> tuple[Argument, ...]:
+        """The parts that vary: those of several identities first."""
         chosen = (
             one_of(argument, part, self.message.told_by.runs[index])
             for index, part, argument in self._sent_identity
             if self.message.chooses(index)
         )
-        return (*chosen, *self.frame.arguments)
+        return (*chosen, *map(self._own, self.frame.arguments))
+
+    @property
+    def arguments(self) -> tuple[Argument, ...]:
+        """Those of them that the caller gives, as the message has no member for them."""
+        return tuple(item for item in self.values if item.part not in self._members)
 
     @cached_property
     def passed(self) -> str:
@@ -97,7 +127,8 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
             value_of(part, self.message.virtual_value(part) or 0)
             for part in self.decoder.plan.frame.virtual
         )
-        names = (*self.identity, *given, *(item.name for item in self.frame.arguments))
+        others = (self._own(item).name for item in self.frame.arguments)
+        names = (*self.identity, *given, *others)
         return "".join(f", {name}" for name in names)
 
     @property

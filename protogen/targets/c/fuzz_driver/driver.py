@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from protogen.fuzzing.c_driver import (
     DrivenDecoder,
+    DrivenField,
     DrivenForm,
     DrivenFrame,
     DrivenHandler,
@@ -94,6 +95,7 @@ def _messages(unit: Unit) -> tuple[DrivenMessage, ...]:
             exchange_function(f"exchange_{index}", item.struct, model.plan, unit.names),
             item.encode,
             item.decode,
+            tuple(DrivenField(held.field, held.type) for held in item.held),
         )
         for index, item in enumerate(unit.module.messages)
     )
@@ -119,8 +121,9 @@ def _frames(unit: Unit, indices: Mapping[str, int]) -> tuple[DrivenFrame, ...]:
 
 def _given(item: MessageFrame) -> list[NumberPart]:
     """The parts that the caller of a message's functions gives: those that are sent."""
+    held = {field.part for field in item.message.held}
     parts = given_parts(item.frame.plan.frame, item.message)
-    return [part for part in parts if not isinstance(part, ToldIdentity)]
+    return [it for it in parts if not isinstance(it, ToldIdentity) and it.name not in held]
 
 
 def _frame_of(unit: Unit, frames: tuple[DrivenFrame, ...]) -> dict[tuple[str, str], DrivenFrame]:

@@ -14,6 +14,7 @@ from protogen.model.payload_plan import (
     Formula,
     NumberStep,
     OptionalStep,
+    PartStep,
     PayloadPlan,
     RepeatStep,
     RestStep,
@@ -55,6 +56,10 @@ class _Exchange(Walk):
 
     def number(self, step: NumberStep, place: str) -> None:
         """A number."""
+        self._scalar(place)
+
+    def part(self, step: PartStep, place: str) -> None:
+        """A number of the frame."""
         self._scalar(place)
 
     def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:

@@ -15,6 +15,7 @@ from protogen.model.payload_plan import (
     IntegerStep,
     NumberStep,
     OptionalStep,
+    PartStep,
     PayloadPlan,
     RecordStep,
     RegionStep,
@@ -33,7 +34,7 @@ from protogen.targets.c.payload.packing import Placed, members_of, number_in
 from protogen.targets.c.payload.placed import PlacedWalk
 from protogen.targets.c.payload.storing import is_bytes
 from protogen.targets.c.payload.texts import PaddedText
-from protogen.targets.c.payload.walk import amount, times
+from protogen.targets.c.payload.walk import amount, parameter_for, times
 
 
 def loaded(helpers: Helpers, type_: NumberType, byte: str, address: str) -> str:
@@ -82,6 +83,10 @@ class Load(PlacedWalk):
         value = loaded(self.helpers, step.type, self.byte(), self.address())
         self.lines.add(f"{place} = {value};")
         self.skip(step.type.size)
+
+    def part(self, step: PartStep, place: str) -> None:
+        """A number of the frame."""
+        self.lines.add(f"{place} = {parameter_for(self.helpers.member(step.name))};")
 
     def optional(self, step: OptionalStep, place: str) -> None:
         """A step that may be there; where the payload's end says it, a member keeps that."""

@@ -7,7 +7,7 @@ What the rest of the generated file uses of them is static: `validate`, `measure
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import msgspec
 
@@ -18,6 +18,7 @@ from protogen.targets import descriptions
 from protogen.targets.c.lines import Lines, function, mentions, prototype
 from protogen.targets.c.payload.accessors import accessor
 from protogen.targets.c.payload.checking import Checker
+from protogen.targets.c.payload.held import HeldNumber, held_numbers
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.measuring import Measure
@@ -53,10 +54,14 @@ class MessageView(msgspec.Struct, frozen=True):
     """True if `check` uses `need`, because the payload may tell its own size."""
     validates: bool
     """True if there is a function `validate`; without it, every struct can be sent."""
+    held: tuple[HeldNumber, ...]
+    """The numbers of the frame among its members, arguments of the functions that read it."""
     check: str
-    """(const uint8_t *payload, size_t size, size_t *need): enum rn1_result; `need` may be NULL."""
+    """(const uint8_t *payload, size_t size, size_t *need[, held]): enum rn1_result; `need` may be
+    NULL."""
     load: str
-    """(struct rn1_gyro *message, const uint8_t *payload[, size_t size]); `size` if not fixed."""
+    """(struct rn1_gyro *message, const uint8_t *payload[, size_t size][, held]); `size` if not
+    fixed."""
     validate: str
     """(const struct rn1_gyro *message): RN1_OK or RN1_ERROR_RANGE."""
     measure: str
@@ -74,6 +79,10 @@ class MessageView(msgspec.Struct, frozen=True):
     functions: tuple[str, ...]
     """All functions of the payload but `put`."""
     put_function: str
+
+    def given(self, parts: str) -> str:
+        """The numbers of the frame as arguments behind others; `parts` leads to an event's."""
+        return "".join(f", {parts}{number.shown}" for number in self.held)
 
 
 class MessagePrinter(msgspec.Struct, frozen=True):
@@ -109,6 +118,7 @@ class MessagePrinter(msgspec.Struct, frozen=True):
             checks_values=item.plan.has_wrong_values,
             needs=codec.needs,
             validates=codec.validates,
+            held=codec.held,
             record=record,
             prototypes=codec.prototypes(),
             accessors=accessors,
@@ -142,6 +152,8 @@ class _Codec:
         self.leaves = is_cut and item.tells_its_end
         """True if a check may leave what is behind the fields, and tells where they end."""
         self.validates = can_be_refused(item.plan, item.sizes)
+        self.held = held_numbers(item, printer.names)
+        held = tuple(f"{number.type} {number.name}" for number in self.held)
         result = f"enum {self._prefix}_result"
         message, given = f"{struct} *message", f"const {struct} *message"
         payload = "const uint8_t *payload"
@@ -152,9 +164,9 @@ class _Codec:
             "store": ("static void", (given, "uint8_t *payload")),
             "put": ("static void", (given, printer.names.writer)),
             "encode": (result, (given, "uint8_t *payload", "size_t capacity", "size_t *size")),
-            "check": (f"static {result}", (payload, "size_t size", "size_t *need")),
-            "load": ("void", (message, payload, *size)),
-            "decode": (result, (message, payload, "size_t size")),
+            "check": (f"static {result}", (payload, "size_t size", "size_t *need", *held)),
+            "load": ("void", (message, payload, *size, *held)),
+            "decode": (result, (message, payload, "size_t size", *held)),
         }
         """Result and arguments of each function."""
 
@@ -179,7 +191,8 @@ class _Codec:
     def _function(self, word: str, lines: Lines) -> str:
         head, arguments = self._head(word)
         lines.drop_unused_places()
-        lines.put_first(*(f"(void){name};" for name in _unused(lines, arguments)))
+        may_be_unused = (*_PARAMETERS, *(number.name for number in self.held))
+        lines.put_first(*(f"(void){name};" for name in _unused(lines, arguments, may_be_unused)))
         return function(head, arguments, lines)
 
     def _refuse(self, lines: Lines, condition: str, error: str) -> None:
@@ -266,13 +279,15 @@ class _Codec:
         return self._function("load", lines)
 
     def _decode(self) -> str:
-        lines = Lines()
+        lines, held = Lines(), "".join(f", {number.name}" for number in self.held)
         if self.checks:
-            self._ask(lines, f"{self._names['check']}(payload, size, NULL)")
+            self._ask(lines, f"{self._names['check']}(payload, size, NULL{held})")
         else:
             self._refuse(lines, f"size != {self.fixed}U", "SIZE")
         size = ", size" if self.fixed is None else ""
-        lines.add(f"{self._names['load']}(message, payload{size});", f"return {self._upper}_OK;")
+        lines.add(
+            f"{self._names['load']}(message, payload{size}{held});", f"return {self._upper}_OK;"
+        )
         return self._function("decode", lines)
 
 
@@ -283,11 +298,13 @@ def _unfit(item: Message) -> str:
     return out_of_bounds("size", least, sizes.greatest, fields.greatest)
 
 
-def _unused(lines: Lines, arguments: tuple[str, ...]) -> Iterator[str]:
+def _unused(
+    lines: Lines, arguments: tuple[str, ...], may_be_unused: Iterable[str]
+) -> Iterator[str]:
     """The parameters that need not be used and are not."""
     text = "\n".join(lines.lines)
     each = ", ".join(arguments).split(", ")
     parameters = {argument.rpartition(" ")[2].lstrip("*") for argument in each}
-    for name in _PARAMETERS:
+    for name in may_be_unused:
         if name in parameters and not mentions(text, name):
             yield name

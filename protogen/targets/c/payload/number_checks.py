@@ -16,6 +16,7 @@ from protogen.model.payload_plan import (
     Formula,
     IntegerStep,
     NumberStep,
+    PartStep,
     RecordStep,
     Reference,
     RepeatStep,
@@ -29,7 +30,7 @@ from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import loaded
 from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, faults_in, number_in
-from protogen.targets.c.payload.walk import is_unfit, out_of_bounds, type_of
+from protogen.targets.c.payload.walk import is_unfit, out_of_bounds, parameter_for, type_of
 
 
 def _carried(step: BytesStep | NumberStep) -> int:
@@ -173,6 +174,14 @@ class NumberChecker(CheckedWalk):
         self._offset += step.type.size
         if isinstance(step, IntegerStep) and step.is_needed:
             self._remember(step, place)
+
+    def part(self, step: PartStep, place: str) -> None:
+        """A number of the frame, which may be none that the message knows."""
+        name = parameter_for(self.helpers.member(step.name))
+        self._locals.add(name)
+        self._numbers[place] = name
+        if Check.CLOSED in step.checks:
+            self._refuse(f"!{self.helpers.known(step.type)}({name})", "VALUE")
 
     def _remember(self, step: IntegerStep, place: str) -> None:
         """Put the number in front of the place into a variable, as it counts or selects."""

@@ -14,6 +14,7 @@ from protogen.model.payload_plan import (
     IntegerStep,
     NumberStep,
     OptionalStep,
+    PartStep,
     PayloadPlan,
     RegionStep,
     RepeatStep,
@@ -86,6 +87,10 @@ class Validate(Walk):
             self._refuse(_outside(step, place))
             if Check.CLOSED in step.checks:
                 self._refuse(f"!{self.helpers.known(step.type)}({place})")
+
+    def part(self, step: PartStep, place: str) -> None:
+        """A number of the frame."""
+        self.number(step, place)
 
     def _float(self, step: FloatStep, place: str) -> None:
         tests = self.helpers.float_tests(step, place)

@@ -19,6 +19,7 @@ from protogen.model.payload_plan import (
     Formula,
     NumberStep,
     OptionalStep,
+    PartStep,
     PayloadPlan,
     RecordStep,
     Reference,
@@ -88,6 +89,11 @@ _PARAMETERS = frozenset({"message", "capacity", "writer", "put", "user", "needed
 """Names that it may have only where these are no parameters."""
 
 
+def parameter_for(member: str) -> str:
+    """The parameter for a number of the frame that a message has as this member."""
+    return f"{member}_part" if member in RESERVED | _PARAMETERS else member
+
+
 class _Formula(FormulaPrinter):
     """Prints a formula with functions for what C has no operators for."""
 
@@ -137,6 +143,8 @@ class Walk:
                 self.packed_fill(step, place, str(self.count(step.count)))
             case RecordStep() | RepeatStep() if step.packing is not None:
                 self.packed(step, place)
+            case PartStep():
+                self.part(step, place)
             case NumberStep():
                 self.number(step, place)
             case ConstantStep():
@@ -284,6 +292,9 @@ class Walk:
     def number(self, step: NumberStep, place: str) -> None:
         """Print a number."""
         raise NotImplementedError
+
+    def part(self, step: PartStep, place: str) -> None:
+        """Print a number of the frame, of which the payload has no bytes."""
 
     def bytes(self, step: BytesStep | RestStep, place: str, count: int | str) -> None:
         """Print a text, or bytes; those of a rest are at `place` as well."""

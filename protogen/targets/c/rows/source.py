@@ -31,7 +31,7 @@ class _Table(msgspec.Struct, frozen=True):
     def loaded(self) -> str:
         """Arguments of the function that reads a payload."""
         size = ", event->payload_size" if self.view.fixed is None else ""
-        return f"&row->message, event->payload{size}"
+        return f"&row->message, event->payload{size}{self.view.given('event->parts.')}"
 
 
 class _Spelling(msgspec.Struct, frozen=True):

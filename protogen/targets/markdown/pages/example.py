@@ -130,10 +130,24 @@ def _fault(row: Row) -> str:
 
 def _bytes_table(protocol: Protocol, message: Message, example: Example) -> Table | None:
     """Return the table of an example's bytes; None if there are none to show."""
-    rows = annotate(protocol, example.sender, example.bytes, covers=example.covers, message=message)
+    rows = annotate(
+        protocol,
+        example.sender,
+        example.bytes,
+        covers=example.covers,
+        message=message,
+        told=_stated(protocol, example),
+    )
     shown = [row for row in rows if row.wire or not isinstance(row.subject, PayloadPart)]
     cells = [line.cells() for line in _parts_and_fields(shown, message)]
     return table(_HEADER, cells) if example.bytes else None
+
+
+def _stated(protocol: Protocol, example: Example) -> dict[str, int]:
+    """The numbers of the frame that the example states."""
+    numbers = protocol.sender(example.sender).frame.shown_parts
+    stated = example.parts
+    return {part.name: part.raw(stated[part.name]) for part in numbers if part.name in stated}
 
 
 def _parts_and_fields(rows: Sequence[Row], message: Message) -> Iterator[_Line]:

@@ -71,7 +71,13 @@ class EngineFrame:
             and self.plan.is_regular
             and self._has_few_identities
             and not self.plan.frame.length_over_wire
+            and not self._holds_parts
         )
+
+    @property
+    def _holds_parts(self) -> bool:
+        """True if some message has numbers of the frame as fields, which readers do not take."""
+        return any(message.held for message in self.sender.messages)
 
     @property
     def takes_whole(self) -> bool:
@@ -81,7 +87,8 @@ class EngineFrame:
         """
         several = filter(None, (group.identities for group in self.plan.groups))
         are_few = sum(item.count for item in several) <= _MOST_IDENTITIES
-        return self.plan.takes_whole and are_few and self._has_few_identities
+        is_plain = self.plan.takes_whole and not self._holds_parts
+        return is_plain and are_few and self._has_few_identities
 
     @property
     def _has_few_identities(self) -> bool:

@@ -158,6 +158,8 @@ def _records(
         body = struct_writer(struct, constants)
         functions.append(_function(f"_write_{struct.name}", f"item: {name}{outer}", "bytes", body))
     for message in protocol.messages:
+        if message.held:
+            continue
         name = constants.classes[message.name]
         is_ascii = message.name in ascii_messages
         body = message_reader(message, constants, around, is_ascii=is_ascii)
@@ -170,6 +172,8 @@ def _readers(protocol: Protocol, around: tuple[int, int], constants: Constants) 
     ascii_messages = _seen_to_be_ascii(protocol)
     alike: dict[bool, dict[str, str]] = {}
     for message in protocol.messages:
+        if message.held:
+            continue
         names = alike.setdefault(message.name in ascii_messages, {})
         names[constants.classes[message.name]] = f"_read_{message.name}"
     return tuple(
