@@ -44,7 +44,8 @@ class FieldComparison(msgspec.Struct, frozen=True):
             taken = field.name not in renamed and name in renamed.values()
             other = None if taken else after.get(name)
             if other is None:
-                yield self._change("field-deleted", path, _described(field))
+                rule = "field-of-frame" if field.part else "field-deleted"
+                yield self._change(rule, path, _described(field))
                 continue
             if field.name in unclear:
                 yield self._change("field-reused", path, named(field.name, other.name))
@@ -58,7 +59,8 @@ class FieldComparison(msgspec.Struct, frozen=True):
         known = ({field.name for field in old} - renamed.keys()) | set(renamed.values())
         for field in new:
             if field.name not in known:
-                yield self._change("field-added", _joined(prefix, field.name), _described(field))
+                rule = "field-of-frame" if field.part else "field-added"
+                yield self._change(rule, _joined(prefix, field.name), _described(field))
 
     def _change(self, rule: str, path: str, text: str) -> Change:
         place = f"{self.message}.{path}"
@@ -155,6 +157,8 @@ def renames(old: Sequence[Field], new: Sequence[Field]) -> tuple[dict[str, str],
 
 def _start(field: Field) -> str:
     """Where the field begins; empty where that varies."""
+    if field.part:
+        return f"part {field.part}"
     if field.bit is not None:
         return f"bit {field.bit}"
     return "" if field.position is None else f"byte {field.position}"
@@ -174,6 +178,8 @@ def _place(
 
 
 def _described(field: Field) -> str:
+    if field.part:
+        return f"{field.type.label}, part {field.part} of the frame"
     size, start = field.size, _start(field)
     bytes_ = "" if size is None else f", {size} byte{'' if size == 1 else 's'}"
     at = f" at {start}" if start else ""

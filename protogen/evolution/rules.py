@@ -140,6 +140,7 @@ RULES: tuple[Rule, ...] = (
         "nothing",
     ),
     Rule("field-deleted", _W, "a message has one field less", _BOTH),
+    Rule("field-of-frame", _S, "a number of the frame is a field now, or none any more", _USERS),
     Rule("field-moved", _W, "a field stands elsewhere", _BOTH),
     Rule("field-renamed", _S, "a field has another name", _RENAME),
     Rule(

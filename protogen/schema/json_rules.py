@@ -24,6 +24,11 @@ _NO_TEXT = f"^({INTEGER_PATTERN}|byte|char|bool|float32|float64|decimal|hexadeci
 
 _FORMS = ("fields", "switch")
 _NUMERIC = ("scale", "offset", "unit", "special", "range")
+_NOT_IN_THE_FRAME = (
+    *("count", "size", "until", "without", "packed", "digits", "fraction", "case", "empty"),
+    *("chars", "code", "padding", "when", "optional", "const", "byte_order"),
+)
+"""Keys about bytes of a payload, or about what the frame says itself."""
 _NAMED = ("values", "flags", "bits")
 _LENGTHS = ("size", "until")
 _LAST_ELEMENT: JsonObject = {"type": "object", "required": ["element"]}
@@ -115,6 +120,11 @@ _ONE_KIND_OF_DIGITS: JsonObject = {
 
 _FIELD_RULES = (
     _one_of("A field has a type, or is a struct of fields, or a switch.", ("type", *_FORMS)),
+    _where(
+        _with("part"),
+        "A field that is a part of the frame has no bytes in the payload.",
+        {**_with("type"), **_none_of((*_FORMS, *_NOT_IN_THE_FRAME))},
+    ),
     _together("A switch has cases.", {"cases": ["switch"], "switch": ["cases"]}),
     _at_most_one_of("An integer has only one of these.", _NAMED),
     _where(

@@ -41,7 +41,8 @@ def of_field(item: Field, facts: list[str]) -> list[str]:
     """Doc of a field, with facts such as its unit and bounds; empty ones are left out."""
     plain = "Not said by the document" if item.unknown else words(item.name)
     first, *rest = paragraphs(item.about.doc) or (plain,)
-    lead = ", ".join(fact for fact in (sentence(first).rstrip("."), *facts) if fact)
+    part = f"the part {item.part} of the frame" if item.part else ""
+    lead = ", ".join(fact for fact in (sentence(first).rstrip("."), *facts, part) if fact)
     return [sentence(lead + _place(item.about.source)), *rest]
 
 

@@ -30,13 +30,17 @@ def _fits(context: Context, message: Message, field: Field, frame: Frame, loc: L
     part = given.get(field.part)
     if part is None or isinstance(part, CounterPart):
         text = f"`{field.part}` is {_otherwise(frame, field.part)}"
-        known = [name for name, item in given.items() if not isinstance(item, CounterPart)]
+        known = [name for name, item in given.items() if _can_be_field(item)]
         hint = hint_for(field.part, known) or _advice(known)
         context.error("PG290", loc, text, hint)
         return False
     return _has_type(context, field, part, loc) and _comes_in_time(
         context, message, frame, part, loc
     )
+
+
+def _can_be_field(part: NumberPart) -> bool:
+    return not isinstance(part, CounterPart) and not part.type.is_text
 
 
 def _otherwise(frame: Frame, name: str) -> str:

@@ -142,12 +142,12 @@ class _WrongError(Exception):
 
 def number(context: Context, written: str, loc: Loc, setting: Setting) -> Worked | None:
     """The expression of a number; None where it was reported to be none."""
-    return _worked(context, written, loc, setting, _Reader(setting.outer).number)
+    return _worked(context, written, loc, setting, _Reader(setting.outer, context).number)
 
 
 def condition(context: Context, written: str, loc: Loc, setting: Setting) -> Worked | None:
     """The expression of a condition; None where it was reported to be none."""
-    return _worked(context, written, loc, setting, _Reader(setting.outer).condition)
+    return _worked(context, written, loc, setting, _Reader(setting.outer, context).condition)
 
 
 def inside_of(
@@ -190,8 +190,9 @@ def _worked(
 class _Reader:
     """Looks up the names of one expression; raises _WrongError."""
 
-    def __init__(self, scope: Scope) -> None:
+    def __init__(self, scope: Scope, context: Context | None = None) -> None:
         self._scope = scope
+        self._context = context
         self._fields: dict[str, Field] = {}
 
     def number(self, parsed: Expression) -> Worked:
@@ -333,7 +334,8 @@ class _Reader:
         if field is None:
             known = [*self._scope, *names]
             text = f"no earlier field is called `{item.path[0]}`"
-            raise _WrongError("PG116", *_place(item), text, hint_for(item.path[0], known))
+            hint = self._part_hint(item.path[0]) or hint_for(item.path[0], known)
+            raise _WrongError("PG116", *_place(item), text, hint)
         self._is_there(item, field)
         for depth, name in enumerate(item.path[1:], start=1):
             members = field.type.fields if isinstance(field.type, Struct) else ()
@@ -346,6 +348,15 @@ class _Reader:
             text = f"`{item.name}` is no integer"
             raise _WrongError("PG201", *_place(item), text, _what_is_asked(field))
         return Operand(item.path, at=item.at)
+
+    def _part_hint(self, name: str) -> str | None:
+        """What to do where a part of the frame is meant."""
+        frames = () if self._context is None else self._context.frames.values()
+        parts = [part for frame in frames for part in frame.parts.items()]
+        if not any(name in (part, *(written.bits or ())) for part, written in parts):
+            return None
+        field = f"`{name}: {{part: {name}, type: uint8}}`, with the bits that it has"
+        return f"a part of the frame has that name: make it a field of the message, {field}"
 
     def _is_there(self, item: Operand, field: Field) -> None:
         if field.may_be_absent:

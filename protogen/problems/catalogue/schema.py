@@ -18,6 +18,7 @@ from protogen.problems.catalogue.mirrors import MIRROR_CODES
 from protogen.problems.catalogue.optional_fields import OPTIONAL_FIELD_CODES
 from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.part_bits import PART_BITS_CODES
+from protogen.problems.catalogue.part_fields import PART_FIELD_CODES
 from protogen.problems.catalogue.parts import PART_CODES
 from protogen.problems.catalogue.silences import SILENCE_CODES
 from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
@@ -56,6 +57,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *MESSAGE_CODES,
     *PART_CODES,
     *PART_BITS_CODES,
+    *PART_FIELD_CODES,
     *MIRROR_CODES,
     *WIRE_COUNT_CODES,
     *LENGTH_CODES,

@@ -15,6 +15,7 @@ from protogen.model.payload_plan import (
     ChooseStep,
     IntegerStep,
     OptionalStep,
+    PartStep,
     RecordStep,
     RegionStep,
     RepeatStep,
@@ -67,9 +68,10 @@ def message_table(frame: Frame, message: Message, anchors: Anchors, names: Emitt
 
 
 def _part_rows(slot: Slot, frame: Frame, message: Message) -> Iterator[Row]:
+    held = {field.part: f"The field {code(field.name)}." for field in message.held}
     for place, size, part in slot.rows:
-        value = value_in(frame, part, message)
-        yield (place, "", size, part_type(part), part_title(part), "", value, role(part))
+        value, meaning = value_in(frame, part, message), held.get(part.name, role(part))
+        yield (place, "", size, part_type(part), part_title(part), "", value, meaning)
 
 
 class _PayloadRows:
@@ -85,6 +87,10 @@ class _PayloadRows:
     def of_record(self, steps: Sequence[AnyStep], place: Place, path: Path) -> Iterator[Row]:
         for step in steps:
             inner = path.field(step.name)
+            if isinstance(step, PartStep):
+                cells = self._cells(step, inner, code(inner.shown))
+                yield (f"part {code(step.part)}", "", "", *cells)
+                continue
             yield self._field(step, place, inner, code(inner.shown))
             yield from self._inside(step, place, inner)
             size = step.field.sizes_in_front.fixed

@@ -83,7 +83,7 @@ def number_text(kind: NumberType) -> str:
         return f"{code(form.name)}, {_free_text(form)}"
     if form is not None:
         return f"{code(kind.name)} as text, {_digits_text(form)}"
-    is_plain = kind.size == 1 or kind.is_text or kind.within is not None
+    is_plain = kind.size <= 1 or kind.is_text or kind.within is not None
     return code(kind.name) if is_plain else f"{code(kind.name)} {_ORDERS[kind.byte_order]}"
 
 
