@@ -14,7 +14,7 @@ from weakref import finalize
 
 import c_reference
 import pytest
-from c_library import FLAGS
+from c_library import FLAGS, held_of
 from compiled import protocol_of
 from program_store import kept
 from tooling import require_compiler
@@ -186,7 +186,8 @@ def comparable(protocol: Protocol, steps: Sequence[Sequence[CEvent]]) -> int | N
     for number, event in enumerate(event for events in steps for event in events):
         if event.kind == "message" and event.payload is not None:
             try:
-                c_reference.check(protocol.message(event.message), event.payload)
+                message = protocol.message(event.message)
+                c_reference.check(message, event.payload, held_of(message, event.values))
             except c_reference.Wrong as wrong:
                 if wrong.count:
                     return number

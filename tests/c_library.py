@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -61,8 +61,8 @@ size_t shim_{prefix}_put(const {struct} *message, uint8_t *bytes) {{
 }}
 """
 _CHECK = """
-enum {name}_result shim_{prefix}_check(const uint8_t *payload, size_t size, size_t *need) {{
-    return {check}(payload, size, need);
+enum {name}_result shim_{prefix}_check({arguments}) {{
+    return {check}({given});
 }}
 """
 
@@ -101,8 +101,26 @@ def shim_of(protocol: Protocol, module: Module) -> str:
             "writing": "NULL, &writer" if stateless else "&writer",
         }
         parts += [message.put_function, _PUT.format(**given)]
-        parts += [_CHECK.format(**given)] if message.checks else []
+        parts += [_check_of(module, message)] if message.checks else []
     return "\n".join(parts)
+
+
+def _check_of(module: Module, message: MessageView) -> str:
+    arguments = ["const uint8_t *payload", "size_t size", "size_t *need"]
+    arguments += [f"{number.type} {number.name}" for number in message.held]
+    given = ["payload", "size", "need", *(number.name for number in message.held)]
+    return _CHECK.format(
+        name=module.name,
+        prefix=message.name,
+        check=message.check,
+        arguments=", ".join(arguments),
+        given=", ".join(given),
+    )
+
+
+def held_of(message: Message, values: Mapping[str, Any]) -> dict[str, int]:
+    """The fields among values that are numbers of the frame."""
+    return {field.name: int(values[field.name]) for field in message.held}
 
 
 @dataclass(frozen=True)
@@ -199,21 +217,30 @@ class _Codec:
         size = self._put(ctypes.byref(self.record(values)), buffer)
         return bytes(buffer[:size])
 
-    def decode(self, payload: bytes) -> Decoded:
-        """Decode a payload."""
+    def decode(self, payload: bytes, held: Mapping[str, int]) -> Decoded:
+        """Decode a payload; `held` are the fields that are numbers of the frame."""
         record = self.structure()
         before = bytes([_GUARD]) * ctypes.sizeof(record)
         ctypes.memmove(ctypes.byref(record), before, len(before))
         given = (ctypes.c_uint8 * max(1, len(payload)))(*payload)
-        result = self._decode(ctypes.byref(record), given, ctypes.c_size_t(len(payload)))
+        size = ctypes.c_size_t(len(payload))
+        result = self._decode(ctypes.byref(record), given, size, *self._arguments(held))
         intact = bytes(record) == before
         values = read(record, self._message.fields, {}) if result == OK else None
         return Decoded(result, values, intact)
 
-    def check(self, start: bytes) -> tuple[int, int]:
+    def _arguments(self, held: Mapping[str, int]) -> list[Any]:
+        """The numbers of the frame as further arguments."""
+        return [
+            getattr(ctypes, f"c_{number.type.removesuffix('_t')}")(held[number.field])
+            for number in self.view.held
+        ]
+
+    def check(self, start: bytes, held: Mapping[str, int]) -> tuple[int, int]:
         """The result of `check` for the start of a payload, and how many bytes it needs."""
         assert self._check is not None
         given = (ctypes.c_uint8 * max(1, len(start)))(*start)
         need = ctypes.c_size_t(0)
-        result = self._check(given, ctypes.c_size_t(len(start)), ctypes.byref(need))
+        size, held_ = ctypes.c_size_t(len(start)), self._arguments(held)
+        result = self._check(given, size, ctypes.byref(need), *held_)
         return result, need.value

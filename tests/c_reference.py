@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import re
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
 from bit_runs import bits_of, number_of
 from expression_oracle import worked_out
 
+from protogen.fuzzing.samples import NOTHING_HELD
 from protogen.model.messages import Message
 from protogen.model.types import (
     Array,
@@ -52,20 +53,24 @@ class Wrong(Exception):  # noqa: N818 - a verdict, not a failure
         """True if a number counts too many or too few."""
 
 
-def check(message: Message, payload: bytes) -> None:
-    """Raise Wrong unless the bytes are the message's payload."""
+def check(message: Message, payload: bytes, held: Mapping[str, int]) -> None:
+    """Raise Wrong unless the bytes are the message's payload.
+
+    `held` are the fields that are numbers of the frame.
+    """
     sizes = message.sizes
     if sizes.fixed is not None and len(payload) != sizes.fixed:
         raise Wrong("size")
-    reader = _Reader(payload)
+    reader = _Reader(payload, held)
     reader.fields(message.fields, {})
     if reader.at != len(payload) or len(payload) not in sizes:
         raise Wrong("size")
 
 
 class _Reader:
-    def __init__(self, payload: bytes) -> None:
+    def __init__(self, payload: bytes, held: Mapping[str, int] = NOTHING_HELD) -> None:
         self._payload = payload
+        self._held = held
         self.at = 0
 
     def _take(self, size: int) -> bytes:
@@ -94,6 +99,8 @@ class _Reader:
         return numbers
 
     def _of_field(self, field: Field, scope: Scope) -> Any:
+        if field.part:
+            return self._of_frame(field)
         constant = field.const is not None
         if field.region is None:
             return self._value(field.type, scope, constant=constant)
@@ -107,6 +114,15 @@ class _Reader:
         if inner._left:
             raise Wrong("size")
         return found
+
+    def _of_frame(self, field: Field) -> int:
+        """A number of the frame, which may be none that the message knows."""
+        value, type_ = self._held[field.name], field.type
+        assert isinstance(type_, Integer)
+        is_closed = type_.enum is not None and type_.enum.closed
+        if is_closed and value not in _names(type_):
+            raise Wrong("value")
+        return value
 
     def _value(self, type_: Type, scope: Scope, *, constant: bool = False) -> Any:
         if isinstance(type_, Struct | Array) and type_.packed is not None:

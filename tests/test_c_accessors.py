@@ -37,10 +37,10 @@ WAYS = {
 """By name: a compiler, its flags, and what runs its programs."""
 
 CHECK = """
-static int check_{name}(const uint8_t *payload, size_t size) {{
+static int check_{name}(const uint8_t *payload, size_t size{held}) {{
     static {struct} message;
     memset(&message, 0, sizeof message);
-    if ({decode}(&message, payload, size) != {ok}) {{
+    if ({decode}(&message, payload, size{names}) != {ok}) {{
         return 0;
     }}
 {loops}
@@ -92,11 +92,14 @@ def program(path: Path) -> str:
             continue
         loops = "".join(loop(prefix, names_of(made), fields, field) for field in readable)
         given = {"name": item.name, "struct": item.struct, "decode": item.decode, "loops": loops}
+        given["held"] = "".join(f", {number.type} {number.name}" for number in item.held)
+        given["names"] = "".join(f", {number.name}" for number in item.held)
         parts.append(CHECK.format(ok=f"{made.name.upper()}_OK", **given))
-        for payload in case.payloads():
+        for payload, numbers in case.contents():
             # Just as many bytes as there are, for the sanitizer.
             literal = ", ".join(map(str, payload)) or "0"
-            check = f"check_{item.name}((const uint8_t[]){{{literal}}}, {len(payload)})"
+            held = "".join(f", {value}" for _, value in numbers)
+            check = f"check_{item.name}((const uint8_t[]){{{literal}}}, {len(payload)}{held})"
             calls.append(f"    if (!{check}) {{ return {min(len(calls) + 1, 255)}; }}")
     return "".join([*parts, MAIN.format(calls="\n".join(calls))])
 

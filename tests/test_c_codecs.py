@@ -6,17 +6,28 @@ import math
 import os
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from itertools import islice
 from pathlib import Path
 from random import Random
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 import c_reference
 import pytest
-from c_library import FLAGS, OK, RANGE, RESULTS, SIZE, SPACE, CLibrary, Encoded, write_sources
+from c_library import (
+    FLAGS,
+    OK,
+    RANGE,
+    RESULTS,
+    SIZE,
+    SPACE,
+    CLibrary,
+    Encoded,
+    held_of,
+    write_sources,
+)
 from c_structs import FloatConstant, Unfit, Values
 from compiled import ROOT, SCHEMAS, module_at, name_of, protocol_of
 from expression_oracle import worked_out
@@ -33,6 +44,7 @@ from protogen.live.codec import module_of
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type
+from protogen.runtime.attributes import held_arguments
 from protogen.runtime.constructs import PayloadError, Whole
 from protogen.runtime.errors import EncodeError
 from protogen.targets.c import options
@@ -40,6 +52,21 @@ from protogen.targets.c.emit import emit, unit_of
 from protogen.targets.c.options import COptions
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
+
+
+class Content(NamedTuple):
+    """A payload, and the numbers of its frame that the message has as fields."""
+
+    payload: bytes
+    numbers: tuple[tuple[str, int], ...] = ()
+
+    @property
+    def held(self) -> Mapping[str, int]:
+        """The numbers by the names of the fields."""
+        return dict(self.numbers)
+
+    def __str__(self) -> str:
+        return f"{self.payload.hex(' ')} {self.numbers or ''}"
 
 
 class Subject:
@@ -81,34 +108,58 @@ class Subject:
             return None
         return payload
 
-    def payloads(self) -> list[bytes]:
-        found = (self.payload(values) for values in self.samples())
-        return list(dict.fromkeys(payload for payload in found if payload is not None))
+    def contents(self) -> list[Content]:
+        """Payloads, each with the numbers of its frame."""
+        found = ((values, self.payload(values)) for values in self.samples())
+        return list(
+            dict.fromkeys(
+                Content(payload, (*held_of(self.message, values).items(),))
+                for values, payload in found
+                if payload is not None
+            )
+        )
 
-    def values(self, payload: bytes) -> tuple[int, Values | None]:
+    def damages(self, content: Content, others: list[Content], dice: Random) -> Iterator[Content]:
+        """The payload damaged, in frames of the same numbers, or of others."""
+        for payload in damages(content.payload, [other.payload for other in others], dice):
+            numbers = content.numbers
+            if numbers and dice.randrange(2):
+                numbers = self._other_numbers(dice.choice(others), dice)
+            yield Content(payload, numbers)
+        for _ in numbers:
+            yield Content(content.payload, self._other_numbers(dice.choice(others), dice))
+
+    def _other_numbers(self, content: Content, dice: Random) -> tuple[tuple[str, int], ...]:
+        """The numbers of a content, or with another one among them."""
+        name = dice.choice([field.name for field in self.message.held])
+        bits = next(field.type.bits for field in self.message.held if field.name == name)
+        other = {} if dice.randrange(2) else {name: dice.randrange(1 << bits)}
+        return (*{**content.held, **other}.items(),)
+
+    def values(self, content: Content) -> tuple[int, Values | None]:
         """Message that Python reads; the reference has to agree unless a count is out of bounds."""
         counts = False
         expected = OK
         try:
-            c_reference.check(self.message, payload)
+            c_reference.check(self.message, content.payload, content.held)
         except c_reference.Wrong as wrong:
             expected, counts = RESULTS[wrong.reason], wrong.count
         if counts:
             return SIZE, None
-        found, values = self._python(payload)
-        assert found == expected, payload.hex(" ")
+        found, values = self._python(content)
+        assert found == expected, content
         return found, values
 
-    def _python(self, payload: bytes) -> tuple[int, Values | None]:
+    def _python(self, content: Content) -> tuple[int, Values | None]:
         """A message of one size is looked at only where it has that size; others by field."""
-        sizes = self.message.sizes
+        sizes, payload = self.message.sizes, content.payload
         if sizes.fixed is not None and len(payload) != sizes.fixed:
             return SIZE, None
         try:
-            Whole(self.record.FORMAT).parse(payload)
+            Whole(self.record.FORMAT).parse(payload, **held_arguments(content.held))
             if len(payload) not in sizes:
                 return SIZE, None
-            values = self.record.from_payload(payload).to_dict()
+            values = self.record.from_payload(payload, **held_arguments(content.held)).to_dict()
         except PayloadError as error:
             return RESULTS[error.reason], None
         return OK, values
@@ -189,10 +240,11 @@ def check_encoding(case: Subject, values: Values, payload: bytes | None) -> None
 
 @EVERY_MESSAGE
 def test_bytes_have_the_values_that_python_reads(case: Subject) -> None:
-    for payload in case.payloads():
-        done = case.codec.decode(payload)
+    for payload, numbers in case.contents():
+        done = case.codec.decode(payload, dict(numbers))
         assert done.result == OK
-        assert same(done.values, case.record.from_payload(payload).to_dict())
+        held = held_arguments(dict(numbers))
+        assert same(done.values, case.record.from_payload(payload, **held).to_dict())
 
 
 @EVERY_MESSAGE
@@ -210,14 +262,14 @@ def test_a_short_buffer_is_refused_and_left_alone(case: Subject) -> None:
 @EVERY_MESSAGE
 def test_damaged_payloads_are_what_python_says(case: Subject) -> None:
     dice = case.dice
-    payloads = case.payloads()
-    tried = {damaged for payload in payloads for damaged in damages(payload, payloads, dice)}
-    for payload in sorted(tried):
-        result, values = case.values(payload)
-        done = case.codec.decode(payload)
-        assert done.result == result, payload.hex(" ")
+    contents = case.contents()
+    tried = {damaged for item in contents for damaged in case.damages(item, contents, dice)}
+    for content in sorted(tried):
+        result, values = case.values(content)
+        done = case.codec.decode(content.payload, content.held)
+        assert done.result == result, content
         assert done.result == OK or done.intact
-        assert same(done.values, values), payload.hex(" ")
+        assert same(done.values, values), content
 
 
 def damages(payload: bytes, others: list[bytes], dice: Random) -> Iterator[bytes]:
@@ -323,7 +375,10 @@ def _other_integers(type_: Integer) -> Iterator[int]:
 
 
 SAMPLER = ROOT / "tests" / "c_schemas" / "sampler.yaml"
-UNDELIMITED = ROOT / "tests" / "c_schemas" / "undelimited.yaml"
+UNDELIMITED = (
+    ROOT / "tests" / "c_schemas" / "undelimited.yaml",
+    ROOT / "tests" / "framings" / "part_fields_alone.yaml",
+)
 
 
 @pytest.mark.parametrize(
@@ -366,33 +421,34 @@ def test_a_message_is_refused_that_no_frame_can_carry() -> None:
 
 def cases_with_needs() -> list[Case]:
     """Cases whose payload tells by its start how long it is."""
-    module = unit_of(protocol_of(UNDELIMITED), COptions()).module
-    cases = (case for case in CASES if case.path == UNDELIMITED)
-    return [case for case in cases if module.message(case.message.name).needs]
+    modules = {path: unit_of(protocol_of(path), COptions()).module for path in UNDELIMITED}
+    cases = (case for case in CASES if case.path in modules)
+    return [case for case in cases if modules[case.path].message(case.message.name).needs]
 
 
 @pytest.mark.parametrize("case", cases_with_needs(), ids=repr)
 def test_the_start_of_a_payload_says_how_much_is_missing(case: Case) -> None:
-    for payload in case.payloads():
+    for payload, numbers in case.contents():
+        held = dict(numbers)
         tried = [*islice(damages(payload, [payload], case.dice), 40), payload]
         for start in {data[:size] for data in tried for size in range(len(data) + 1)}:
-            result, need = case.codec.check(start)
+            result, need = case.codec.check(start, held)
             try:
-                c_reference.check(case.message, start)
+                c_reference.check(case.message, start, held)
             except c_reference.Wrong as wrong:
                 assert result == RESULTS[wrong.reason]
                 assert (need > len(start)) == (wrong.missing > 0), start.hex(" ")
                 assert need == 0 or need >= wrong.missing
             else:
                 assert (result, need) == (OK, 0)
-        assert _asked(case, payload) == len(payload)
+        assert _asked(case, payload, held) == len(payload)
 
 
-def _asked(case: Case, payload: bytes) -> int:
+def _asked(case: Case, payload: bytes, held: Mapping[str, int]) -> int:
     """Give what is asked for until it is enough."""
     size = 0
     while True:
-        result, need = case.codec.check(payload[:size])
+        result, need = case.codec.check(payload[:size], held)
         if result == OK:
             return size
         assert (result, need > size) == (SIZE, True)
@@ -429,7 +485,8 @@ def test_random_schemas(
     library = CLibrary(protocol)
     try:
         for message in protocol.messages:
-            drawn = data.draw(st.lists(values_of(message), min_size=1, max_size=5))
+            frames = [sender.frame for sender in protocol.senders_of(message)]
+            drawn = data.draw(st.lists(values_of(message, frames), min_size=1, max_size=5))
             for test in TESTS_OF_VALUES:
                 test(Drawn(message, library, module, drawn))
     finally:
@@ -621,7 +678,7 @@ def test_payloads_come_back_on_any_machine(machine: str, path: Path, tmp_path: P
                 ok=f"{name.upper()}_OK",
             )
         )
-        for payload in case.payloads():
+        for payload, _ in case.contents():
             literal = ", ".join(map(str, payload)) or "0"
             trip = f"trip_{view.name}((const uint8_t[]){{{literal}}}, {len(payload)})"
             calls.append(f"    if (!{trip}) {{ return {min(len(calls) + 1, 255)}; }}")

@@ -22,7 +22,7 @@ from c_engine import MACHINES, build, comparable, first_difference, python_event
 from c_library import FLAGS
 from compiled import DIALECTS, DOCUMENTS, SCHEMAS, module_at, name_of, protocol_of
 from corpus import material_of, stream_of
-from test_c_codecs import Case, damages
+from test_c_codecs import Case, Content
 from test_c_decoder import steps_of
 from test_c_frames import frame_of, refusal
 from tooling import PROGRAM, require_compiler, require_tool
@@ -170,22 +170,22 @@ def _payloads(case: Case) -> Iterator[Vector]:
         payload = case.payload(values)
         expected = Encoded(RANGE, b"") if payload is None else Encoded(OK, payload)
         yield Vector(name, _encode(name, values), expected.__eq__, expected)
-    payloads = case.payloads()
+    contents = case.contents()
     dice = Random(name)
-    damaged = chain.from_iterable(islice(damages(p, payloads, dice), 8, 40) for p in payloads[:4])
-    for payload in dict.fromkeys([*payloads, *damaged]):
-        if len(payload) > case.message.sizes.greatest + 9:
+    each = (islice(case.damages(item, contents, dice), 8, 40) for item in contents[:4])
+    for content in dict.fromkeys([*contents, *chain.from_iterable(each)]):
+        if len(content.payload) > case.message.sizes.greatest + 9:
             continue
-        result, values = case.values(payload)
-        yield Vector(name, _decode(name, payload), _is_decoded(result, values), (result, values))
+        result, values = case.values(content)
+        yield Vector(name, _decode(name, content), _is_decoded(result, values), (result, values))
 
 
 def _encode(name: str, values: Any) -> Callable[[Calls], Any]:
     return lambda calls: calls.encode(name, values)
 
 
-def _decode(name: str, payload: bytes) -> Callable[[Calls], Any]:
-    return lambda calls: calls.decode(name, payload)
+def _decode(name: str, content: Content) -> Callable[[Calls], Any]:
+    return lambda calls: calls.decode(name, content.payload, content.held)
 
 
 def _is_decoded(result: int, values: Any) -> Callable[[Any], bool]:

@@ -53,9 +53,13 @@ TOLD = ROOT / "tests" / "told_schemas" / "answers.yaml"
 """Frames whose identity is told, at any time."""
 LENGTHS = ROOT / "tests" / "told_schemas" / "lengths.yaml"
 """Frames whose length is told, at any time: also to a decoder of two forms."""
+HELD = ROOT / "tests" / "framings" / "part_fields.yaml"
+"""Numbers of the frame that are fields, which a decoder gives to the check of a payload."""
+TOLD_BY_PARTS = ROOT / "tests" / "framings" / "part_fields_alone.yaml"
+"""Fields that a number of the frame counts, one alone: EVA takes each of its values apart."""
 DECODES = [
     (path, machine)
-    for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS)
+    for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS, TOLD_BY_PARTS)
     for machine in MACHINES[: 1 + ALL]
     if ALL or path.stem not in SLOW
 ]
@@ -70,6 +74,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
         (SIZED, "messages", WIDE),
         (BITS, "all", WIDE),
         (MIRRORS, "all", WIDE),
+        (HELD, "all", WIDE),
         (FORMS, "messages", WIDE),
         (TOLD, "all", WIDE),
         (TOLD, "messages", NARROW),

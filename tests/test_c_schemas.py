@@ -13,6 +13,7 @@ from types import ModuleType
 
 import pytest
 from c_engine import Process, check_events
+from c_library import held_of
 from corpus import Material, stream_of
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from schema_fuzzing import Schema, schemas
@@ -27,7 +28,7 @@ from protogen.fuzzing.trips import same
 from protogen.live.codec import module_of
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
-from protogen.runtime.attributes import arguments
+from protogen.runtime.attributes import arguments, held_arguments
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.frame import LiteralPart
 from protogen.targets.c.options import COptions
@@ -107,7 +108,7 @@ def frames_of(
         assert encoded == (Encoded(RANGE, b"") if payload is None else Encoded(OK, payload)), values
         if payload is None or len(payload) > GREATEST:
             continue
-        check_payload(process, module, message, payload)
+        check_payload(process, module, message, payload, held_of(message, values))
         frame = check_frame(process, module, sender, message, values, parts)
         if frame is not None:
             yield frame
@@ -121,10 +122,13 @@ def made(make: Callable[[], bytes]) -> bytes | None:
         return None
 
 
-def check_payload(process: Process, module: ModuleType, message: Message, payload: bytes) -> None:
-    decoded = process.do(process.calls.decode(message.name, payload))
+def check_payload(
+    process: Process, module: ModuleType, message: Message, payload: bytes, held: dict[str, int]
+) -> None:
+    decoded = process.do(process.calls.decode(message.name, payload, held))
     assert decoded.result == OK, payload.hex(" ")
-    expected = module.MESSAGES[message.name].from_payload(payload).to_dict()
+    record = module.MESSAGES[message.name]
+    expected = record.from_payload(payload, **held_arguments(held)).to_dict()
     assert same(decoded.values, expected), payload.hex(" ")
 
 

@@ -31,7 +31,7 @@ from hypothesis import strategies as st
 
 from protogen.runtime import bulk_cut, fast
 from protogen.runtime import decoder as runtime_decoder
-from protogen.runtime.attributes import arguments
+from protogen.runtime.attributes import arguments, attribute, held_arguments
 from protogen.runtime.errors import ByteError, DecodeError, EncodeError
 from protogen.runtime.framing.assembly import encode_frame
 from protogen.runtime.framing.machine import Candidate, Cut, verdict_on
@@ -128,12 +128,19 @@ def test_the_payload_of_an_event_is_that_of_its_message(path: Path, sender: str)
     for engine in ("fast", "construct"):
         for event in events_of(path, sender, engine, [data]):
             if event.kind == "message":
-                again = type(event.message).from_payload(event.payload)
+                again = type(event.message).from_payload(event.payload, **held_of(event))
                 assert repr(again) == repr(event.message)
                 carried = byte_by_byte(event.codec, event.raw)
                 if event.codec.layout.payload.kept is not None:
                     carried = carried.ljust(type(event.message).SIZES.greatest, b"\0")
                 assert event.payload == carried
+
+
+def held_of(event: Any) -> dict[str, int]:
+    """The fields that are numbers of the frame, out of its parts."""
+    held = event.message.HELD.items()
+    found = {name: int(getattr(event.parts, attribute(part))) for name, part in held}
+    return held_arguments(found)
 
 
 def byte_by_byte(sender: Any, raw: bytes) -> bytes:
@@ -538,6 +545,9 @@ SENT_BY_THE_REFERENCE = {
     ("virtual_parts", "station"),  # One checksum is always there, and one with a payload.
     ("escaped_counted", "station"),  # A length counts what is sent.
     ("sequences_counted", "station"),
+    ("part_fields", "sensor"),  # Fields are numbers of the frame.
+    ("part_fields", "host"),
+    ("part_fields_alone", "device"),
 }
 """Behind the payload stands something that is no checksum, but for what is said of some."""
 CUT_BY_THE_REFERENCE = {

@@ -130,6 +130,9 @@ AWAITED_BY_THE_REFERENCE = {
     ("regions", "station"),
     ("last_elements_alone", "device"),
     ("terminated_alone", "device"),  # Nothing marks where these frames start.
+    ("part_fields", "sensor"),  # Fields are numbers of the frame.
+    ("part_fields", "host"),
+    ("part_fields_alone", "device"),
 }
 
 

@@ -285,7 +285,7 @@ def drawn_frames(data: st.DataObject, module: Any, sender: Sender) -> list[bytes
     frames = []
     for message in sender.messages:
         for _ in range(data.draw(st.integers(1, 3))):
-            values = data.draw(values_of(message))
+            values = data.draw(values_of(message, [sender.frame]))
             parts = data.draw(parts_of(sender.frame, message))
             made = codec.check_payload(module, message, values)
             frame = made and codec.encode(module, sender, message, made, parts)

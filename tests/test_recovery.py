@@ -48,6 +48,7 @@ PEAKS = {
     "terminated_alone": 400_000,
     "last_elements_alone": 400_000,
     "told_regions": 200_000,
+    "part_fields_alone": 400_000,
 }
 """Bytes while a portion of noise is decoded. The first has the smallest frames; the others look at
 the payload again with each byte, and what these looks leave is collected later."""

@@ -21,6 +21,7 @@ from compiled import SCHEMAS, module_at, protocol_of
 from corpus import marks_of
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from schema_fuzzing.held import held_of, held_parts
 from schema_fuzzing.reference import frame_bytes, payload_bytes
 from schema_fuzzing.values import all_parts, parts_of, values_of
 
@@ -30,7 +31,7 @@ from protogen.model.messages import Message, given_parts
 from protogen.model.protocol import Sender
 from protogen.model.types import Array, Counted, Field, Struct, Switch, Type
 from protogen.passes.framing.capacity import payload_range
-from protogen.runtime.attributes import arguments, attribute
+from protogen.runtime.attributes import arguments, attribute, held_arguments
 from protogen.runtime.errors import DecodeError, EncodeError
 from protogen.runtime.values import as_dict
 
@@ -113,7 +114,7 @@ def test_values_come_back(case: Case, data: st.DataObject) -> None:
         rounds = boundary_rounds(case.message, frame)
         check_values(case, *next(islice(samples(case.message, frame, Random(seed)), rounds, None)))
         return
-    values = as_text(data.draw(values_of(case.message)))
+    values = as_text(data.draw(values_of(case.message, [case.sender.frame])))
     payload = payload_bytes(case.message.fields, values, {})
     assume(len(payload) <= case.message.sizes.greatest)  # Several fields may take all the room.
     check_values(case, values, data.draw(parts_of(case.sender.frame, case.message)))
@@ -142,7 +143,8 @@ def check_values(case: Case, values: Values, parts: Values) -> None:
     payload = record.to_payload()
     assert payload == payload_bytes(case.message.fields, values, {})
     assert len(payload) in case.message.sizes
-    assert same(case.record.from_payload(payload).to_dict(), values)
+    held = held_arguments(held_of(case.message, values))
+    assert same(case.record.from_payload(payload, **held).to_dict(), values)
     check_frame(case, record, payload, values, parts)
 
 
@@ -162,7 +164,8 @@ def check_frame(case: Case, record: Any, payload: bytes, values: Values, parts: 
         assert case.sender.framing.cut_ambiguous, error
         assert "decoder" in str(error), error
         return
-    all_of_it = all_parts(case.sender.frame, case.message, parts)
+    every = parts | held_parts(case.message, values)
+    all_of_it = all_parts(case.sender.frame, case.message, every)
     assert frame == frame_bytes(case.sender.frame, case.message, payload, all_of_it)
     (event,) = events_of(case, frame)
     assert (event.kind, event.offset, event.raw) == ("message", 0, frame)
@@ -290,7 +293,7 @@ def test_a_format_can_be_embedded_and_agrees_with_the_dataclass(case: Case) -> N
     for values, _ in boundaries(case):
         record = case.record.from_dict(values)
         data = b"\x00\x00\x01\x02" + record.to_payload()
-        parsed = own.parse(data)
+        parsed = own.parse(data, **held_arguments(held_of(case.message, values)))
         assert parsed.stamp == 0x0102
         assert own.build(parsed) == data
         assert same(plain(parsed.body), plain(dict(attributes(record))))

@@ -18,7 +18,7 @@ from schema_fuzzing.edits import edited, mangled
 from schema_fuzzing.shapes import COMMON, PAIRS
 from schema_fuzzing.streams import lost, portions, streams
 from schema_fuzzing.text import to_styled_yaml, to_yaml
-from schema_fuzzing.values import all_parts, parts_of, values_of
+from schema_fuzzing.values import parts_of, values_of
 
 from protogen.compiler import Compilation, compile_file
 from protogen.copying import replace
@@ -191,7 +191,8 @@ def _check_values(
     """Values go through payload and frame; the frames by sender."""
     frames: dict[str, list[bytes]] = {sender.name: [] for sender in protocol.senders}
     for message in protocol.messages:
-        made = codec.check_payload(module, message, data.draw(values_of(message)))
+        frames_of = [sender.frame for sender in protocol.senders_of(message)]
+        made = codec.check_payload(module, message, data.draw(values_of(message, frames_of)))
         if made is None:
             continue
         for sender in codec.senders_of(protocol, message):
@@ -208,7 +209,7 @@ def _check_frame(
     event("frame" if frame is not None else "the end would stand in the data")
     if frame is None:
         return None
-    shown = all_parts(sender.frame, message, parts)
+    shown = codec.shown_parts(sender, message, made, parts)
     codec.check_frame(sender, message, frame)
     codec.check_decoded(module, sender, message, frame, made, shown)
     _check_exact(module, sender, frame[: data.draw(st.integers(0, len(frame) - 1))])

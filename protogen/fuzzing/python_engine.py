@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from protogen.fuzzing.engine import NOTHING_TOLD, Refused, Seen, Told
 from protogen.fuzzing.samples import NOTHING_HELD, Held, Values
-from protogen.runtime.attributes import arguments
+from protogen.runtime.attributes import arguments, held_arguments
 from protogen.runtime.codec import Protocol
 from protogen.runtime.decoder import Decoder
 from protogen.runtime.errors import EncodeError
@@ -40,7 +40,9 @@ class PythonEngine:
 
     def values(self, message: str, payload: bytes, held: Held = NOTHING_HELD) -> Values:
         """Decode the fields alone; `held` are those that are parts of the frame."""
-        values: Values = self._messages[message].from_payload(payload, **held).to_dict()
+        values: Values = (
+            self._messages[message].from_payload(payload, **held_arguments(held)).to_dict()
+        )
         return values
 
     def frame(self, sender: str, message: str, values: Values, parts: Values) -> bytes:

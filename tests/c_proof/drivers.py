@@ -24,7 +24,8 @@ STATES = "-eva-slevel=1200"
 PATHS = 4000
 """States that are followed alone at one place."""
 _DECODE = re.compile(
-    r"enum \w+ (\w+)_decode\( ?struct (\w+) \*message, const uint8_t \*payload, size_t size\);"
+    r"enum \w+ (\w+)_decode\( ?struct (\w+) \*message, const uint8_t \*payload, "
+    r"size_t size((?:, \w+ \w+)*)\);"
 )
 _GREATEST = re.compile(r"#define (\w+)_PAYLOAD_MAX (\d+)[uU]")
 _ARRAY = re.compile(r"\[(\d+)\];")
@@ -121,7 +122,7 @@ static void prove_{prefix}_decode_of(size_t size) {{
     const uint8_t *const payload = &bytes[sizeof bytes - size];
     struct {struct} message;
     Frama_C_make_unknown((char *)bytes, sizeof bytes);
-{splits}    (void){prefix}_decode(&message, payload, size);
+{splits}    (void){prefix}_decode(&message, payload, size{held});
 }}
 
 static void prove_{prefix}_decode(void) {{
@@ -136,6 +137,17 @@ _SPLIT = """    if (size > {offset}) {{
         ;
     }}
 """
+_HELD = """    const {type} held_{index} = ({type}){any};
+    //@ split held_{index};
+    ;
+"""
+_ANY = {
+    "bool": "Frama_C_interval(0, 1)",
+    "uint8_t": "Frama_C_interval(0, 255)",
+    "uint16_t": "Frama_C_interval(0, 65535)",
+    "uint32_t": "Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU)",
+}
+"""Any number of a type."""
 
 
 @dataclass(frozen=True)
@@ -155,11 +167,17 @@ def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
     greatest = {name: int(size) for name, size in _GREATEST.findall(flat)}
     messages = {f"{protocol.name}_{message.name}": message for message in protocol.messages}
     parts, proofs = [_HEAD.format(name=protocol.name, upper=protocol.name.upper())], []
-    for prefix, struct in _DECODE.findall(flat):
+    for prefix, struct, held in _DECODE.findall(flat):
+        types = re.findall(r"(\w+) \w+", held)
         room = greatest[prefix.upper()] + 1
         offsets = _deciding(messages[prefix]) if prefix in messages else ()
         splits = "".join(_SPLIT.format(offset=offset) for offset in offsets)
+        splits += "".join(
+            _HELD.format(type=type_, index=index, any=_ANY[type_])
+            for index, type_ in enumerate(types)
+        )
         given = {"prefix": prefix, "struct": struct, "room": room, "steps": room + 2}
+        given["held"] = "".join(f", held_{index}" for index in range(len(types)))
         parts.append(_PAYLOAD.format(splits=splits, **given))
         proofs.append(f"{prefix}_decode")
     # Bytes that are copied are all alike: to follow each of them takes most of the time.
@@ -257,7 +275,8 @@ def _deciding(message: Message) -> tuple[int, ...]:
 
 
 def _bytes_of(field: Field, names: set[str]) -> range:
-    if field.name in names and isinstance(field.type, Integer) and field.position is not None:
+    is_told = field.name in names and not field.part
+    if is_told and isinstance(field.type, Integer) and field.position is not None:
         return range(field.position, field.position + field.type.size)
     return range(0)
 

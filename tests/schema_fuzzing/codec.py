@@ -13,8 +13,9 @@ from protogen.model.framing import Anywhere, StartLiteral, StartSet
 from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.api import EncodeError
-from protogen.runtime.attributes import arguments, attribute
+from protogen.runtime.attributes import arguments, attribute, held_arguments
 from protogen.runtime.constructs import PayloadError, Whole
+from schema_fuzzing.held import held_of, held_parts
 from schema_fuzzing.reference import frame_bytes, payload_bytes
 from schema_fuzzing.values import all_parts
 
@@ -32,29 +33,39 @@ def check_payload(module: ModuleType, message: Message, values: dict[str, Any]) 
     payload = made.to_payload()
     assert payload == expected
     assert len(payload) in message.sizes
-    check_format(type(made).FORMAT, payload, one_spelling=message.plan.has_one_spelling)
-    read = type(made).from_payload(payload)
+    held = held_arguments(held_of(message, values))
+    check_format(type(made).FORMAT, payload, held, one_spelling=message.plan.has_one_spelling)
+    read = type(made).from_payload(payload, **held)
     assert read == made
     assert read.to_dict() == values
     assert not [violation for violation in made.violations() if violation.forbidden]
     return made
 
 
-def check_format(format: Any, payload: bytes, *, one_spelling: bool) -> None:
+def check_format(
+    format: Any, payload: bytes, held: Mapping[str, int], *, one_spelling: bool
+) -> None:
     """Values that `FORMAT` parses build the same bytes; other bytes are an error with its place.
 
     Where values have several spellings, they build bytes that have the same values.
     """
-    assert format.build(Whole(format).parse(payload)) == payload
+    assert format.build(Whole(format).parse(payload, **held)) == payload
     for wire in (payload[:-1], payload[1:], payload + b"\1"):
         try:
-            parsed = Whole(format).parse(wire)
+            parsed = Whole(format).parse(wire, **held)
         except PayloadError as error:
             assert 0 <= error.offset <= len(wire)
         else:
             built = format.build(parsed)
-            same = built == wire if one_spelling else Whole(format).parse(built) == parsed
+            same = built == wire if one_spelling else Whole(format).parse(built, **held) == parsed
             assert same or "nan" in repr(parsed)
+
+
+def shown_parts(
+    sender: Sender, message: Message, made: Any, parts: dict[str, int | str]
+) -> dict[str, int | str]:
+    """The parts that an event shows of a frame for which these were given."""
+    return all_parts(sender.frame, message, parts | held_parts(message, made.to_dict()))
 
 
 def encode(
@@ -70,7 +81,7 @@ def encode(
         with pytest.raises(EncodeError, match=re.escape(str(error))):
             module.encode(made, sender.name, **arguments(parts))
         too_large = len(made.to_payload()) > sender.framing.payload.greatest
-        shown = all_parts(sender.frame, message, parts)
+        shown = shown_parts(sender, message, made, parts)
         wire = frame_bytes(sender.frame, message, made.to_payload(), shown)
         limit = sender.frame.limit
         too_large |= limit is not None and len(wire) > limit
@@ -79,7 +90,7 @@ def encode(
         assert too_large or (sender.framing.cut_ambiguous and "decoder" in str(error)), error
         return None
     assert module.encode(made, sender.name, **arguments(parts)) == frame
-    shown = all_parts(sender.frame, message, parts)
+    shown = shown_parts(sender, message, made, parts)
     assert frame == frame_bytes(sender.frame, message, made.to_payload(), shown)
     return frame
 

@@ -53,7 +53,7 @@ def payload_bytes(fields: Sequence[Field], values: Mapping[str, Any], outer: Sco
     for field in fields:
         is_there = field.when is None or worked_out(field.when, scope)
         if is_there and not (field.optional and values[field.name] is None):
-            found += value_bytes(field.type, values[field.name], scope)
+            found += b"" if field.part else value_bytes(field.type, values[field.name], scope)
         scope[field.name] = values[field.name]
     return found
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import reduce
 from math import ceil, floor, lcm
 from operator import getitem
+from types import MappingProxyType
 from typing import Any
 
 from expression_oracle import worked_out
@@ -35,6 +36,7 @@ from protogen.model.types import (
     Type,
     Until,
 )
+from schema_fuzzing.held import Runs, held_runs, held_value
 from schema_fuzzing.reference import value_bytes
 
 _USUAL_COUNT = 5
@@ -43,17 +45,20 @@ _ASCII = st.characters(max_codepoint=0x7F)
 
 Scope = dict[str, Any]
 """The integers in front, which count and choose, and structs that hold some."""
+Held = Mapping[str, Sequence[Runs]]
+"""Parts of the frame that are fields, with what they may be in each frame."""
+NOTHING_HELD: Held = MappingProxyType({})
 
 
 @st.composite
-def values_of(draw: st.DrawFn, message: Message) -> dict[str, Any]:
-    """Values that strict encoding takes."""
+def values_of(draw: st.DrawFn, message: Message, frames: Sequence[Frame]) -> dict[str, Any]:
+    """Values that strict encoding takes, for any of these frames."""
     if message.unspecified:
         size = draw(_count(message.sizes.least, message.sizes.greatest))
         (field,) = message.fields
         assert isinstance(field.type, Octets)
         return {field.name: draw(_octets(size, field.type.byte_bits)).hex()}
-    return draw(_struct(message.fields, {}))
+    return draw(_struct(message.fields, {}, held_runs(message, frames)))
 
 
 @st.composite
@@ -64,11 +69,13 @@ def parts_of(draw: st.DrawFn, frame: Frame, message: Message) -> dict[str, int |
         for index, part in enumerate(frame.identity)
         if message.chooses(index) and draw(st.booleans())
     }
-    return chosen | {
+    others = {
         part.name: draw(_part(part))
         for part in frame.caller_parts
         if part.default is None or draw(st.booleans())
     }
+    held = {field.part for field in message.held}
+    return {name: value for name, value in (chosen | others).items() if name not in held}
 
 
 def _part(part: ValuePart | CounterPart) -> st.SearchStrategy[int | str]:
@@ -102,7 +109,9 @@ def all_parts(frame: Frame, message: Message, given: dict[str, int | str]) -> di
 
 
 @st.composite
-def _struct(draw: st.DrawFn, fields: Sequence[Field], outer: Scope) -> dict[str, Any]:
+def _struct(
+    draw: st.DrawFn, fields: Sequence[Field], outer: Scope, held: Held = NOTHING_HELD
+) -> dict[str, Any]:
     scope = dict(outer)
     found: dict[str, Any] = {}
     goes_on = True
@@ -111,7 +120,10 @@ def _struct(draw: st.DrawFn, fields: Sequence[Field], outer: Scope) -> dict[str,
         is_there = field.when is None or worked_out(field.when, scope)
         goes_on = goes_on and (not field.optional or draw(st.booleans()))
         is_there = is_there and goes_on
-        found[field.name] = draw(_field(field, scope, uses)) if is_there else None
+        drawn = _field(field, scope, uses)
+        if field.part:
+            drawn = _of_frames(field, uses, held[field.part])
+        found[field.name] = draw(drawn) if is_there else None
         if field.region is not None and found[field.name] is not None:
             told = plain_name(field.region.by) if isinstance(field.region, Counted) else None
             if told is not None:
@@ -229,10 +241,9 @@ def _used(
     draw: st.DrawFn, field: Field, type_: Integer, uses: list[Counted | Switch]
 ) -> int | bool:
     """A value that counts or chooses what follows, so that it can follow."""
-    least, greatest = _bounds(type_, field)
     counts = [use for use in uses if isinstance(use, Counted)]
     switches = [use for use in uses if isinstance(use, Switch)]
-    greatest = min([greatest, *(use.greatest * _each(use) for use in counts)])
+    least, greatest = _counting(type_, field, counts)
     if counts:
         usual = _count(least, greatest)
     elif type_.enum is not None and type_.enum.closed:
@@ -250,6 +261,30 @@ def _used(
     # One that counts bytes may be 0.
     value -= value % lcm(*map(_each, counts))
     return bool(value) if type_.role == "bool" else value
+
+
+def _counting(type_: Integer, field: Field, counts: Sequence[Counted]) -> tuple[int, int]:
+    """The bounds of a number, of which there has to be room for what it counts."""
+    least, greatest = _bounds(type_, field)
+    return least, min([greatest, *(use.greatest * _each(use) for use in counts)])
+
+
+def _of_frames(
+    field: Field, uses: list[Counted | Switch], frames: Sequence[Runs]
+) -> st.SearchStrategy[int | bool]:
+    """A value that each of the frames may have as its part."""
+    type_ = field.type
+    assert isinstance(type_, Integer)
+    counts = [use for use in uses if isinstance(use, Counted)]
+    switches = [use for use in uses if isinstance(use, Switch)]
+    is_closed = type_.enum is not None and type_.enum.closed
+    known = [entry.value for entry in type_.enum.values] if type_.enum and is_closed else None
+    for switch in switches[:1]:
+        own = [case.value for case in switch.cases if case.value is not None]
+        if switch.rest is None and len(own) == len(switch.cases):
+            known = [value for value in own if known is None or value in known]
+    bounds = _counting(type_, field, counts)
+    return held_value(field, known, [*map(_each, counts)], bounds, frames)
 
 
 def _count(least: int, greatest: int) -> st.SearchStrategy[int]:

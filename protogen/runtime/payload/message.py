@@ -7,7 +7,7 @@ from contextlib import suppress
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from protogen.runtime.attributes import attribute
+from protogen.runtime.attributes import attribute, held_argument
 from protogen.runtime.errors import DecodeError, EncodeError, NeedsReference, PayloadFault
 from protogen.runtime.identities import Identities
 from protogen.runtime.payload.number import GivenValue
@@ -145,8 +145,8 @@ class Message(Record):
 
     @classmethod
     def __held__(cls, numbers: Mapping[str, int]) -> dict[str, int]:
-        """The fields that are numbers of the frame, out of all numbers of one."""
-        return {name: numbers[part] for name, part in cls.HELD.items()}
+        """The fields that are numbers of the frame, as arguments, out of all numbers of one."""
+        return {held_argument(name): numbers[part] for name, part in cls.HELD.items()}
 
     def __holds__(self) -> dict[str, int]:
         """The numbers of the frame that are fields, by the names of these parts."""

@@ -31,6 +31,7 @@ from protogen.model.types import (
     Until,
     packing_of,
 )
+from protogen.runtime.attributes import held_argument
 from protogen.targets.python.formulas import formula
 from protogen.targets.python.literals import call, mapping, octets_in_class, text
 from protogen.targets.python.names import Names
@@ -49,7 +50,7 @@ def field_format(field: Field, names: Names) -> str:
 
 def _part(field: Field, names: Names) -> str:
     """The declaration of a number that the frame has."""
-    found = call("_c.Part", text(field.name), *(["bool"] if field.is_bool else []))
+    found = call("_c.Part", text(held_argument(field.name)), *(["bool"] if field.is_bool else []))
     if isinstance(field.type, Integer) and field.type.enum and field.type.is_closed:
         return call("_c.Closed", found, names.classes[field.type.enum.name])
     return found
