@@ -29,7 +29,7 @@ _NOTHING: ByteSet = frozenset()
 
 def payload_alphabet(byte_bits: int, messages: Sequence[Message]) -> ByteSet:
     """The bytes that payloads of these messages can hold."""
-    fields = [field for message in messages for field in message.fields]
+    fields = [field for message in messages for field in message.fields if not field.part]
     if byte_bits == 7:
         whole = any(holds_whole_bytes(field.type) for field in fields)
         return EVERY_BYTE if whole else SEVEN_BITS
