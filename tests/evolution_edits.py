@@ -121,6 +121,17 @@ def change_meaning(data: Data, dice: Random) -> None:
     }[key]
 
 
+def change_part(data: Data, dice: Random) -> None:
+    """A number of the frame becomes a field of the payload, or the other way round."""
+    found = _some(mappings_with(data.get("messages"), "part"), dice)
+    if found is None:
+        return
+    if dice.random() < 0.5:
+        del found["part"]
+    else:
+        found["part"] = dice.choice([*data["frame"], "kind"])
+
+
 def drop_meaning(data: Data, dice: Random) -> None:
     keys = ["scale", "offset", "unit", "range", "byte_order", "default", "special", "const"]
     key = dice.choice(keys)
@@ -234,6 +245,7 @@ EDITS: tuple[Callable[[Data, Random], None], ...] = (
     change_meaning,
     change_meaning,
     drop_meaning,
+    change_part,
     change_values,
     change_values,
     change_closed,

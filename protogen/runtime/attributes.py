@@ -16,7 +16,7 @@ _METHODS = "violations to_dict from_dict to_payload from_payload parse_payload"
 """Of messages and structs: a field of the name would hide one."""
 _PARAMETERS = "message sender strict engine form"
 """Of generated encoders, beside the parts whose values the caller gives."""
-_PARSED = "payload data stream"
+_PARSED = "payload data stream cls"
 """Parameters of what reads payloads, beside the numbers of the frame that are fields."""
 
 

@@ -26,12 +26,22 @@ def payload_alphabet(messages: Iterable[Any], types: Types, *, delimited: bool) 
     fields = [message.get("fields", {}) for message in found]
     if "unspecified" in fields:
         return EVERY
+    fields = [_of_payload(item) for item in fields]
     separators = [message["separator"] for message in found if "separator" in message]
     is_text = bool(separators) or any(_is_text(item, types) for item in fields)
     if not is_text:
         return EVERY
     between = {_code(item["byte"] if isinstance(item, dict) else item) for item in separators}
     return frozenset(between).union(*(_of_fields(item, types, last=delimited) for item in fields))
+
+
+def _of_payload(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """The fields that have bytes: those that are parts of the frame have none."""
+    return {
+        name: field
+        for name, field in fields.items()
+        if not (isinstance(field, dict) and "part" in field)
+    }
 
 
 def _full(item: Any, types: Types) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from schema_fuzzing.fields import optional, structs
 from schema_fuzzing.frames import FramePlan
 from schema_fuzzing.names import FIELDS, MESSAGES, fresh, several
 from schema_fuzzing.numbers import ORDERS
+from schema_fuzzing.part_fields import part_fields, with_identity
 from schema_fuzzing.parts import PartPlan, identity_values, is_text, text_of
 from schema_fuzzing.separated import separated
 from schema_fuzzing.setting import Built, Declared, Setting, Size
@@ -94,7 +95,10 @@ def _identified(draw: st.DrawFn, plan: Plan, found: list[MessagePlan]) -> list[M
         for index, identity in zip(members, drawn, strict=False):
             runs = several.beside(identity)
             written = {"id": draw(_written_identity(scheme, identity, runs))}
-            result[index] = replace(result[index], data={**written, **result[index].data})
+            data = {**written, **result[index].data}
+            frames = [plan.frames[sender] for sender in result[index].senders]
+            data = draw(with_identity(data, frames, scheme, [len(run) > 1 for run in runs]))
+            result[index] = replace(result[index], data=data)
     return result
 
 
@@ -220,7 +224,8 @@ class _Message:
         if self._whole:
             fields["whole_byte"] = "byte"
             size = Size(1, 1)
-        here = setting.behind(size)
+        held, here = self._draw(part_fields(self._frames, setting.behind(size)))
+        fields = {**held, **fields}
         if setting.delimited and here.budget >= _TAIL and self._draw(forms.one_in(4)):
             return self._with_tail(here, fields, size)
         built: Built = self._draw(structs(here, greatest=5))

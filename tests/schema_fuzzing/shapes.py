@@ -11,7 +11,7 @@ from schema_fuzzing.setting import ELSE
 _FIELD_KEYS = (
     "values", "closed", "flags", "bits", "const", "default", "range", "scale", "offset", "unit",
     "special", "byte_order", "unknown", "switch", "packed", "digits",
-    "code", "padding", "chars", "when", "fraction", "case", "empty", "until", "optional",
+    "code", "padding", "chars", "when", "fraction", "case", "empty", "until", "optional", "part",
 )  # fmt: skip
 
 _CODES = (
