@@ -94,6 +94,11 @@ class FramePlan:
         """The same frame, with a payload that may be longer than its message."""
         return self._with_payload(longer="cut")
 
+    @property
+    def is_cut(self) -> bool:
+        """True if newer senders may have anything behind the fields of a payload."""
+        return any("longer" in part.data for part in self.parts)
+
     def _with_payload(self, **keys: str) -> FramePlan:
         parts = (part.adding(**keys) if part.role == "payload" else part for part in self.parts)
         return replace(self, parts=tuple(parts))

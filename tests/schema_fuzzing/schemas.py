@@ -155,7 +155,7 @@ class _Drawing:
             if may_trim and has_room and bounded.has_length and self._draw(st.booleans()):
                 bounded = bounded.cut()
             payload = self._payload
-            if self._byte_bits == 8:
+            if self._byte_bits == 8 and not bounded.is_cut:
                 senders = self._senders if key == _SHARED else [key]
                 of_each = [[item.data for item in sent if name in item.senders] for name in senders]
                 declared = {item.name: item.built.data for item in types}

@@ -86,7 +86,8 @@ class _Analysis:
         """The messages without the bytes that newer senders may have behind them."""
         self._too_large = any(message.name in draft.too_large for message in self._messages)
         self._overloads = draft.overloads[sender]
-        self._payload = payload_alphabet(context.syntax.byte_bits, self._messages)
+        bits, is_cut = context.syntax.byte_bits, frame.payload.is_cut
+        self._payload = payload_alphabet(bits, self._messages, is_cut=is_cut)
         self.sender = sender
         self.frame = frame
         self.delimiters = delimiters_of(frame, self._payload)

@@ -27,13 +27,16 @@ from protogen.passes.proofs.wire_code import EVERY_BYTE, SEVEN_BITS, ByteSet
 _NOTHING: ByteSet = frozenset()
 
 
-def payload_alphabet(byte_bits: int, messages: Sequence[Message]) -> ByteSet:
-    """The bytes that payloads of these messages can hold."""
+def payload_alphabet(byte_bits: int, messages: Sequence[Message], *, is_cut: bool) -> ByteSet:
+    """The bytes that payloads of these messages can hold.
+
+    Nothing is said of what newer senders have behind the fields of payloads that are cut.
+    """
     fields = [field for message in messages for field in message.fields if not field.part]
     if byte_bits == 7:
         whole = any(holds_whole_bytes(field.type) for field in fields)
         return EVERY_BYTE if whole else SEVEN_BITS
-    if not any(map(_holds_text, (field.type for field in fields))):
+    if is_cut or not any(map(_holds_text, (field.type for field in fields))):
         return EVERY_BYTE
     return _of_fields(fields)
 
