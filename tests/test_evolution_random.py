@@ -29,6 +29,7 @@ NAMES = (
     "flag-renamed",
     "bits-renamed",
     "field-kind",
+    "field-of-frame",
     "field-renamed",
     "field-spelling",
     "field-special-renamed",
