@@ -10,9 +10,11 @@ import msgspec
 
 from protogen.c_language.numbers import hexadecimal
 from protogen.copying import replace
+from protogen.model.identities import Runs
 from protogen.model.messages import Message, given_parts
-from protogen.model.parts import ChoicePart, IdentityPart
+from protogen.model.parts import ChoicePart, IdentityPart, NumberPart
 from protogen.model.protocol import Sender
+from protogen.model.types import Field
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.frames import Argument, FrameView, one_of
 from protogen.targets.c.frame.virtual import value_of
@@ -93,13 +95,22 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
         if member is None:
             return argument
         own = argument.called(member)
+        if self._field(argument.part).is_bool:
+            return replace(own, refused=_refused_bit(self._part(argument.part), member))
         return replace(own, refused="") if self._is_validated(argument.part) else own
+
+    def _part(self, name: str) -> NumberPart:
+        """A part of the frame that the message has as a field."""
+        parts = given_parts(self.frame.plan.frame, self.message)
+        return next(part for part in parts if part.name == name)
+
+    def _field(self, name: str) -> Field:
+        """The field that is a part of the frame."""
+        return next(field for field in self.message.held if field.part == name)
 
     def _is_validated(self, name: str) -> bool:
         """True if the message's own bounds of a part of the frame leave nothing to refuse."""
-        parts = given_parts(self.frame.plan.frame, self.message)
-        part = next(part for part in parts if part.name == name)
-        field = next(field for field in self.message.held if field.part == name)
+        part, field = self._part(name), self._field(name)
         if isinstance(part, ChoicePart) or field.least is None or field.greatest is None:
             return False
         ends = [field.least, field.greatest, *(Fraction(entry.value) for entry in field.special)]
@@ -109,11 +120,17 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     def values(self) -> tuple[Argument, ...]:
         """The parts that vary: those of several identities first."""
         chosen = (
-            one_of(argument, part, self.message.told_by.runs[index])
+            self._one_of(argument, part, self.message.told_by.runs[index])
             for index, part, argument in self._sent_identity
             if self.message.chooses(index)
         )
         return (*chosen, *map(self._own, self.frame.arguments))
+
+    def _one_of(self, argument: Argument, part: IdentityPart, runs: Runs) -> Argument:
+        """An identity that is one of several; those of a single bit are all that there are."""
+        if part.name in self._members and self._field(part.name).is_bool:
+            return replace(argument, refused="")
+        return one_of(argument, part, runs)
 
     @property
     def arguments(self) -> tuple[Argument, ...]:
@@ -206,3 +223,10 @@ class SenderFrames:
             is_cut_off=framing.is_cut_off,
             is_sized=message.name in self._sized,
         )
+
+
+def _refused_bit(part: NumberPart, name: str) -> str:
+    """The condition of a bit that a part of the frame can't be: compilers warn of comparisons."""
+    if part.least > 0:
+        return f"!{name}"
+    return name if part.greatest < 1 else ""
