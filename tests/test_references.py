@@ -45,6 +45,7 @@ messages:
     id: {number: 1}
     parts: {extra: 5}
     fields:
+      first: {part: number, type: uint8}
       size: uint8
       state: {type: kind, const: idle, default: idle}
       name: {type: ascii, size: size}
