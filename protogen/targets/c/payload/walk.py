@@ -143,10 +143,8 @@ class Walk:
                 self.packed_fill(step, place, str(self.count(step.count)))
             case RecordStep() | RepeatStep() if step.packing is not None:
                 self.packed(step, place)
-            case PartStep():
-                self.part(step, place)
             case NumberStep():
-                self.number(step, place)
+                self._one_number(step, place)
             case ConstantStep():
                 self.constant(step)
             case BytesStep() | RepeatStep():
@@ -159,6 +157,13 @@ class Walk:
                 self.optional(step, place)
             case RegionStep():
                 self.region(step, place)
+
+    def _one_number(self, step: NumberStep, place: str) -> None:
+        """Walk over a number of the payload, or of the frame."""
+        if isinstance(step, PartStep):
+            self.part(step, place)
+        else:
+            self.number(step, place)
 
     def _several(self, step: BytesStep | RepeatStep, place: str) -> None:
         """Walk over bytes or elements, where there are any."""
