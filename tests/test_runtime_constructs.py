@@ -5,6 +5,7 @@ import io
 import math
 import pickle
 import struct
+from collections.abc import Callable
 from typing import Any
 
 import construct
@@ -267,6 +268,65 @@ def test_a_prefix_is_measured_or_says_what_is_missing() -> None:
             c.prefix_size(LIST, wire[:size])
         assert caught.value.missing > 0
     assert c.prefix_size(LIST, wire + b"more") == len(wire)
+
+
+_NESTED = c.Struct(
+    "n" / c.Int(8),
+    "rows"
+    / c.Counted(
+        "n",
+        c.Struct(
+            "k" / c.Int(8),
+            "name" / c.Latin1Until(0, 3),
+            "numbers" / c.Counted("k", c.Int(16)),
+            "box" / c.Region("k", c.Struct("all" / c.Fill(c.Int(8)))),
+            "more" / c.When("k", c.Octets(2)),
+        ),
+    ),
+    "chain" / c.UpToLast(c.Struct("last" / c.Int(8), "pair" / c.Counted(2, c.Flag01)), "last", 3),
+)
+
+
+def _verdict(measure: Callable[..., int], *arguments: Any) -> tuple[Any, ...]:
+    try:
+        return (measure(*arguments),)
+    except c.PayloadError as error:
+        return error.reason, error.path, error.offset, error.problem, error.missing
+
+
+@given(st.lists(st.lists(st.integers(0, 3) | st.integers(0, 255), min_size=1, max_size=9)))
+def test_a_measurer_says_of_bytes_that_come_in_what_is_said_of_all_at_once(
+    chunks: list[list[int]],
+) -> None:
+    measurer, wire = c.Measurer(_NESTED, {}), b""
+    for chunk in map(bytes, chunks):
+        wire += chunk
+        whole = _verdict(c.prefix_size, _NESTED, wire, {})
+        assert _verdict(measurer.take, chunk) == whole
+        if whole[-1:] == (0,) or len(whole) == 1:
+            break  # What is more is no part of it.
+    assert measurer.taken == len(wire)
+
+
+class _Seen(c.Piece):
+    """A byte, which is counted."""
+
+    times = 0
+
+    def _parse(self, stream: io.BytesIO, context: Any, path: str) -> int:
+        self.times += 1
+        return int(c.Int(8)._parse(stream, context, path))
+
+
+@pytest.mark.parametrize(
+    "array_of", [lambda item: c.Counted(500, item), lambda item: c.UpToLast(item, "last", 500)]
+)
+def test_a_measurer_reads_an_element_again_only_where_it_was_cut(array_of: Any) -> None:
+    seen = _Seen()
+    measurer = c.Measurer(c.Struct("all" / array_of(c.Struct("last" / seen))), {})
+    sizes = [_verdict(measurer.take, bytes((index == 499,)))[-1] for index in range(500)]
+    assert sizes == [1] * 499 + [500]
+    assert seen.times == 2 * 500 - 1  # Behind each byte but the last, one was tried in vain.
 
 
 def test_a_float_keeps_the_payload_of_a_quiet_nan() -> None:

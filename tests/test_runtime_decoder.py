@@ -4,6 +4,7 @@ import gc
 import random
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import handwritten_framings
@@ -253,3 +254,44 @@ def test_the_collector_is_on_again_after_an_error() -> None:
     with pytest.raises(KeyboardInterrupt):
         Odd(SENDERS["matty pc"]).feed(bytes(3 << 15))
     assert gc.isenabled()
+
+
+TRACK = """\
+protocol: track
+endpoints: {board: Tracker}
+byte_order: little
+frame:
+  id: {type: uint8, id: true}
+  payload: {}
+  crc: {type: uint16, algorithm: CRC-16/KERMIT, covers: id..payload}
+messages:
+  path:
+    id: 1
+    from: board
+    fields:
+      n: uint16
+      points: {count: n, fields: {has_height: bool, height: {type: uint8, when: has_height}}}
+"""
+
+
+@pytest.mark.parametrize("engine", ["fast", "construct"])
+def test_a_frame_that_only_its_payload_ends_takes_time_in_proportion_to_its_size(
+    engine: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "track.yaml"
+    path.write_text(TRACK)
+    module = module_at(path)
+    point, parsed = module.PathPoints, 0
+    parse = point.FORMAT._parse
+
+    def count(*arguments: Any) -> Any:
+        nonlocal parsed
+        parsed += 1
+        return parse(*arguments)
+
+    monkeypatch.setattr(point.FORMAT, "_parse", count)
+    frame = module.encode(module.Path(n=300, points=[point(has_height=True, height=7)] * 300))
+    (event,) = module.Decoder("board", engine).feed(frame)
+    assert event.message.n == 300
+    # Each is tried at its first byte and behind it, once for the size and then for the message.
+    assert parsed <= 4 * 300

@@ -34,6 +34,7 @@ from protogen.runtime.constructs.numbers import (
     Written,
 )
 from protogen.runtime.constructs.pieces import Count, PayloadError, Piece
+from protogen.runtime.constructs.progress import Measurer
 from protogen.runtime.constructs.strings import (
     Latin1,
     Latin1Fill,
@@ -78,6 +79,7 @@ __all__ = [
     "Latin1",
     "Latin1Fill",
     "Latin1Until",
+    "Measurer",
     "Octets",
     "OctetsFill",
     "OctetsUntil",

@@ -21,6 +21,7 @@ from protogen.runtime.constructs.pieces import (
     read,
     said,
 )
+from protogen.runtime.constructs.progress import read_elements
 from protogen.runtime.payload.formula import Formula, number_of
 
 
@@ -80,8 +81,7 @@ class Counted(Around):
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> list[Any]:
         count = extent_of(self._count, context, path)
-        parse = self.subcon._parsereport
-        return [parse(stream, context, f"{path} -> [{index}]") for index in range(count)]
+        return read_elements(self.subcon, stream, context, path, lambda found: len(found) < count)
 
     def _build(self, obj: Any, stream: BinaryIO, context: Any, path: str) -> Any:
         count = extent_of(self._count, context, path)
@@ -191,13 +191,15 @@ class UpToLast(Around):
         self.flagbuildnone = False
 
     def _parse(self, stream: BinaryIO, context: Any, path: str) -> list[Any]:
-        elements: list[Any] = []
-        while not elements or not self._is_last(elements[-1]):
+        def goes_on(elements: list[Any]) -> bool:
+            if elements and self._is_last(elements[-1]):
+                return False
             if len(elements) == self._greatest:
                 problem = f"no {self._mark} of {self._greatest} elements says that it is the last"
                 raise PayloadError("size", path, stream.tell(), problem)
-            place = f"{path} -> [{len(elements)}]"
-            elements.append(self.subcon._parsereport(stream, context, place))
+            return True
+
+        elements = read_elements(self.subcon, stream, context, path, goes_on)
         if len(elements) < self._least:
             problem = f"at least {self._least} elements are needed, and there are {len(elements)}"
             raise PayloadError("size", path, stream.tell(), problem)

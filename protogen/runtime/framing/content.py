@@ -6,7 +6,7 @@ The *content* is the bytes of all parts before any stuffing, without the end lit
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from protogen.runtime.errors import ByteError, PayloadFault, Reason
 from protogen.runtime.framing.frame import (
@@ -22,6 +22,9 @@ from protogen.runtime.framing.frame import (
 )
 from protogen.runtime.framing.layout import Slice, is_optional
 from protogen.runtime.framing.sender import IdentityGroup, SenderSpec
+
+if TYPE_CHECKING:
+    from protogen.runtime.constructs import Measurer
 
 
 class Rejected(Exception):  # noqa: N818 - it is a verdict, not an error of the program
@@ -54,7 +57,7 @@ class Content:
         self.is_full = False
         """True if all parts are there."""
         self._group: IdentityGroup[Any] | None = None
-        self._is_measuring = False
+        self._measurer: Measurer | None = None  # Of a payload that nothing delimits but itself.
         self.limit: int | None = None
         """Bytes that the content has at most, as soon as that is known."""
         self.region_end: int | None = None
@@ -135,8 +138,8 @@ class Content:
 
     def _leave(self) -> None:
         """End the part that is due."""
-        if self._is_measuring:
-            self._measure()
+        if self._measurer is not None:
+            self._measure(self._measurer)
             return
         part = self._part
         self._read_part(part, bytes(self.bytes[-part.size :]))
@@ -239,9 +242,9 @@ class Content:
         elif self._ends_elsewhere or self._group is None:
             self._open_payload()
         else:
-            self._is_measuring = True
+            self._measurer = self._group.measurer(self.numbers)
             self._clear_bits = self._sender.frame.seven_bit
-            self._measure()
+            self._measure(self._measurer)
 
     @property
     def _ends_elsewhere(self) -> bool:
@@ -263,18 +266,17 @@ class Content:
         around = self._layout.head_size + self._layout.tail_size(1)
         return self._sender.frame.greatest - around
 
-    def _measure(self) -> None:
+    def _measure(self, measurer: Measurer) -> None:
         """Try to read a message that nothing delimits but itself."""
-        assert self._group is not None
-        start = bytes(self.bytes[self._layout.head_size :])
         try:
-            self._set_payload(self._group.measure(start, self.numbers))
+            new = bytes(self.bytes[self._layout.head_size + measurer.taken :])
+            self._set_payload(measurer.take(new))
         except PayloadFault as error:
-            if not error.missing or len(start) + error.missing > self._room:
+            if not error.missing or measurer.taken + error.missing > self._room:
                 raise Rejected(error.reason, error.problem) from None
             self._next = len(self.bytes) + error.missing
             return
-        self._is_measuring = False
+        self._measurer = None
         self.index += 1
         self._enter()
 

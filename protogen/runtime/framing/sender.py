@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.frame import (
@@ -19,6 +19,9 @@ from protogen.runtime.framing.layout import Layout
 from protogen.runtime.identities import Identities, Identity, Runs
 from protogen.runtime.payload.message import Message
 from protogen.runtime.payload.number import Characters, given_number
+
+if TYPE_CHECKING:
+    from protogen.runtime.constructs import Measurer
 
 MessageT_co = TypeVar("MessageT_co", bound=Message, covariant=True)
 PartsT_co = TypeVar("PartsT_co", covariant=True)
@@ -70,15 +73,12 @@ class IdentityGroup(Generic[MessageT_co]):
             return self._part.fitted(payload, message.__known_of__(payload, numbers))
         return self._part.fitted(payload, self._own)
 
-    def measure(self, start: bytes, numbers: Mapping[str, int]) -> int:
-        """The size of the payload that starts so; PayloadError with `missing` if it is longer.
-
-        `numbers` are those of the frame in front of it.
-        """
-        from protogen.runtime.constructs import prefix_size  # It takes long to import.
+    def measurer(self, numbers: Mapping[str, int]) -> Measurer:
+        """What tells the size of a payload that comes in, behind these numbers of the frame."""
+        from protogen.runtime.constructs import Measurer  # It takes long to import.
 
         message = self.messages[0]
-        return prefix_size(message.FORMAT, start, message.__held__(numbers))
+        return Measurer(message.FORMAT, message.__held__(numbers))
 
     def read(self, payload: bytes, numbers: Mapping[str, int]) -> MessageT_co:
         """The message of a frame's payload. Raises PayloadError: size, value or encoding."""
