@@ -536,7 +536,7 @@ class LcdDump(_rt.Message):
     row: int
     """Row, 0..255 (rflex-protocol.txt, SYS_LCD_DUMP)."""
     byte_count: int
-    """Byte count, 0..255 (rflex-protocol.txt, SYS_LCD_DUMP)."""
+    """Byte count, 0..255, computed where it is left out (rflex-protocol.txt, SYS_LCD_DUMP)."""
     pixels: bytes
     """Eight pixels in each byte; a b21r has 240 rows of 40 bytes (rflex_commands.cc,
     parseSysReport)."""
@@ -563,11 +563,13 @@ class LcdDump(_rt.Message):
         )
     )
 
-    def __init__(self, *, timestamp: int, row: int, byte_count: int, pixels: bytes) -> None:
+    def __init__(
+        self, *, timestamp: int, row: int, byte_count: int = _rt.OMITTED, pixels: bytes
+    ) -> None:
         self.timestamp = timestamp
         self.row = row
-        self.byte_count = byte_count
         self.pixels = pixels
+        self.byte_count = _rt.count_of(self.pixels) if byte_count is _rt.OMITTED else byte_count
 
 
 class ConfirmMotorCommand(_rt.Message):

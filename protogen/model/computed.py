@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 import msgspec
 
 from protogen.model.expression_bounds import Linear, linear
-from protogen.model.expressions import Expression, names_in, operands, plain_name
+from protogen.model.expressions import Expression, names_in, operands
 from protogen.model.nesting import inner_types
 from protogen.model.types import Counted, Field, Struct, Switch, Type
 
@@ -26,9 +26,10 @@ class Computed(msgspec.Struct, frozen=True):
 def computed(fields: Sequence[Field]) -> dict[str, Computed]:
     """For each field of a record that only counts, what it is worked out of."""
     found: dict[str, Computed] = {}
-    for index, field in enumerate(fields):
+    # What is always there says more than what may be absent.
+    for index, field in sorted(enumerate(fields), key=lambda item: item[1].may_be_absent):
         by = _count(field)
-        line = None if by is None or plain_name(by) is not None else linear(by)
+        line = None if by is None else linear(by)
         if line is None or line.name in found or not _is_left_out(fields[:index], line.name):
             continue
         if not any(line.name in names_in(chosen) for chosen in _choosing(fields, line.name)):
@@ -50,8 +51,13 @@ def _count(field: Field) -> Expression | None:
 
 
 def _choosing(fields: Sequence[Field], name: str) -> Iterator[Expression]:
-    """The expressions that choose something, of fields in which the name means the same field."""
+    """The expressions that choose a case, or whether a field is there, of all of these fields.
+
+    Inside of them, those in which the name means the same field.
+    """
     for field in fields:
+        if field.when is not None:
+            yield field.when
         yield from _choosing_in(field.type, name)
 
 
