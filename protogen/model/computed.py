@@ -21,20 +21,36 @@ class Computed(msgspec.Struct, frozen=True):
     field: str
     line: Linear
     """Its number of elements or bytes, as a line over the other one."""
+    is_region: bool
+    """True if the bytes are those that its value takes, whatever it holds."""
 
 
 def computed(fields: Sequence[Field]) -> dict[str, Computed]:
     """For each field of a record that only counts, what it is worked out of."""
     found: dict[str, Computed] = {}
-    # What is always there says more than what may be absent.
-    for index, field in sorted(enumerate(fields), key=lambda item: item[1].may_be_absent):
+    # What is always there says more than what may be absent, and elements are sooner counted.
+    for index, field in sorted(enumerate(fields), key=lambda item: _preference(item[1])):
         by = _count(field)
         line = None if by is None else linear(by)
         if line is None or line.name in found or not _is_left_out(fields[:index], line.name):
             continue
-        if not any(line.name in names_in(chosen) for chosen in _choosing(fields, line.name)):
-            found[line.name] = Computed(field=field.name, line=line)
+        if any(line.name in names_in(chosen) for chosen in _choosing(fields, line.name)):
+            continue
+        if field.region is None or _is_built_alone(fields, index, line.name):
+            is_region = field.region is not None
+            found[line.name] = Computed(field=field.name, line=line, is_region=is_region)
     return found
+
+
+def _preference(field: Field) -> tuple[bool, bool]:
+    return field.region is not None, field.may_be_absent
+
+
+def _is_built_alone(fields: Sequence[Field], index: int, name: str) -> bool:
+    """True if a region's bytes follow from fields in front, and nothing counts by its size."""
+    needs = {path.partition(".")[0] for path in fields[index].type.needs}
+    is_known = needs <= {field.name for field in fields[:index]}
+    return is_known and not any(name in field.type.needs for field in fields)
 
 
 def _is_left_out(fields: Sequence[Field], name: str) -> bool:
@@ -44,7 +60,7 @@ def _is_left_out(fields: Sequence[Field], name: str) -> bool:
 
 
 def _count(field: Field) -> Expression | None:
-    extent = field.type.extent
+    extent = field.region or field.type.extent
     if field.const is not None or not isinstance(extent, Counted):
         return None
     return extent.by if all(operand.run is None for operand in operands(extent.by)) else None

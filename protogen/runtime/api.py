@@ -122,6 +122,7 @@ __all__ = [
     "as_dict",
     "count_of",
     "lazily",
+    "region_size",
     "replace",
 ]
 
@@ -139,6 +140,7 @@ if TYPE_CHECKING:
         SwitchRule,
         WhenRule,
     )
+    from protogen.runtime.payload.regions import region_size
     from protogen.runtime.payload.rules import Violation
     from protogen.runtime.payload.string_rules import OctetsRule, TextRule
     from protogen.runtime.payload.texts import PaddedText
@@ -158,6 +160,7 @@ else:
                 "SwitchRule",
                 "WhenRule",
             ),
+            ".payload.regions": ("region_size",),
             ".payload.rules": ("Violation",),
             ".payload.string_rules": ("OctetsRule", "TextRule"),
             ".payload.texts": ("PaddedText",),

@@ -58,6 +58,7 @@ from protogen.runtime.constructs.structs import (
     When,
     Whole,
     prefix_size,
+    region_bytes,
 )
 
 __all__ = [
@@ -102,4 +103,5 @@ __all__ = [
     "Whole",
     "Written",
     "prefix_size",
+    "region_bytes",
 ]

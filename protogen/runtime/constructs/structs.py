@@ -407,6 +407,24 @@ class Part(Piece):
         return 0
 
 
+def region_bytes(format: Struct, name: str, values: Mapping[str, Any]) -> bytes:
+    """The bytes in the region of a struct's field, however many it should have.
+
+    `values` are those of the field and of the fields in front. None is a value that is not there.
+    Raises PayloadError.
+    """
+    piece: Any = next(subcon for subcon in format.subcons if subcon.name == name)
+    while not isinstance(piece, Region):
+        piece = piece.subcon
+    if values[name] is None:
+        return b""
+    context = Container(values, _parsing=False, _building=True, _sizing=False)
+    context._params = context
+    inside = io.BytesIO()
+    piece.subcon._build(values[name], inside, context, f"(building) -> {name}")
+    return inside.getvalue()
+
+
 class Whole(Around):
     """A format that has to take all bytes."""
 

@@ -222,14 +222,21 @@ def _constructor(fields: tuple[Field, ...], scope: _Scope) -> Constructor:
             default = "_rt.OMITTED"
         parameters.append(f"{name}: {kind}" + (f" = {default}" if default else ""))
         body.append(f"self.{name} = {value}")
-    body.sort(key=lambda line: "_rt.count_of(" in line)  # What is counted has to be there first.
+    body.sort(key=_is_made_later)
     head = method("def __init__(", ", ".join(["self", *parameters]), ") -> None:", _INDENT)
     return Constructor(slots_of(scope.own.fields.values()), head, tuple(body))
+
+
+def _is_made_later(line: str) -> tuple[bool, bool]:
+    """Order of assignments: what is counted has to be there first, and regions hold what counts."""
+    return "_rt.region_size(" in line, "_rt.count_of(" in line
 
 
 def _counted(item: Computed) -> str:
     """The number that tells how many elements or bytes a field has."""
     count, (_, factor, offset, size) = f"_rt.count_of(self.{attribute(item.field)})", item.line
+    if item.is_region:
+        count = f"_rt.region_size(self, {text(item.field)})"
     count = f"{count} * {size}" if size > 1 else count
     if factor < 0:
         count = f"{offset} - {count}"
