@@ -294,3 +294,14 @@ def test_endpoints_whose_frames_are_found_otherwise_need_a_sender(tmp_path: Path
     with pytest.raises(ValueError, match="frames of pump and panel are found in different ways"):
         mixed.Decoder()
     assert mixed.Decoder("panel").feed(b"01\x02")[0].message == mixed.Press()
+
+
+def test_a_form_that_no_message_uses_changes_no_call(tmp_path: Path) -> None:
+    schema = tmp_path / "demo.yaml"
+    schema.write_text(BEGUN.replace("note: {from: one,", "note: {from: one, forms: [short],"))
+    demo = module_at(schema)
+    message = demo.Note(text="a")
+    assert demo.encode(message) == b"\x02\x01a\x61"
+    assert demo.encode(message, form="short") == demo.PROTOCOL.encode(message, form="short")
+    with pytest.raises(EncodeError, match="'long' is no form of frame for Note; there is short"):
+        demo.encode(message, form="long")

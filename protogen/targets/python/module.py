@@ -75,7 +75,7 @@ class Module(msgspec.Struct, frozen=True):
     senders: tuple[SenderView, ...]
     endpoints: tuple[EndpointView, ...]
     has_forms: bool
-    """True if an endpoint sends several forms of frame."""
+    """True if an endpoint has several forms of frame, also where no message uses the others."""
     any_message: str
     any_parts: str
     literal: str
@@ -121,7 +121,7 @@ def view(protocol: Protocol) -> Module:
         parts=tuple(dict.fromkeys(parts.values())),
         senders=senders,
         endpoints=endpoints,
-        has_forms=len(endpoints) < len(senders),
+        has_forms=any(not sender.is_only_form for sender in protocol.senders),
         any_message=any_message,
         any_parts=any_parts,
         literal=f"_typing.Literal[{', '.join(text(item.name) for item in endpoints)}]",
