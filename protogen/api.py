@@ -12,7 +12,7 @@ from typing import Any
 from protogen.compiler import compile_file
 from protogen.model.protocol import Protocol
 from protogen.problems import Problem, SourceMap, render_text
-from protogen.schema.files import schema_files
+from protogen.schema.files import schema_files, schema_path
 from protogen.targets import TARGETS
 from protogen.targets.output import Report, write_files
 
@@ -30,11 +30,11 @@ class SchemaError(ValueError):
 
 
 def load(schema: str | os.PathLike[str], *, examples: bool = False) -> Protocol:
-    """The resolved protocol of a schema file.
+    """The resolved protocol of a schema file, or of `library:NAME`.
 
     With `examples`, its examples are verified as well. Raises SchemaError.
     """
-    compilation = compile_file(schema, examples=examples)
+    compilation = compile_file(schema_path(schema), examples=examples)
     if compilation.protocol is None:
         raise SchemaError(compilation.problems, compilation.sources)
     return compilation.protocol
@@ -50,7 +50,7 @@ def generate(
     Returns what was done, by target. Other files in the output stay. Raises SchemaError or
     NoSchemaError before anything is written, and KeyError for a target that there is not.
     """
-    protocols = [load(file) for file in schema_files(Path(schema) for schema in schemas)]
+    protocols = [load(file) for file in schema_files(map(schema_path, schemas))]
     chosen = [TARGETS[name] for name in (TARGETS if targets is None else targets)]
     return {
         target.name: write_files(target.emit(protocols), Path(output) / target.folder, prune=False)

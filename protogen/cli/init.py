@@ -116,17 +116,14 @@ def _checked(name: str) -> str:
 
 
 def _library_name(written: str | None) -> str | None:
-    """Return the name of a schema of the library. Raises UsageError if there is none."""
-    from protogen.library import PREFIX, library_file, library_names
-    from protogen.problems import hint_for
+    """Return the name of a schema of the library. Raises NoSchemaError if there is none."""
+    from protogen.library import PREFIX
+    from protogen.schema.files import schema_path
 
     if written is None:
         return None
     name = written.removeprefix(PREFIX)
-    if library_file(name) is None:
-        hint = hint_for(name, library_names()) or f"there are {', '.join(library_names())}"
-        raise UsageError(f"the library has no schema `{name}`", hint)
-    return name
+    return schema_path(PREFIX + name).stem
 
 
 def _write_schema(file: Path, text: str) -> None:

@@ -7,12 +7,15 @@ from typing import Annotated
 
 import typer
 
-SchemaFile = Annotated[Path, typer.Argument(metavar="SCHEMA", help="The schema file.")]
+SchemaFile = Annotated[
+    Path, typer.Argument(metavar="SCHEMA", help="The schema file, or library:NAME.")
+]
 
 SchemaPaths = Annotated[
     list[Path] | None,
     typer.Argument(
-        metavar="SCHEMA", help="Schema files, or folders of them. Default: the project's schemas."
+        metavar="SCHEMA",
+        help="Schema files, folders of them, or library:NAME. Default: the project's schemas.",
     ),
 ]
 CaptureFile = Annotated[
@@ -42,7 +45,7 @@ Versions = Annotated[
     list[str] | None,
     typer.Argument(
         metavar="[[OLD] NEW]",
-        help="Schemas, folders of them, or git:REV:PATH. Default: the project's schemas.",
+        help="Schemas, folders, library:NAME or git:REV:PATH. Default: the project's schemas.",
     ),
 ]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from protogen.cli.exits import FINDINGS, USAGE, UsageError
-from protogen.schema.files import schema_files
+from protogen.schema.files import schema_files, schema_path
 
 if TYPE_CHECKING:
     from protogen.compiler import Compilation
@@ -28,9 +28,10 @@ def open_protocol(path: Path) -> Protocol:
 
 
 def compile_schema(path: Path) -> Compilation:
-    """Compile a schema. Raises UsageError if it is not there."""
+    """Compile a schema, or one of the library. Raises UsageError if it is not there."""
     from protogen.compiler import compile_file
 
+    path = schema_path(path)
     if not path.is_file():
         raise UsageError(f"there is no schema `{path}`")
     return compile_file(path)
@@ -77,7 +78,7 @@ def open_project() -> Project | None:
 
 def chosen_schemas(paths: Sequence[Path] | None) -> tuple[Path, ...]:
     """Return the schemas at paths; without any, those of the project around."""
-    return schema_files(paths) if paths else own_schemas()
+    return schema_files(map(schema_path, paths)) if paths else own_schemas()
 
 
 def own_schemas() -> tuple[Path, ...]:

@@ -17,7 +17,7 @@ from protogen.evolution.projects import folder_then, own_patterns
 from protogen.evolution.revisions import NoVersionError, Revision, extracted, is_revision
 from protogen.problems import Problem, SourceMap, Span
 from protogen.project.schemas import schemas_below
-from protogen.schema.files import SUFFIX
+from protogen.schema.files import SUFFIX, schema_path
 
 GIT = "git:"
 """Prefix of a version of a file in git: `git:main:schemas/rn1.yaml`."""
@@ -75,7 +75,7 @@ def opened(given: str, path: Path | None = None, *, may_lack: bool = False) -> I
         elif given.startswith(GIT):
             yield _revised(given, path, stack, may_lack=may_lack)
         else:
-            yield _compiled(given, Path(given), may_lack=may_lack)
+            yield _compiled(given, schema_path(given), may_lack=may_lack)
 
 
 def _revised(given: str, path: Path | None, stack: ExitStack, *, may_lack: bool) -> Version:

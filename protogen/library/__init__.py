@@ -1,6 +1,7 @@
 """The library: schemas of protocols in the wild, installed with protogen.
 
-`extends: library:NAME` takes one, and states what a device does differently.
+`extends: library:NAME` takes one, and states what a device does differently. Commands take
+`library:NAME` where they take a schema.
 """
 
 from __future__ import annotations

@@ -21,7 +21,9 @@ _HEAD = """\
 
 Schemas of protocols in the wild, which are installed with protogen. `extends: library:NAME` takes
 one and states what a device does differently; `protogen init --from library:NAME` writes such a
-schema. Each is compared with an implementation of the protocol that is not ours, at least 500
+schema. A command that reads a schema takes one by that name, too: `protogen decode library:ubx`.
+
+Each is compared with an implementation of the protocol that is not ours, at least 500
 frames each way; what that one only makes, or only reads, is compared one way, as its section says.
 Of a stream with one damaged byte in a hundred, no frame is lost that the other one finds, wherever
 it begins to read. Where it is wrong, a decision of the schema says so. A protocol is said

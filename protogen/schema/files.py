@@ -2,16 +2,33 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from protogen.errors import UserError
+from protogen.library import PREFIX, library_file, library_names
 
 SUFFIX = ".yaml"
 
 
 class NoSchemaError(UserError, ValueError):
     """A path where no schema is; the text says what is wrong with it."""
+
+
+def schema_path(written: str | os.PathLike[str]) -> Path:
+    """The path of a schema, which may be written `library:NAME`. Raises NoSchemaError."""
+    text = os.fspath(written)
+    if not text.startswith(PREFIX):
+        return Path(text)
+    name = text.removeprefix(PREFIX)
+    found = library_file(name)
+    if found is None:
+        from protogen.problems import hint_for
+
+        hint = hint_for(name, library_names()) or f"there are {', '.join(library_names())}"
+        raise NoSchemaError(f"the library has no schema `{name}`", hint)
+    return found
 
 
 def schema_files(paths: Iterable[Path]) -> tuple[Path, ...]:

@@ -21,7 +21,8 @@ def generate(  # noqa: PLR0913 - each option is one argument
         list[Path] | None,
         typer.Argument(
             metavar="SCHEMA",
-            help="Schema files, or folders of them. Default: those of protogen.toml, or schemas.",
+            help="Schema files, folders of them, or library:NAME. Default: those of protogen.toml,"
+            " or schemas.",
         ),
     ] = None,
     output: Annotated[

@@ -10,7 +10,7 @@ import msgspec
 
 from protogen.cli.exits import UsageError
 from protogen.cli.generation import c_options
-from protogen.schema.files import schema_files
+from protogen.schema.files import schema_files, schema_path
 
 if TYPE_CHECKING:
     from protogen.problems import Problems
@@ -130,7 +130,7 @@ def _c(given: c_options.Choice, settings: CSettings) -> c_options.Choice:
 
 def _schemas(given: Given, project: Project | None, problems: Problems) -> tuple[Path, ...]:
     if given.schemas:
-        return schema_files(given.schemas)
+        return schema_files(map(schema_path, given.schemas))
     if project is not None:
         from protogen.project.schemas import named_paths
 

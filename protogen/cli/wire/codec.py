@@ -10,6 +10,7 @@ import msgspec
 
 from protogen.cli.exits import UsageError
 from protogen.cli.schemas import compile_schema, find_senders, open_protocol, protocol_of
+from protogen.schema.files import schema_path
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -78,6 +79,7 @@ def open_codec(schema: Path) -> Codec:
     from protogen.live import cache
     from protogen.live.modules import import_modules
 
+    schema = schema_path(schema)
     compiled = cache.read(schema)
     if compiled is None:
         from protogen.live.codec import modules_of
