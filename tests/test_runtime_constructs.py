@@ -265,9 +265,9 @@ def test_a_prefix_is_measured_or_says_what_is_missing() -> None:
     wire = LIST.build({"count": 1, "size": 1, "items": [{"name": "A", "data": b"\1"}]})
     for size in range(len(wire)):
         with pytest.raises(c.PayloadError) as caught:
-            c.prefix_size(LIST, wire[:size])
+            c.prefix_size(LIST, wire[:size], {})
         assert caught.value.missing > 0
-    assert c.prefix_size(LIST, wire + b"more") == len(wire)
+    assert c.prefix_size(LIST, wire + b"more", {}) == len(wire)
 
 
 _NESTED = c.Struct(
