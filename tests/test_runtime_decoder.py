@@ -15,6 +15,8 @@ from compiled import DOCUMENTS, module_at
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from protogen.compiler import compile_file
+from protogen.live.codec import module_of
 from protogen.runtime import api as rt
 
 SENDERS = {name: make() for name, make in handwritten_framings.FRAMINGS.items()}
@@ -295,3 +297,31 @@ def test_a_frame_that_only_its_payload_ends_takes_time_in_proportion_to_its_size
     assert event.message.n == 300
     # Each is tried at its first byte and behind it, once for the size and then for the message.
     assert parsed <= 4 * 300
+
+
+A_RANGE_AND_AN_END = """
+protocol: ranged
+endpoints: {host: Host}
+byte_bits: 7
+frame:
+  kind: {type: byte, id: true, range: [0x80, 0x94]}
+  payload: {}
+  end: {literal: {hex: 65 0A 65}}
+transparency: {encoding: base16-upper, covers: payload}
+messages:
+  ping: {id: 0x81, from: host}
+"""
+
+
+def test_the_beginning_of_an_end_alone_is_no_beginning_of_a_frame(tmp_path: Path) -> None:
+    """65 can begin the end, which nothing is in front of, and no frame begins with it."""
+    path = tmp_path / "ranged.yaml"
+    path.write_text(A_RANGE_AND_AN_END)
+    protocol = compile_file(path).protocol
+    assert protocol is not None
+    spec = module_of(protocol).PROTOCOL.sender("host")
+    data = bytes.fromhex("81 65 0A 65 65")
+    events = decode(spec, [data])
+    assert [(event.kind, event.size) for event in events] == [("message", 4), ("invalid", 1)]
+    assert events[1].reason == "noise"
+    assert decode(spec, as_bytes(data)) == events

@@ -149,8 +149,11 @@ class Prefix:
                 return 0
         head_size = self._head_size
         head = bytes(map(and_, content, self._mask))
-        limit = self._limits.get(head)
-        left = (self._limit(head) if limit is None else limit) - len(content)
+        known = self._limits.get(head)
+        limit = self._limit(head) if known is None else known
+        if not limit:
+            return 0
+        left = limit - len(content)
         room = self._greatest - len(wire)
         if is_begun:
             return int(left >= is_in_code and room > 0)
