@@ -178,3 +178,19 @@ decisions: {accepted: {question: Q, document: D, choice: C, because: B}}
 """.replace("{text: z}", "{text: z}, unprotected: accepted")
     # sync 1, identity 2, length 1, payload 1 to 4: any of these numbers, not every other one.
     assert sizes(frame, "n: {type: uint8, range: [0, 3]}, a: {type: uint8, count: n}") == (5, 8)
+
+
+def test_a_text_without_a_byte_says_nothing_of_other_payloads() -> None:
+    """Frames of an unknown identity have payloads that nobody knows, as their length says."""
+    frame = """\
+frame:
+  id: {type: uint8, id: true}
+  length: {type: uint8, counts: payload, range: [0, 9]}
+  payload: {}
+  end: {literal: 0xC0}
+transparency: slip
+"""
+    text = 'a: {type: ascii, size: 0, code: {bits: 7}, const: ""}'
+    message = f"messages: {{gyro: {{id: 1, from: robot, fields: {{{text}}}}}}}\n"
+    found = framing_of(HEAD + frame + message)
+    assert (found.least, found.greatest) == (3, 3 + 1 + 2 * 9)  # An identity of C0 takes two bytes.

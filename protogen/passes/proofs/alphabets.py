@@ -38,7 +38,8 @@ def payload_alphabet(byte_bits: int, messages: Sequence[Message], *, is_cut: boo
         return EVERY_BYTE if whole else SEVEN_BITS
     if is_cut or not any(map(_holds_text, (field.type for field in fields))):
         return EVERY_BYTE
-    return _of_fields(fields)
+    # Where no payload has a byte, nothing is known of those of unknown identities.
+    return _of_fields(fields) or EVERY_BYTE
 
 
 def _holds_text(type_: Type) -> bool:
