@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from protogen.model.frame_places import Run
 from protogen.model.frame_plan import StartRule
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.expressions import byte, byte_at
@@ -188,4 +189,4 @@ class PushStates(ReceivedFrame, frozen=True, dict=True):
         """True if a checksum covers stuffed bytes, so that their places are kept."""
         over_wire = [item for item in self.plan.checksums if item.part.over_wire]
         covers = [cover for item in over_wire for cover in item.covers]
-        return self.keeps_both and any(not isinstance(cover, bytes) for cover in covers)
+        return self.keeps_both and any(isinstance(cover, Run) for cover in covers)
