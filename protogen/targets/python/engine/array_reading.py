@@ -94,7 +94,7 @@ class ArrayReader(Converter, Raw):
             return self._packed_fill(step)
         if step.count.mark is not None:
             return self._up_to_last(step, step.count.mark)
-        element, size = step.element, step.element.sizes.fixed
+        element, size = step.element, step.element.known_size
         if not size:
             in_front = None if step.count.tail is None else self._array_count(step.count, 0)
             return self._array_of_varying(step, in_front)
