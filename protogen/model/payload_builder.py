@@ -30,6 +30,7 @@ from protogen.model.payload_plan import (
     RestStep,
     Step,
     TrailingPresence,
+    has_member,
     packing_checks,
 )
 from protogen.model.presence import Conditional, Trailing
@@ -194,7 +195,7 @@ class _Builder:
                     sizes=type_.sizes,
                     checks=_checks(steps) | packing_checks(packing),
                     is_refusable=any(step.is_refusable for step in steps),
-                    holds_values=any(step.holds_values or step.fills for step in steps),
+                    holds_values=any(map(has_member, steps)),
                     is_last=is_last,
                     type=type_,
                     steps=steps,

@@ -433,10 +433,10 @@ class PayloadPlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     @cached_property
     def holds_values(self) -> bool:
         """True if a record keeps anything of it."""
-        return any(map(_has_member, self.steps))
+        return any(map(has_member, self.steps))
 
 
-def _has_member(step: AnyStep) -> bool:
+def has_member(step: AnyStep) -> bool:
     """True if a record has a value of it, how many there are, or whether it is there."""
     is_told = isinstance(step, OptionalStep) and bool(step.presence.member)
     return step.holds_values or step.fills or is_told

@@ -177,7 +177,7 @@ class Struct:
         return self.name
 
     def __post_init__(self) -> None:
-        stored = any(field.is_stored or field.has_count for field in self.fields)
+        stored = any(item.is_stored or item.has_count or item.optional for item in self.fields)
         run = run_of(self)
         sizes = total(self.fields) if run is None else run.sizes
         object.__setattr__(self, "sizes", sizes)
