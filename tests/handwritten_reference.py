@@ -555,7 +555,7 @@ class _Candidate:
                 self.fails(time, CONTENT, "encoding")
                 return
             try:
-                taken = prefix_size(self.messages[0].FORMAT, content.values[head : head + size])
+                taken = prefix_size(self.messages[0].FORMAT, content.values[head : head + size], {})
             except PayloadError as error:
                 if error.missing:
                     continue

@@ -102,7 +102,7 @@ def test_what_is_not_said_makes_a_schema_one_that_is_said_in_part(
     monkeypatch.setattr(page, "library_names", lambda: ["ibus", "kiss"])
     monkeypatch.setattr(page, "proof_of", lambda _: Proof("peer 1", "All.", ["Running status."]))
     readme = page.with_table("<!-- library -->\n<!-- end of library -->")
-    assert "0 of 2 are said completely." in readme
+    assert "0 of 2 are said completely:" in readme
     assert "| in part | `ibus`, `kiss` |" in readme
     assert "| peer 1 | in part |" in page.render_page()
     assert "Not said:\n\n* Running status." in page.render_page()
