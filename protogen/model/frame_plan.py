@@ -146,6 +146,11 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return self.tail[-1].end if self.tail else 0
 
     @property
+    def tail_size_empty(self) -> int:
+        """Bytes of content behind a payload that is empty."""
+        return sum(item.size for item in self.tail if not item.is_optional)
+
+    @property
     def optional_size(self) -> int:
         """Bytes of content that are absent where the payload is empty."""
         return sum(item.size for item in self.placed if item.is_optional)

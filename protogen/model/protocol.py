@@ -215,6 +215,15 @@ class Protocol(msgspec.Struct, frozen=True, kw_only=True):
         """An endpoint as a sender, in each of its forms of frame; empty if it sends nothing."""
         return tuple(sender for sender in self.senders if sender.endpoint == endpoint)
 
+    @property
+    def alike(self) -> tuple[tuple[str, ...], ...]:
+        """Names of endpoints whose frames are alike, so that one encoder does for all of them."""
+        found: dict[tuple[object, ...], list[str]] = {}
+        for endpoint in self.sending:
+            frames = tuple((item.frame, item.framing.greatest, item.framing.payload) for item in self.forms(endpoint))
+            found.setdefault(frames, []).append(endpoint)
+        return tuple(tuple(group) for group in found.values() if len(group) > 1)
+
     def senders_of(self, message: Message) -> tuple[Sender, ...]:
         """The senders of a message, in their order."""
         return tuple(item for item in self.senders if item.sends(message))

@@ -28,6 +28,8 @@ _QUOTE = re.compile(r'"(?="|\Z)')
 _OBEYED = re.compile(r"[\\`*\[\]|~$_#&<>]")
 """Characters of which at least one is in every text that Markdown could obey."""
 _END_OF_COMMENT = re.compile(r"\*(?=/)|/(?=\*)")
+_TAG = re.compile(r"[\\@{}<>]")
+"""Marks that TSDoc obeys; each is plain behind a backslash."""
 _TRIGRAPH = re.compile(r"\?(?=\?)")
 _KEPT = 4096
 """Texts of which is remembered what was made of them, for each language."""
@@ -100,6 +102,13 @@ def c_comment(text: str) -> str:
     """Return one line for the inside of ``/* */`` or behind ``//``, however it is wrapped."""
     line = one_line(text).replace("\\", "&#92;")
     return _END_OF_COMMENT.sub(r"\g<0> ", _TRIGRAPH.sub("? ", line))
+
+
+@lru_cache(_KEPT)
+def tsdoc(text: str) -> str:
+    """Return one line for the inside of ``/** */``, of which nothing is a tag or the end."""
+    line = _END_OF_COMMENT.sub(r"\g<0> ", one_line(text))
+    return _TAG.sub(r"\\\g<0>", line)
 
 
 def _shown(character: str) -> str:

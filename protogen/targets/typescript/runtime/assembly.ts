@@ -5,9 +5,9 @@ import { Cut, dueOf, verdictOn } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { EncodeError } from "./errors.js";
 import type { PartNumber, Value } from "./numbers.js";
-import { areAmong } from "./plan.js";
+import { areAmong, at } from "./plan.js";
 import type { Bits, Covered, LengthNumber, MessagePlan, Part, ValueNumber } from "./plan.js";
-import { writePayload, type Sender } from "./sender.js";
+import { numbersOf, writePayload, type Sender } from "./sender.js";
 
 /** Values of parts by their names, as callers give them. */
 export type GivenParts = Readonly<Record<string, unknown>>;
@@ -73,14 +73,6 @@ function identityPart(
   const told = sender.frame.told.find((part) => part.slot === slot);
   if (told) return { name: told.name, number: null };
   return numbersOf(sender.frame.parts).find((part) => part.slot === slot)!;
-}
-
-function numbersOf(parts: readonly Part[]): readonly (ValueNumber | { readonly kind: string;
-  readonly name: string; readonly slot: number; readonly number: PartNumber })[] {
-  return parts.flatMap((part) => {
-    if (part.kind === "number") return [part.part];
-    return part.kind === "bits" ? part.members : [];
-  });
 }
 
 function givenTo(number: PartNumber | null, value: unknown, name: string): Value {
@@ -183,7 +175,7 @@ class Assembly {
 
   wire(): Uint8Array {
     const { frame } = this.sender;
-    const isHeld = frame.length !== null || frame.isBounded;
+    const isHeld = this.sender.length !== null || frame.isBounded;
     if (isHeld && this.payload.length > frame.greatestPayload) {
       const problem = `has ${this.payload.length} bytes, at most ${frame.greatestPayload} fit`;
       throw new EncodeError("payload", problem);
@@ -261,7 +253,7 @@ class Assembly {
       add(item.number, this.sum(index), item.name);
     }
     for (const item of part.mirrors) {
-      const flipped = BigInt(this.numberAt(item.of)) ^ BigInt(item.flips);
+      const flipped = BigInt(this.numberAt(item.of)) ^ item.flips;
       add(item.number, Number(flipped), item.name);
     }
     this.put(part.number, joined, place, part.name);
@@ -307,9 +299,8 @@ class Assembly {
     }
     const { headSize } = this.sender.frame;
     const size = this.payload.length;
-    const place = (item: { isTail: boolean; offset: number; absent: number }): number =>
-      item.isTail ? headSize + size + item.offset - (size ? 0 : item.absent) : item.offset;
-    const plain = this.bytes(place(covered.from), place(covered.to)).slice();
+    const from = at(covered.from, headSize, size);
+    const plain = this.bytes(from, at(covered.to, headSize, size)).slice();
     return covered.stuffed ? this.sender.frame.transparency!.encode(plain) : plain;
   }
 }

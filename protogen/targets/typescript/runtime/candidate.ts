@@ -273,7 +273,7 @@ export class Candidate {
     if (this.content.isFull && !this.emptyLeft) this.meetFull();
     else if (
       this.content.isOpen &&
-      !(this.delimiters.length || this.sender.frame.length?.overWire)
+      !(this.delimiters.length || this.sender.length?.overWire)
     ) {
       this.open();
     }

@@ -74,7 +74,7 @@ export class Content {
 
   /** Take the end of the content. Throws a Fault where the frame can't end here. */
   close(): void {
-    if (this.payloadSize < 0 && this.sender.frame.length?.overWire) {
+    if (this.payloadSize < 0 && this.sender.length?.overWire) {
       throw new Fault("length", "the frame ends before its length says");
     }
     if (this.payloadSize < 0) {
@@ -100,7 +100,7 @@ export class Content {
 
   /** The reason where there are more or fewer bytes than announced. */
   private get announced(): Reason {
-    return this.sender.frame.length ? "length" : "size";
+    return this.sender.length ? "length" : "size";
   }
 
   /** Begin the next part that has bytes. */
@@ -151,7 +151,7 @@ export class Content {
       }
       for (const member of part.members) this.read(member, at);
       for (const mirror of part.mirrors) {
-        const due = BigInt(this.values[mirror.of]!) ^ BigInt(mirror.flips);
+        const due = BigInt(this.values[mirror.of]!) ^ mirror.flips;
         if (BigInt(mirror.number.decode(this.bytes, at)) !== due) {
           throw new Fault("value", `${mirror.name} has to be ${due}`);
         }
@@ -162,8 +162,9 @@ export class Content {
 
   private learn(numbers: readonly NumberPart[]): void {
     const { frame } = this.sender;
-    const { length } = frame;
-    if (length && numbers.includes(length)) this.readLength(length);
+    for (const item of numbers) {
+      if (item.kind === "length" && !item.isFurther) this.readLength(item);
+    }
     if (frame.identityIsEarly && numbers.some((item) => item.slot === frame.lastIdentity)) {
       this.identify();
     }
@@ -210,7 +211,7 @@ export class Content {
   private identify(): void {
     this.group = this.sender.group(this.values);
     const fixed = this.group?.fixed ?? null;
-    if (fixed !== null && !this.sender.frame.length) this.setPayload(fixed);
+    if (fixed !== null && !this.sender.length) this.setPayload(fixed);
     this.compare();
   }
 
@@ -218,7 +219,7 @@ export class Content {
   private compare(): void {
     const { group, payloadSize: size } = this;
     const { frame } = this.sender;
-    if (!group || size < 0 || !frame.rescans || !frame.length) return;
+    if (!group || size < 0 || !frame.rescans || !this.sender.length) return;
     if (!group.carried.some((sizes) => holds(sizes, size))) {
       throw new Fault("size", `no message of this identity has ${size} bytes of payload`);
     }
@@ -234,7 +235,7 @@ export class Content {
     if (this.payloadSize >= 0) {
       this.next = this.size + this.payloadSize;
       this.clearBits = frame.sevenBit;
-    } else if (frame.end.length || frame.endsIdle || frame.length?.overWire || !this.group) {
+    } else if (frame.end.length || frame.endsIdle || this.sender.length?.overWire || !this.group) {
       this.openPayload();
     } else {
       this.isMeasuring = true;
@@ -248,7 +249,7 @@ export class Content {
     this.isOpen = true;
     // With parts behind the payload, its last bytes can't be told from theirs yet.
     this.clearBits = frame.sevenBit && this.index === frame.parts.length - 1;
-    if (this.group && !frame.length?.overWire) {
+    if (this.group && !this.sender.length?.overWire) {
       const { greatest } = this.group;
       this.limit = frame.headSize + greatest + this.sender.tailSize(greatest);
     }
@@ -304,6 +305,9 @@ export function mayBe(part: NumberPart & { readonly kind: "value" }, value: Valu
     const text = String(value).padEnd(part.number.size, "\0");
     return [...text].every((character) => first <= character && character <= last);
   }
-  if (typeof value === "string") return true;
-  return part.least <= value && part.greatest >= value;
+  const { least, greatest } = part;
+  if (typeof value === "string" || typeof least === "string" || typeof greatest === "string") {
+    return true;
+  }
+  return least <= value && value <= greatest;
 }

@@ -6,7 +6,6 @@ import type { Writer } from "./writer.js";
 /** Form of an integer of as many digits as it needs, or of one character. */
 export interface Numeral {
   readonly base: 10 | 16 | 256;
-  readonly front: number;
   readonly padded: number;
   readonly fraction: number;
   readonly signed: boolean;
@@ -20,12 +19,6 @@ export interface Numeral {
   readonly separator?: number;
   readonly leads?: boolean;
   readonly empty?: boolean;
-  /** True if values are `bigint`. */
-  readonly isBig?: boolean;
-}
-
-function valueOf(raw: bigint, isBig: boolean | undefined): number | bigint {
-  return isBig ? raw : Number(raw);
 }
 
 /** Read an integer of so many digits out of an alphabet, of `bits` bits. */
@@ -35,9 +28,20 @@ export function readDigits(
   size: number,
   bits: number,
   signed: boolean,
-  isBig: boolean,
   step: Step,
-): number | bigint {
+): number {
+  return Number(readBigDigits(reader, alphabet, size, bits, signed, step));
+}
+
+/** The same of more than 53 bits. */
+export function readBigDigits(
+  reader: Reader,
+  alphabet: string,
+  size: number,
+  bits: number,
+  signed: boolean,
+  step: Step,
+): bigint {
   const at = reader.take(size, step);
   let raw = 0n;
   for (let index = at; index < at + size; index++) {
@@ -46,7 +50,7 @@ export function readDigits(
     raw = raw * BigInt(alphabet.length) + BigInt(digit);
   }
   if (raw >> BigInt(bits)) throw reader.fault(step, "value", `${raw} does not fit ${bits} bits`);
-  return valueOf(signed ? BigInt.asIntN(bits, raw) : raw, isBig);
+  return signed ? BigInt.asIntN(bits, raw) : raw;
 }
 
 /** Write an integer as so many digits out of an alphabet. */
@@ -69,7 +73,12 @@ export function writeDigits(
 }
 
 /** Read an integer as text. */
-export function readNumeral(reader: Reader, form: Numeral, step: Step): number | bigint {
+export function readNumeral(reader: Reader, form: Numeral, step: Step): number {
+  return Number(readBigNumeral(reader, form, step));
+}
+
+/** The same of more than 53 bits. */
+export function readBigNumeral(reader: Reader, form: Numeral, step: Step): bigint {
   if (form.separator !== undefined && form.leads) {
     if (!reader.left) throw reader.fault(step, "size", "the separator in front is missing");
     if (reader.bytes[reader.at] !== form.separator) {
@@ -91,9 +100,9 @@ export function readNumeral(reader: Reader, form: Numeral, step: Step): number |
   return value;
 }
 
-function numberIn(reader: Reader, form: Numeral, text: string, step: Step): number | bigint {
+function numberIn(reader: Reader, form: Numeral, text: string, step: Step): bigint {
   const mayBeEmpty = form.separator !== undefined && form.empty;
-  if (!text && mayBeEmpty) return form.absent;
+  if (!text && mayBeEmpty) return BigInt(form.absent);
   if (text.length < 1 || text.length > form.longest) {
     const problem = `needs 1 to ${form.longest} characters, not ${text.length}`;
     throw reader.fault(step, "size", problem);
@@ -103,7 +112,7 @@ function numberIn(reader: Reader, form: Numeral, text: string, step: Step): numb
     if (mayBeEmpty && code === form.absent) {
       throw reader.fault(step, "value", "this character stands for none");
     }
-    return code;
+    return BigInt(code);
   }
   const hasSign = form.signed && (text[0] === "+" || text[0] === "-");
   const digits = hasSign ? text.slice(1) : text;
@@ -120,7 +129,7 @@ function numberIn(reader: Reader, form: Numeral, text: string, step: Step): numb
   if (value > form.greatest) {
     throw reader.fault(step, "value", `${JSON.stringify(text)} has too many digits`);
   }
-  return valueOf(text[0] === "-" && hasSign ? -value : value, form.isBig);
+  return text[0] === "-" && hasSign ? -value : value;
 }
 
 /** Write an integer as text. */

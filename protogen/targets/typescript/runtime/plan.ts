@@ -91,7 +91,7 @@ export interface Mirror {
   readonly number: PartNumber;
   /** Place of the other number's value. */
   readonly of: number;
-  readonly flips: number;
+  readonly flips: bigint;
 }
 
 /** A checksum, which lies in the bits of a part or is one. */
@@ -216,7 +216,6 @@ export interface Frame {
   readonly told: readonly Told[];
   readonly virtual: readonly Virtual[];
   readonly shown: readonly Shown[];
-  readonly length: LengthNumber | null;
   readonly sums: readonly Sum[];
   readonly start: "word" | "after_end" | "anywhere";
   /** What a frame starts with; of one size. */

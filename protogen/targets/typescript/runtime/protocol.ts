@@ -3,7 +3,6 @@
 import { frameOf, valueParts, type GivenParts } from "./assembly.js";
 import { standsAt } from "./bytes.js";
 import { Candidate, Failure, verdictOn, type ToldValues } from "./candidate.js";
-import { Decoder } from "./decoder.js";
 import { DecodeError, EncodeError, Fault } from "./errors.js";
 import { framed, type Framed } from "./events.js";
 import type { Value } from "./numbers.js";
@@ -12,9 +11,9 @@ import { Sender } from "./sender.js";
 import { Told, type Telling } from "./told.js";
 
 /** Choices of an encoder. */
-export interface EncodeOptions<Parts = GivenParts> {
+export interface EncodeOptions<Parts = GivenParts, Name extends string = string> {
   /** The endpoint; needed where several send the message in different frames. */
-  readonly sender?: string | undefined;
+  readonly sender?: Name | undefined;
   /** The form of the frame. Without it, the first that fits is taken. */
   readonly form?: string | undefined;
   /** False: take whatever fits the wire, also values that the schema forbids. */
@@ -24,9 +23,9 @@ export interface EncodeOptions<Parts = GivenParts> {
 }
 
 /** Choices of `decode`. */
-export interface DecodeOptions {
+export interface DecodeOptions<Name extends string = string> {
   /** The endpoint that sent the frame. Without it, any may have. */
-  readonly sender?: string | undefined;
+  readonly sender?: Name | undefined;
   /** Identities that are not sent, by the names of their parts. */
   readonly told?: Readonly<Record<string, Telling | undefined>> | undefined;
 }
@@ -38,14 +37,18 @@ export interface NamedMessage {
 
 /** The senders of a protocol. */
 export class Protocol {
-  private readonly made: Sender[];
-  /** Names of parts in generated code, where they are others than those of the schema. */
+  private kept: readonly Sender[] | null = null;
+
   constructor(
-    frames: readonly Frame[],
+    /** Give the frame of each sender; they are asked when one is first needed. */
+    private readonly frames: readonly (() => Frame)[],
     /** Names of the senders whose frames are alike, so that any may stand for the others. */
-    private readonly alike: readonly (readonly string[])[] = [],
-  ) {
-    this.made = frames.map((frame) => new Sender(frame));
+    private readonly alike: readonly (readonly string[])[],
+  ) {}
+
+  private get made(): readonly Sender[] {
+    this.kept ??= this.frames.map((frame) => new Sender(frame()));
+    return this.kept;
   }
 
   /** An endpoint as a sender, in each form of its frames. Throws a RangeError. */
@@ -55,10 +58,6 @@ export class Protocol {
     );
     if (!found.length) throw new RangeError(`"${name}" sends nothing`);
     return found;
-  }
-
-  decoder<Message, Parts>(sender?: string): Decoder<Message, Parts> {
-    return new Decoder<Message, Parts>(this.senders(sender));
   }
 
   /** The event of exactly one frame. Throws a DecodeError. */
@@ -79,23 +78,24 @@ export class Protocol {
     throw found!;
   }
 
-  /** The message of exactly one frame. Throws a DecodeError. */
-  decode(frame: Uint8Array, options: DecodeOptions = {}): unknown {
+  /** The message of exactly one frame. Throws a DecodeError. Modules know its type. */
+  decode(frame: Uint8Array, options: DecodeOptions = {}): any {
     const event = this.read(frame, options);
     if (!event.plan) throw new DecodeError("unknown", "no message has this identity");
     return event.message;
   }
 
   /** The frame of a message. Throws an EncodeError. */
-  encode(message: NamedMessage, options: EncodeOptions = {}): Uint8Array {
-    const { parts = {}, strict = true } = options;
+  encode(message: NamedMessage, options: EncodeOptions<object> = {}): Uint8Array {
+    const parts = (options.parts ?? {}) as GivenParts;
+    const strict = options.strict ?? true;
     return firstThatFits(this.sendersOf(message, options), (sender) =>
       frameOf(sender, sender.named(message.message)!, message, parts, strict),
     );
   }
 
   /** An endpoint that sends the message, in the forms that carry it. */
-  private sendersOf(message: NamedMessage, options: EncodeOptions): readonly Sender[] {
+  private sendersOf(message: NamedMessage, options: EncodeOptions<object>): readonly Sender[] {
     const { message: name } = message;
     const all = this.made.filter((sender) => sender.named(name));
     const chosen = options.sender;

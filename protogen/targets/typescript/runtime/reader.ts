@@ -22,6 +22,9 @@ export interface TextForm {
   readonly add: number;
 }
 
+/** Form of a text whose bytes are its characters, with NUL as padding. */
+export const PLAIN_TEXT: TextForm = { padding: 0, bits: 8, shift: 0, add: 0 };
+
 const WORD = new DataView(new ArrayBuffer(8));
 
 /**
@@ -35,6 +38,7 @@ export class Reader {
   /** The place behind the last byte of the payload, or of the region. */
   end: number;
   private readonly path: Step[] = [];
+  private regions = 0;
 
   constructor(readonly bytes: Uint8Array) {
     this.end = bytes.length;
@@ -42,7 +46,9 @@ export class Reader {
 
   /** The Fault of a field. */
   fault(step: Step, reason: "size" | "value" | "encoding", problem: string, missing = 0): Fault {
-    return new Fault(reason, problem, joined([...this.path, step]), this.at, missing);
+    // More bytes behind a region would not help.
+    const more = this.regions ? 0 : missing;
+    return new Fault(reason, problem, joined([...this.path, step]), this.at, more);
   }
 
   /** Begin what lies inside of a field or an element. */
@@ -218,17 +224,17 @@ export class Reader {
   // --- values that are checked ---------------------------------------------------------------
 
   /** A value out of a closed enum. */
-  one<T extends number | bigint>(value: T, values: readonly (number | bigint)[], step: Step): T {
-    if (!values.includes(value)) {
+  one<T extends number | bigint>(value: number | bigint, values: readonly T[], step: Step): T {
+    if (!values.includes(value as T)) {
       throw this.fault(step, "value", `${value} is not one of ${values.join(", ")}`);
     }
-    return value;
+    return value as T;
   }
 
   /** A constant. */
-  constant<T>(value: T, due: T, step: Step): T {
+  constant<const T>(value: unknown, due: T, step: Step): T {
     if (!same(value, due)) throw this.fault(step, "value", `must be ${shown(due)}`);
-    return value;
+    return due;
   }
 
   /** A number that earlier fields give, of elements or bytes. */
@@ -337,6 +343,7 @@ export class Reader {
   open(size: number, step: Step): number {
     if (this.at + size > this.end) throw this.short(size, step);
     const outer = this.end;
+    this.regions++;
     this.end = this.at + size;
     return outer;
   }
@@ -344,6 +351,7 @@ export class Reader {
   /** End a region, of which nothing may be left. */
   close(outer: number, step: Step): void {
     if (this.left) throw this.fault(step, "size", `${this.left} bytes are left over`);
+    this.regions--;
     this.end = outer;
   }
 

@@ -3,7 +3,8 @@
 import { NO_BYTES } from "./bytes.js";
 import { EncodeError, Fault } from "./errors.js";
 import type { Value } from "./numbers.js";
-import { areAmong, holds, type Frame, type Group, type MessagePlan, type Runs } from "./plan.js";
+import { areAmong, holds } from "./plan.js";
+import type { Frame, Group, LengthNumber, MessagePlan, NumberPart, Part, Runs } from "./plan.js";
 import { Reader } from "./reader.js";
 import { Writer } from "./writer.js";
 
@@ -16,6 +17,18 @@ function keyOf(values: readonly Value[]): Value {
   return values.length === 1 ? values[0]! : values.join();
 }
 
+function isFirstLength(part: NumberPart): part is LengthNumber {
+  return part.kind === "length" && !part.isFurther;
+}
+
+/** The numbers of parts, those that are bits of others among them. */
+export function numbersOf(parts: readonly Part[]): readonly NumberPart[] {
+  return parts.flatMap((part) => {
+    if (part.kind === "number") return [part.part];
+    return part.kind === "bits" ? part.members : [];
+  });
+}
+
 export class Sender {
   private readonly listed = new Map<Value, Group>();
   private readonly wide: Group[] = [];
@@ -25,6 +38,8 @@ export class Sender {
   readonly emptyFrame: Uint8Array;
   readonly startSize: number;
   readonly hasWireSum: boolean;
+  /** The length that tells where a frame ends. */
+  readonly length: LengthNumber | null;
 
   constructor(readonly frame: Frame) {
     for (const group of frame.groups) {
@@ -35,6 +50,7 @@ export class Sender {
     this.startSize = frame.startWords[0]?.length ?? 0;
     const own = frame.sharesDelimiter ? [] : frame.startWords;
     for (const word of own) this.completesStart[word[word.length - 1]!] = 1;
+    this.length = numbersOf(frame.parts).find(isFirstLength) ?? null;
     this.hasWireSum = frame.sums.some((sum) => sum.overWire);
     this.emptyFrame = NO_BYTES;
     if (frame.start === "after_end") this.emptyFrame = frame.end;

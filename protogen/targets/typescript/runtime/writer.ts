@@ -69,9 +69,9 @@ export class Writer {
   /** A value in the range of the schema, or a special one. */
   ranged<T extends number | bigint>(
     value: T,
-    least: T | null,
-    greatest: T | null,
-    special: readonly T[],
+    least: NoInfer<T> | null,
+    greatest: NoInfer<T> | null,
+    special: readonly NoInfer<T>[],
     step: Step,
   ): T {
     if (!this.strict || special.includes(value)) return value;
@@ -82,11 +82,11 @@ export class Writer {
   }
 
   /** A value out of a closed enum. */
-  one<T extends number | bigint>(value: T, values: readonly (number | bigint)[], step: Step): T {
-    if (!values.includes(value)) {
+  one<T extends number | bigint>(value: number | bigint, values: readonly T[], step: Step): T {
+    if (!values.includes(value as T)) {
       throw this.error(step, `${value} has no name; there are ${values.join(", ")}`);
     }
-    return value;
+    return value as T;
   }
 
   /** A truth value; 0 and 1 are taken as well. */
@@ -106,7 +106,7 @@ export class Writer {
   }
 
   /** A constant, which needs not be given. */
-  constant<T>(value: unknown, due: T, step: Step): T {
+  constant<const T>(value: unknown, due: T, step: Step): T {
     if (value !== undefined && value !== null && !same(value, due)) {
       throw this.error(step, `must be ${shown(due)}, not ${shown(value)}`);
     }
@@ -114,7 +114,8 @@ export class Writer {
   }
 
   /** A struct. */
-  record<T>(value: T, step: Step): NonNullable<T> {
+  // Any: its members are checked one by one.
+  record(value: unknown, step: Step): any {
     if (typeof value !== "object" || value === null) {
       throw this.error(step, `must be an object, not ${shown(value)}`);
     }
@@ -122,7 +123,8 @@ export class Writer {
   }
 
   /** A list of `least` to `greatest` elements. */
-  list(value: unknown, least: number, greatest: number, step: Step): readonly unknown[] {
+  // Any: they are checked one by one.
+  list(value: unknown, least: number, greatest: number, step: Step): readonly any[] {
     if (!Array.isArray(value) && !ArrayBuffer.isView(value)) {
       throw this.error(step, `must be a list, not ${shown(value)}`);
     }
