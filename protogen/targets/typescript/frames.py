@@ -75,7 +75,7 @@ class FramePrinter:
         region = plan.region
         return {
             "sender": text(self._sender.endpoint),
-            "form": text(self._sender.form),
+            "form": text("" if self._sender.is_only_form else self._sender.form),
             "parts": _lines(self._part(item) for item in content),
             "payloadIndex": str(content.index(frame.payload)),
             "headSize": str(plan.head_size),

@@ -27,7 +27,11 @@ function jsonNumber(value) {
         return '"nan"';
     if (!Number.isFinite(value))
         return value > 0 ? '"inf"' : '"-inf"';
-    return Object.is(value, -0) ? "-0.0" : JSON.stringify(value);
+    if (Object.is(value, -0))
+        return "-0.0";
+    // Only floats are so large: their last digits are not those of an integer.
+    const isPlain = Number.isSafeInteger(value) || !Number.isInteger(value);
+    return isPlain ? JSON.stringify(value) : value.toExponential();
 }
 /** A member of an object. Names in generated code that end with `_` are those of the schema. */
 function member(key, value) {

@@ -1,0 +1,125 @@
+"""Generated TypeScript in a process of node, and what Python says to the same."""
+
+from __future__ import annotations
+
+import atexit
+import json
+import math
+import subprocess
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from compiled import protocol_of
+from tooling import require_tool
+
+from protogen.model.protocol import Protocol
+from protogen.targets.typescript.emit import emit
+from protogen.targets.typescript.names import names_of
+
+DRIVER = Path(__file__).with_name("typescript_driver.mjs")
+Steps = Sequence[bytes | None]
+"""Bytes that come in, or None for a silence."""
+
+
+class Node:
+    """A process of node, which takes requests one by one."""
+
+    def __init__(self) -> None:
+        self._process = subprocess.Popen(
+            [require_tool("node"), DRIVER],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            encoding="utf-8",
+        )
+        atexit.register(self._process.kill)
+
+    def ask(self, module: Path, **request: Any) -> Any:
+        """The answer to a request about a module."""
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._process.stdin.write(json.dumps({"module": str(module), **request}) + "\n")
+        self._process.stdin.flush()
+        answer = json.loads(self._process.stdout.readline())
+        assert "error" not in answer, answer["error"]
+        return answer["answer"]
+
+
+@cache
+def node() -> Node:
+    """The process of these tests."""
+    return Node()
+
+
+@cache
+def _folder() -> Path:
+    made = TemporaryDirectory(prefix="protogen-typescript-")
+    atexit.register(made.cleanup)
+    return Path(made.name)
+
+
+def write_package(protocols: Sequence[Protocol], folder: Path) -> None:
+    """Write the files of a package."""
+    for file in emit(protocols):
+        path = folder / file.path
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(file.bytes)
+
+
+def module_of(protocol: Protocol) -> Path:
+    """The JavaScript of a protocol, printed now."""
+    folder = _folder() / protocol.spec_hash / protocol.name
+    if not folder.exists():
+        write_package([protocol], folder)
+    return folder / "dist" / f"{names_of(protocol).file}.js"
+
+
+@cache
+def module_at(path: Path) -> Path:
+    """The JavaScript of a schema."""
+    return module_of(protocol_of(path))
+
+
+def events(module: Path, sender: str | None, steps: Steps, **more: Any) -> list[list[Any]]:
+    """The events of each step, as JSON lines have them."""
+    given = [None if step is None else step.hex() for step in steps]
+    found = node().ask(module, sender=sender, steps=given, **more)
+    return [[json.loads(line) for line in lines] for lines in found]
+
+
+def python_events(
+    module: Any, sender: str | None, steps: Steps, told: Mapping[str, Any] | None = None
+) -> list[list[Any]]:
+    """What Python says to the same."""
+    decoder = module.Decoder(sender=sender)
+    if told:
+        decoder.tell(**told)
+    found = (decoder.flush() if step is None else decoder.feed(step) for step in steps)
+    return [[json.loads(json.dumps(event.as_json())) for event in events] for events in found]
+
+
+def first_difference(found: Iterable[Any], expected: Iterable[Any]) -> str:
+    """The first step, and the first event in it, that differ; empty where none does."""
+    for number, (one, other) in enumerate(zip(found, expected, strict=True)):
+        for item, due in zip(one, other, strict=False):
+            if not same(item, due):
+                return f"step {number}: TypeScript has\n{item},\nPython\n{due}"
+        if len(one) != len(other):
+            return f"step {number}: TypeScript has {one}, Python {other}"
+    return ""
+
+
+def same(one: Any, other: Any) -> bool:
+    """True if values of JSON are equal; zeros have signs, and truth values are no numbers."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return list(one) == list(other) and all(same(one[key], other[key]) for key in one)
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(same, one, other))
+    if isinstance(one, bool) or isinstance(other, bool):
+        return one is other
+    if isinstance(one, float) and isinstance(other, float):
+        return one == other and math.copysign(1, one) == math.copysign(1, other)
+    return one == other
