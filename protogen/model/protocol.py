@@ -220,7 +220,10 @@ class Protocol(msgspec.Struct, frozen=True, kw_only=True):
         """Names of endpoints whose frames are alike, so that one encoder does for all of them."""
         found: dict[tuple[object, ...], list[str]] = {}
         for endpoint in self.sending:
-            frames = tuple((item.frame, item.framing.greatest, item.framing.payload) for item in self.forms(endpoint))
+            frames = tuple(
+                (item.frame, item.framing.greatest, item.framing.payload)
+                for item in self.forms(endpoint)
+            )
             found.setdefault(frames, []).append(endpoint)
         return tuple(tuple(group) for group in found.values() if len(group) > 1)
 

@@ -117,7 +117,9 @@ def function(
     )
 
 
-def subclass(name: str, generic: str, base: str, parameter: Parameter, hands_on: str, doc: str) -> Declaration:
+def subclass(
+    name: str, generic: str, base: str, parameter: Parameter, hands_on: str, doc: str
+) -> Declaration:
     """An exported class whose constructor hands on some arguments; `base` has its own types."""
     plain_base, body = base.partition("<")[0], "  constructor({}) {{\n    super({});\n  }}"
     head = f"class {name}{generic} extends {base} {{"

@@ -23,8 +23,8 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
     if not protocols:
         return ()
     names = sorted(names_of(protocol).file for protocol in protocols)
-    text = environment(_PACKAGE).get_template("package.json.j2").render(
-        names=names, version=VERSION
+    text = (
+        environment(_PACKAGE).get_template("package.json.j2").render(names=names, version=VERSION)
     )
     package = File(PurePosixPath("package.json"), text, None, shared=True)
     modules = (file for protocol in protocols for file in _module(protocol))

@@ -223,7 +223,9 @@ class FramePrinter:
 
     def _told(self, part: ToldPart) -> str:
         set_by = (
-            mapping({"message": text(item.message), "name": text(self._teller(item.message, item.name))})
+            mapping(
+                {"message": text(item.message), "name": text(self._teller(item.message, item.name))}
+            )
             for item in part.set_by
         )
         return mapping(
@@ -243,7 +245,7 @@ class FramePrinter:
 
     def _virtual(self, plan: VirtualPlan) -> str:
         values = (
-            mapping({"identities": self._runs(key), "value": str(value)})
+            mapping({"identities": self._runs(key), "value": _value(plan.part, value)})
             for key, value in plan.values
         )
         part = plan.part
@@ -252,7 +254,7 @@ class FramePrinter:
                 "name": text(part.name),
                 "number": number(part),
                 "values": listed(values),
-                "default": "null" if part.default is None else str(part.default),
+                "default": "null" if part.default is None else _value(part, part.default),
             }
         )
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from protogen.model.messages import Message
 from protogen.model.parts import NumberPart
 from protogen.model.protocol import Protocol, Sender
+from protogen.model.types import Struct
 from protogen.targets import descriptions
 from protogen.targets.typescript.declarations import (
     Declaration,
@@ -121,8 +122,7 @@ class Module:
             for part in sender.given_parts:
                 found.setdefault(part.name, []).append(_part_type(part))
         members = [
-            f"  readonly {key(name)}?: {union(types)} | undefined;"
-            for name, types in found.items()
+            f"  readonly {key(name)}?: {union(types)} | undefined;" for name, types in found.items()
         ]
         doc = comment(["Parts of frames whose values callers give."])
         return interface("GivenParts", members, doc)
@@ -133,7 +133,8 @@ class Module:
         protocol, names = self._protocol, self._names
         for message in protocol.messages:
             yield from self._codec(message)
-        for record in (*protocol.structs, *protocol.messages):
+        records: tuple[Struct | Message, ...] = (*protocol.structs, *protocol.messages)
+        for record in records:
             yield from views_of(record, names)
 
     def _codec(self, message: Message) -> Iterator[Declaration]:

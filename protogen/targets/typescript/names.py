@@ -13,7 +13,6 @@ from protogen.targets.kept import Kept
 from protogen.targets.naming import (
     PROTOCOL,
     NameTable,
-    Thing,
     endpoint,
     inside,
     message,

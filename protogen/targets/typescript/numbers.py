@@ -7,7 +7,7 @@ from math import inf, nextafter
 
 from protogen.model.numbers import FreeNumeral, Numeral
 from protogen.model.payload_plan import FloatStep, IntegerStep
-from protogen.model.types import Float, Integer
+from protogen.model.types import Float, Integer, Type
 from protogen.targets.typescript.literals import (
     boolean,
     call,
@@ -61,9 +61,16 @@ def closed(by: str, type_: Integer, found: str, at: str, scope: Scope) -> str:
     """The expression, of which a closed enum refuses some values; `by` reads or writes."""
     if type_.enum is None or not type_.enum.closed:
         return found
+    return f"{by}.one({found}, {values_of(type_, scope)}, {at})"
+
+
+def values_of(type_: Type, scope: Scope) -> str:
+    """The constant with the values of a closed enum."""
+    assert isinstance(type_, Integer)
+    assert type_.enum is not None
     values = listed(integer(item.value, big=is_bigint(type_)) for item in type_.enum.values)
     kind = f"readonly {scope.names.types[type_.enum.name]}[]"
-    return f"{by}.one({found}, {scope.constants.add('VALUES', kind, values)}, {at})"
+    return scope.constants.add("VALUES", kind, values)
 
 
 def _read_integer(type_: Integer, at: str, scope: Scope) -> str:

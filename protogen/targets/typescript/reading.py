@@ -19,9 +19,10 @@ from protogen.model.payload_plan import (
     RecordStep,
     RegionStep,
     RepeatStep,
+    RestStep,
 )
 from protogen.model.payload_walks import PackedNumber, packed_numbers
-from protogen.model.types import Float, Integer, Octets, Tail, Text
+from protogen.model.types import Float, Integer, Octets, Switch, Tail, Text
 from protogen.targets.typescript.formulas import condition, number
 from protogen.targets.typescript.literals import (
     boolean,
@@ -35,7 +36,7 @@ from protogen.targets.typescript.literals import (
     real,
     text,
 )
-from protogen.targets.typescript.numbers import closed, is_bigint, read_number
+from protogen.targets.typescript.numbers import closed, is_bigint, read_number, values_of
 from protogen.targets.typescript.scope import Scope
 
 
@@ -137,7 +138,7 @@ class ReadFunction:
         name, index = scope.variable(step.name or "items"), scope.variable("i")
         bounds = f"{count.least}, {count.greatest}"
         if count.fills or count.mark is not None:
-            scope.line(f"const {name} = [];")
+            scope.line(f"const {name} = {self._empty(step)};")
             self._until_end(step, at, level, name)
             return name
         if count.tail is not None:
@@ -147,12 +148,18 @@ class ReadFunction:
             most = self._count(count, at)
         total = scope.variable("count")
         scope.line(f"const {total} = {most};")
-        scope.line(f"const {name} = [];")
+        scope.line(f"const {name} = {self._empty(step)};")
         scope.line(f"r.enter({at});")
         with scope.block(f"for (let {index} = 0; {index} < {total}; {index}++)"):
             self._push(step, name, index, level)
         scope.line("r.leave();")
         return name
+
+    def _empty(self, step: RepeatStep) -> str:
+        """No elements; of a closed enum they have the type of its values."""
+        type_ = step.element.type
+        is_closed = isinstance(type_, Integer) and type_.is_closed
+        return f"rt.noneOf({values_of(type_, self._scope)})" if is_closed else "[]"
 
     def _push(self, step: RepeatStep, name: str, index: str, level: int) -> None:
         value = self._value(step.element, index, level)
@@ -204,6 +211,9 @@ class ReadFunction:
 
     def _choose(self, step: ChooseStep, name: str, at: str, level: int) -> None:
         scope = self._scope
+        if isinstance(step.selector, int) and (chosen := step.case(step.selector)) is not None:
+            self._set_case(chosen, name, at, level)
+            return
         selector = scope.variable("selector")
         scope.line(f"const {selector} = {number(step.selector, scope.look)};")
         head = "if"
@@ -217,13 +227,16 @@ class ReadFunction:
             if step.otherwise is not None:
                 self._set_case(step.otherwise.step, name, at, level)
             elif step.rest is not None:
-                seven = boolean(step.type.byte_bits == 7)
-                scope.line(f"{name} = r.rest(0, {step.rest.count.greatest}, {seven}, {at});")
+                self._set_case(step.rest, name, at, level)
             else:
                 scope.line(f"throw r.noCase({selector}, {text(step.expression.text)}, {at});")
 
-    def _set_case(self, step: AnyStep, name: str, at: str, level: int) -> None:
-        if isinstance(step, RecordStep) and not step.steps:
+    def _set_case(self, step: AnyStep | RestStep, name: str, at: str, level: int) -> None:
+        if isinstance(step, RestStep):
+            assert isinstance(step.type, Switch)
+            given = f"0, {step.count.greatest}, {boolean(step.type.byte_bits == 7)}, {at}"
+            self._scope.line(f"{name} = r.rest({given});")
+        elif isinstance(step, RecordStep) and not step.steps:
             self._scope.line(f"{name} = null;")
         else:
             self._set(step, name, at, level)
@@ -294,9 +307,7 @@ class ReadFunction:
         scope.line("r.leave();")
         return name
 
-    def _bits(
-        self, item: PackedNumber, run: str, packing: Packing, names: dict[str, str]
-    ) -> str:
+    def _bits(self, item: PackedNumber, run: str, packing: Packing, names: dict[str, str]) -> str:
         type_ = item.step.type
         shift = packing.shift(item.first, type_.bits)
         signed = "Int" if type_.signed else "Uint"

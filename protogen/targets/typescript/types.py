@@ -106,8 +106,7 @@ def _record(
     yield interface(name, [*first, *own], doc)
     if _has_input(item):
         taken = (
-            _member(field, item.name, names, "Input", field.name in counts)
-            for field in item.fields
+            _member(field, item.name, names, "Input", field.name in counts) for field in item.fields
         )
         given = [*first, *taken]
         what = comment([f"What an encoder takes for {name}."])
@@ -294,5 +293,3 @@ def _bits(field: Field, item: BitField, record: str, names: Names) -> Declaratio
     what = next(iter(paragraphs(item.about.doc)), item.name.replace("_", " ").capitalize())
     doc = comment([f"{what.rstrip('.')}; {item.words} of {field.name}."])
     return function(name, [parameter], result, [f"return {found};"], doc, exported=True)
-
-

@@ -19,9 +19,10 @@ from protogen.model.payload_plan import (
     RecordStep,
     RegionStep,
     RepeatStep,
+    RestStep,
 )
 from protogen.model.payload_walks import PackedNumber, held_step, packed_numbers, without_constant
-from protogen.model.types import Field, Integer, Text
+from protogen.model.types import Field, Integer, Switch, Text
 from protogen.targets.typescript.formulas import condition, number
 from protogen.targets.typescript.literals import boolean, call, characters, key, text
 from protogen.targets.typescript.numbers import check_number, is_bigint, write_number
@@ -158,9 +159,13 @@ class WriteFunction:
 
     def _choose(self, step: ChooseStep, given: str, at: str, level: int) -> None:
         scope = self._scope
-        selector, value = scope.variable("selector"), scope.variable("value")
-        scope.line(f"const {selector} = {number(step.selector, scope.look)};")
+        value = scope.variable("value")
         scope.line(f"const {value} = {given};")
+        if isinstance(step.selector, int) and (chosen := step.case(step.selector)) is not None:
+            self._case(chosen, value, at, level)
+            return
+        selector = scope.variable("selector")
+        scope.line(f"const {selector} = {number(step.selector, scope.look)};")
         head = "if"
         for case in step.cases:
             if case.value is None:
@@ -172,14 +177,16 @@ class WriteFunction:
             if step.otherwise is not None:
                 self._case(step.otherwise.step, value, at, level)
             elif step.rest is not None:
-                bounds = f"0, {step.rest.count.greatest}"
-                seven = boolean(step.type.byte_bits == 7)
-                scope.line(f"w.octets({value}, {bounds}, {seven}, {at});")
+                self._case(step.rest, value, at, level)
             else:
                 scope.line(f"throw w.noCase({selector}, {text(step.expression.text)}, {at});")
 
-    def _case(self, step: AnyStep, value: str, at: str, level: int) -> None:
-        if isinstance(step, RecordStep) and not step.steps:
+    def _case(self, step: AnyStep | RestStep, value: str, at: str, level: int) -> None:
+        if isinstance(step, RestStep):
+            assert isinstance(step.type, Switch)
+            given = f"0, {step.count.greatest}, {boolean(step.type.byte_bits == 7)}, {at}"
+            self._scope.line(f"w.octets({value}, {given});")
+        elif isinstance(step, RecordStep) and not step.steps:
             self._scope.line(f"w.nothing({value}, {at});")
         else:
             self._write(step, value, at, level)
@@ -257,9 +264,7 @@ class WriteFunction:
         size, little = packing.size, boolean(packing.byte_order == "little")
         scope.line(f"w.ubig({run}, {size}, {8 * size}, {little}, 256);")
 
-    def _put(
-        self, item: PackedNumber, run: str, packing: Packing, given: str, level: int
-    ) -> None:
+    def _put(self, item: PackedNumber, run: str, packing: Packing, given: str, level: int) -> None:
         scope, step = self._scope, item.step
         assert isinstance(step.type, Integer)
         at = text(item.name) if item.index is None else str(item.index)

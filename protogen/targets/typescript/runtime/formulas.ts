@@ -41,3 +41,8 @@ export function sizeOf(value: unknown): number {
   const length = (value as { readonly length?: unknown } | null | undefined)?.length;
   return typeof length === "number" ? length : 0;
 }
+
+/** A list of some type that has no elements yet. */
+export function noneOf<T>(_values: readonly T[]): T[] {
+  return [];
+}

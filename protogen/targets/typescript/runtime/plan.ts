@@ -152,8 +152,8 @@ export type Runs = readonly (readonly (readonly [Value, Value])[])[];
 export interface Virtual {
   readonly name: string;
   readonly number: PartNumber;
-  readonly values: readonly { readonly identities: Runs; readonly value: number }[];
-  readonly default: number | null;
+  readonly values: readonly { readonly identities: Runs; readonly value: Value }[];
+  readonly default: Value | null;
 }
 
 /** A part that events show. */

@@ -15,3 +15,5 @@ export declare function elementsBig(bytes: bigint, size: bigint): bigint;
 export declare function bits(value: number | bigint | boolean, low: number, high: number): number;
 /** Elements, bytes or characters of a value; 0 of what has none. */
 export declare function sizeOf(value: unknown): number;
+/** A list of some type that has no elements yet. */
+export declare function noneOf<T>(_values: readonly T[]): T[];

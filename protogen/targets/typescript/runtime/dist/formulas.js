@@ -33,3 +33,7 @@ export function sizeOf(value) {
     const length = value?.length;
     return typeof length === "number" ? length : 0;
 }
+/** A list of some type that has no elements yet. */
+export function noneOf(_values) {
+    return [];
+}

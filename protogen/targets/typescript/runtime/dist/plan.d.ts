@@ -142,9 +142,9 @@ export interface Virtual {
     readonly number: PartNumber;
     readonly values: readonly {
         readonly identities: Runs;
-        readonly value: number;
+        readonly value: Value;
     }[];
-    readonly default: number | null;
+    readonly default: Value | null;
 }
 /** A part that events show. */
 export interface Shown {
