@@ -12,16 +12,49 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from compiled import protocol_of
-from tooling import require_tool
+from compiled import ROOT, protocol_of
+from tooling import require_tool, unavailable
 
+from protogen.model.payload_plan import (
+    AnyStep,
+    BytesStep,
+    ChooseStep,
+    ConstantStep,
+    FloatStep,
+    IntegerStep,
+    OptionalStep,
+    RecordStep,
+    RegionStep,
+    RepeatStep,
+    RestStep,
+)
+from protogen.model.payload_walks import said
 from protogen.model.protocol import Protocol
+from protogen.model.types import Octets
 from protogen.targets.typescript.emit import emit
 from protogen.targets.typescript.names import names_of
 
-DRIVER = Path(__file__).with_name("typescript_driver.mjs")
+DRIVER = Path(__file__).with_name("typescript") / "driver.mjs"
+TOOLS = ROOT / ".cache" / "typescript" / "node_modules"
+"""Where npm puts what `tests/typescript/package.json` names."""
 Steps = Sequence[bytes | None]
 """Bytes that come in, or None for a silence."""
+
+
+def require_npm(name: str) -> Path:
+    """Path of a program that npm installed; without it, skip the test or fail."""
+    found = TOOLS / ".bin" / name
+    if not found.exists():
+        unavailable(f"{name} is not in .cache/typescript, where npm has to install it")
+    return found
+
+
+def run_tool(name: str, *arguments: str | Path, folder: Path) -> str:
+    """What a program of npm prints, which has to find nothing wrong."""
+    command = [require_npm(name), *arguments]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
 
 
 class Node:
@@ -123,3 +156,62 @@ def same(one: Any, other: Any) -> bool:
     if isinstance(one, float) and isinstance(other, float):
         return one == other and math.copysign(1, one) == math.copysign(1, other)
     return one == other
+
+
+# --- values in requests ---------------------------------------------------------------------------
+
+
+def message_of(protocol: Protocol, name: str, values: Mapping[str, Any]) -> dict[str, Any]:
+    """A message for a request: values of a JSON line, with marks where JSON says too little."""
+    record = protocol.message(name)
+    return {"message": name, **_record(protocol, name, record.plan.steps, values, ())}
+
+
+def _record(
+    protocol: Protocol,
+    name: str,
+    steps: Iterable[AnyStep],
+    values: Mapping[str, Any],
+    around: tuple[Mapping[str, Any], ...],
+) -> dict[str, Any]:
+    members, records = names_of(protocol).records[name].fields, (*around, values)
+    return {
+        members[step.name]: _value(protocol, step, records, values[step.name])
+        for step in steps
+        if step.name in values
+    }
+
+
+def _value(
+    protocol: Protocol, step: AnyStep | RestStep, records: tuple[Mapping[str, Any], ...], value: Any
+) -> Any:
+    if value is None or isinstance(value, bool):
+        return value
+    match step:
+        case OptionalStep() | RegionStep():
+            return _value(protocol, step.step, records, value)
+        case ConstantStep():
+            return _value(protocol, step.value, records, value)
+        case RepeatStep():
+            return [_value(protocol, step.element, records, item) for item in value]
+        case RecordStep():
+            return _record(protocol, step.type.name, step.steps, value, records)
+        case ChooseStep():
+            chosen = step.case(said(step.selector, records))
+            assert chosen is not None
+            return _value(protocol, chosen, records, value)
+    return _plain(step, value)
+
+
+def _plain(step: AnyStep | RestStep, value: Any) -> Any:
+    """A single value."""
+    match step:
+        case IntegerStep() if step.type.bits > 53:
+            return {"$big": str(value)}
+        case FloatStep() if isinstance(value, str):
+            return {"$float": {"nan": "NaN", "inf": "Infinity", "-inf": "-Infinity"}[value]}
+        case RestStep():
+            return {"$bytes": value}
+        case BytesStep() if isinstance(step.type, Octets):
+            return {"$bytes": value}
+    return value
