@@ -13,6 +13,7 @@ from protogen.targets.c.protocol_names import names_of as names_of_c
 from protogen.targets.kept import Kept
 from protogen.targets.naming import NameTable, Thing
 from protogen.targets.python.names import names_of as names_of_python
+from protogen.targets.typescript.names import names_of as names_of_typescript
 
 ByLanguage = Mapping[str, tuple[str, ...]]
 """Names in generated code, by its language."""
@@ -27,6 +28,7 @@ class EmittedNames:
         found: dict[Thing, dict[str, tuple[str, ...]]] = {}
         _add(found, "C", (self._c.files, self._c.tags, self._c.others, self._c.members))
         _add(found, "Python", python.tables)
+        _add(found, "TypeScript", names_of_typescript(protocol).tables)
         self.escapes: Mapping[Thing, ByLanguage] = found
         """Those of each thing that has some."""
 

@@ -1,0 +1,12 @@
+/** Bytes out of texts, and comparisons of bytes. */
+export declare const NO_BYTES: Uint8Array;
+/** The bytes of hexadecimal digits. */
+export declare function hex(digits: string): Uint8Array;
+/** Two hexadecimal digits a byte. */
+export declare function toHex(bytes: Uint8Array): string;
+/** True if the bytes are the same. */
+export declare function equal(one: ArrayLike<number>, other: ArrayLike<number>): boolean;
+/** True if `word` stands at a place of the first `size` bytes. */
+export declare function standsAt(bytes: ArrayLike<number>, size: number, place: number, word: Uint8Array): boolean;
+/** Several pieces, one behind another. */
+export declare function concatenated(pieces: readonly ArrayLike<number>[]): Uint8Array;

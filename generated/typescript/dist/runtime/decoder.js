@@ -1,0 +1,261 @@
+/** The decoder: bytes in any portions -> events. */
+import { Cut, Failure } from "./candidate.js";
+import { Fault } from "./errors.js";
+import { framed, Framed, Invalid } from "./events.js";
+import { Search } from "./search.js";
+const LEAST_ROOM = 4096;
+/**
+ * Cuts what is on a line into events: what one endpoint sends, or several.
+ *
+ * The raw bytes of all events, joined, are the input; how the input is divided among calls of `feed`
+ * changes nothing. At most one greatest frame is kept between calls, and behind it what may yet
+ * become a start of three bytes or more; in front of a frame that only a silence ends, as much noise.
+ */
+export class Decoder {
+    /** Throws a RangeError where the frames of several senders are found in different ways. */
+    constructor(senders) {
+        this.events = [];
+        /** What is not delivered, and a little context in front of it. Bytes that came in are not changed. */
+        this.data = new Uint8Array(0);
+        this.size = 0;
+        /** Offset of the first of these bytes in the input. */
+        this.offset = 0;
+        // Places in these bytes:
+        /** All in front of it is delivered. */
+        this.done = 0;
+        /** No frame starts between `done` and here. */
+        this.scan = 0;
+        /** The candidate has taken all in front of it. */
+        this.pushed = 0;
+        this.candidate = null;
+        /** The candidate's, until the next start is known. */
+        this.failure = null;
+        this.sharesStart = false;
+        /** True if nothing came in since the start or the last flush. */
+        this.isFresh = true;
+        this.beganFresh = false;
+        const [first] = senders;
+        const names = new Set(senders.map((sender) => sender.frame.sender));
+        this.name = names.size === 1 ? first.frame.sender : "";
+        this.search = new Search(senders);
+        this.shares = first.frame.sharesDelimiter;
+        this.greatest = Math.max(...senders.map((sender) => sender.frame.greatest));
+        this.isAnywhere = first.frame.start === "anywhere";
+        this.keepsOne = this.isAnywhere && !first.frame.endsIdle;
+    }
+    /** Bytes that were taken and that no event covers yet. */
+    get pending() {
+        return this.size - this.done;
+    }
+    /** Take the next bytes of the input; the events that are certain now. */
+    feed(chunk) {
+        this.append(chunk);
+        this.run(false);
+        return this.deliver();
+    }
+    /** Take the end of the input; all remaining events. */
+    flush() {
+        this.run(true);
+        const events = this.deliver();
+        this.offset += this.size;
+        this.data = new Uint8Array(0);
+        this.size = this.done = this.scan = this.pushed = 0;
+        this.isFresh = true;
+        return events;
+    }
+    /** Take a silence on the line: what `flush` does, which ends what has come. */
+    idle() {
+        return this.flush();
+    }
+    /**
+     * Tell identities that are not sent, such as what was asked for, by their parts' names.
+     *
+     * They hold for the frame that comes next and those behind it, or for one where the schema says so.
+     * Several values are those of frames that follow each other, of which the last stays. Throws a
+     * RangeError where there is no such part, or it can't have the value.
+     */
+    tell(values) {
+        this.search.told.tell(values);
+        this.restart();
+    }
+    /** Take what another decoder found on the same bus, which may tell an identity here. */
+    hear(event) {
+        if (!(event instanceof Framed))
+            return;
+        this.search.told.hear(event.codec, event.values, event.plan?.name ?? null, event.message);
+        this.restart();
+    }
+    /** Let a candidate that has taken no byte know what was told since it was made. */
+    restart() {
+        if (!this.candidate || this.pushed !== this.scan)
+            return;
+        this.candidate = this.sharesStart ? this.search.sharing() : this.begin(this.beganFresh);
+    }
+    /** Keep the bytes, behind those that are there. */
+    append(chunk) {
+        const size = this.size + chunk.length;
+        if (size > this.data.length) {
+            const larger = new Uint8Array(Math.max(LEAST_ROOM, 2 * size));
+            larger.set(this.data.subarray(0, this.size));
+            this.data = larger;
+        }
+        this.data.set(chunk, this.size);
+        this.size = size;
+    }
+    /** The events so far. What they cover is forgotten once there is much of it. */
+    deliver() {
+        const passed = this.done - this.search.starts.context;
+        if (passed > 0 && (passed >= this.data.length >> 1 || passed >= this.size)) {
+            // The bytes stay where they are, for the events; what is left goes to a place of its own.
+            const left = this.data.subarray(passed, this.size);
+            this.data = new Uint8Array(Math.max(LEAST_ROOM, 2 * left.length));
+            this.data.set(left);
+            this.size = left.length;
+            this.offset += passed;
+            this.done -= passed;
+            this.scan -= passed;
+            this.pushed -= passed;
+        }
+        const { events } = this;
+        this.events = [];
+        return events;
+    }
+    // --- seek, take, scan again ----------------------------------------------------------------
+    run(final) {
+        let goesOn = true;
+        while (goesOn) {
+            if (this.failure)
+                goesOn = this.resume(this.failure, final);
+            else if (this.candidate)
+                goesOn = this.take(this.candidate, final);
+            else
+                goesOn = this.seek(final);
+        }
+    }
+    /** Look for the next possible start; what is in front of it is noise. */
+    seek(final) {
+        const start = this.nextStart();
+        const { starts } = this.search;
+        const end = final ? this.size : starts.undecided(this.data, this.size, this.scan);
+        if (start >= 0 && start <= end) {
+            this.open(start);
+            return true;
+        }
+        this.scan = end;
+        this.noise(end, final);
+        return false;
+    }
+    nextStart() {
+        if (this.isFresh && this.search.senders[0].frame.start === "after_end")
+            return this.scan;
+        return this.search.starts.find(this.data, this.size, this.scan, this.size + 1);
+    }
+    /** Begin at a possible start. */
+    open(start) {
+        this.beganFresh = this.isFresh;
+        this.isFresh = false;
+        if (!this.isAnywhere)
+            this.noise(start, true);
+        this.scan = this.pushed = start;
+        this.candidate = this.begin(this.beganFresh);
+    }
+    begin(isFresh) {
+        const { data, size, scan: place } = this;
+        return this.search.candidate({ data, size, place, isFresh });
+    }
+    /** Give the candidate bytes until its verdict. */
+    take(candidate, final) {
+        const { data, size } = this;
+        for (let place = this.pushed; place < size; place++) {
+            const verdict = candidate.push(data[place]);
+            if (this.keepsOne && place + 1 - this.done > this.greatest)
+                this.noise(this.scan, true);
+            if (verdict)
+                return this.judge(candidate, verdict);
+        }
+        this.pushed = size;
+        if (!final)
+            return false;
+        if (this.scan < size)
+            return this.judge(candidate, candidate.flush());
+        this.candidate = null;
+        this.noise(this.scan, true);
+        return false;
+    }
+    judge(candidate, verdict) {
+        this.failure = verdict instanceof Cut ? this.read(candidate.sender, verdict) : verdict;
+        if (this.failure)
+            return true;
+        this.giveUp(this.done);
+        if (this.shares) {
+            // The end of the frame before may be the start of the next as well.
+            this.pushed = this.scan;
+            this.sharesStart = true;
+            this.candidate = this.search.sharing();
+        }
+        return true;
+    }
+    /** Deliver the frame, unless its payload is not that of its message. */
+    read(sender, cut) {
+        let event;
+        const start = this.scan;
+        try {
+            event = framed(sender, cut, this.offset + start, this.data, start, cut.size);
+        }
+        catch (error) {
+            if (!(error instanceof Fault))
+                throw error;
+            return new Failure(cut.size, error);
+        }
+        this.noise(start, true);
+        this.done = start + cut.size;
+        this.events.push(event);
+        const { told } = this.search;
+        if (told.isNeeded)
+            told.passFrame(sender, cut.values, event.plan?.name ?? null, event.message);
+        return null;
+    }
+    /** Go on behind the candidate's first byte, where the next frame may start. */
+    resume(failure, final) {
+        if (this.isAnywhere) {
+            this.giveUp(this.scan + 1);
+            this.noise(this.scan, false);
+            return true;
+        }
+        // Behind an end that was taken for a start, the frame's own start may stand.
+        const low = this.scan + (this.sharesStart ? 0 : 1);
+        const high = this.scan + (failure.size || 1);
+        const { starts } = this.search;
+        const start = starts.find(this.data, this.size, low, high);
+        const end = start < 0 ? high : start;
+        if (!final && starts.undecided(this.data, this.size, low) < end)
+            return false;
+        if (start === this.scan) {
+            this.giveUp(start);
+            return true;
+        }
+        this.invalid(start >= 0 ? start : high, failure.fault.reason, failure.fault.problem);
+        this.giveUp(this.done);
+        return true;
+    }
+    giveUp(scan) {
+        this.candidate = null;
+        this.failure = null;
+        this.sharesStart = false;
+        this.scan = scan;
+    }
+    // --- events --------------------------------------------------------------------------------
+    /** Deliver noise up to `end` by greatest frames, and if it is complete the rest as well. */
+    noise(end, isComplete) {
+        while (end - this.done >= this.greatest)
+            this.invalid(this.done + this.greatest, "noise", "");
+        if (isComplete && end > this.done)
+            this.invalid(end, "noise", "");
+    }
+    invalid(end, reason, problem) {
+        const { done } = this;
+        const size = end - done;
+        this.done = end;
+        this.events.push(new Invalid(this.offset + done, size, this.data, done, this.name, reason, problem));
+    }
+}

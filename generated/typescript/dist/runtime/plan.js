@@ -1,0 +1,19 @@
+/** What a generated module says of a sender: its frame, as the compiler worked it out. */
+/** The place in the content of a frame with such a payload. */
+export function at(place, headSize, payload) {
+    if (!place.isTail)
+        return place.offset;
+    return headSize + payload + place.offset - (payload ? 0 : place.absent);
+}
+export function holds(sizes, size) {
+    if (size < sizes.least || size > sizes.greatest)
+        return false;
+    return sizes.step === 0 || (size - sizes.least) % sizes.step === 0;
+}
+/** True if the values are some of these identities. */
+export function areAmong(identities, values) {
+    return identities.every((runs, index) => {
+        const value = values[index];
+        return runs.some(([first, last]) => first <= value && value <= last);
+    });
+}

@@ -1,0 +1,90 @@
+/** What a receiver is told of identities that are not sent: by its program, or by frames. */
+/** The values of a decoder's told parts, by their names. */
+export class Told {
+    constructor(senders) {
+        this.parts = new Map();
+        this.values = new Map();
+        this.following = new Map();
+        this.fresh = new Map();
+        for (const { frame } of senders) {
+            for (const part of frame.told) {
+                this.parts.set(part.name, part);
+                this.values.set(part.name, part.default);
+            }
+        }
+    }
+    /** True if there are such parts. */
+    get isNeeded() {
+        return this.parts.size > 0;
+    }
+    /** Take what was told: it holds for a frame that begins now. */
+    beginFrame() {
+        for (const [name, [first, ...others]] of this.fresh) {
+            this.values.set(name, first);
+            this.following.set(name, others);
+        }
+        this.fresh = new Map();
+    }
+    /** What holds for the frame that is coming in, by the slots of a sender. */
+    valuesFor(sender) {
+        const found = [];
+        for (const part of sender.frame.told)
+            found[part.slot] = this.values.get(part.name);
+        return found;
+    }
+    /** Take values, or those of the frames to come. Throws a RangeError; then nothing is taken. */
+    tell(given) {
+        const taken = new Map();
+        for (const [name, value] of Object.entries(given)) {
+            const part = this.parts.get(name);
+            if (!part)
+                throw new RangeError(`no part that is told is called "${name}"`);
+            if (value === undefined)
+                continue;
+            const listed = typeof value === "number" ? [value] : value;
+            const wrong = listed.find((item) => !Number.isInteger(item) || item < 0 || item >= 2 ** part.bits);
+            if (wrong !== undefined) {
+                throw new RangeError(`${name} can't be ${wrong}: it has ${part.bits} bits`);
+            }
+            taken.set(name, listed.length ? listed : [part.default]);
+        }
+        for (const [name, listed] of taken)
+            this.fresh.set(name, listed);
+    }
+    /** Take a frame: what was told may hold no more, and it may tell something itself. */
+    passFrame(sender, values, name, message) {
+        for (const part of sender.frame.told) {
+            const following = this.following.get(part.name) ?? [];
+            if (following.length || part.once) {
+                this.values.set(part.name, following.shift() ?? part.default);
+            }
+        }
+        this.hear(sender, values, name, message);
+    }
+    /** Take the numbers of a frame, which may tell something of those behind it. */
+    hear(sender, values, name, message) {
+        const told = new Set(sender.frame.told.map((part) => part.slot));
+        for (const part of this.parts.values()) {
+            for (const teller of part.setBy) {
+                const listed = teller.message
+                    ? ofField(teller, name, message)
+                    : ofPart(sender, values, teller.name, told);
+                if (listed)
+                    this.fresh.set(part.name, listed.length ? listed : [part.default]);
+            }
+        }
+    }
+}
+function ofPart(sender, values, name, told) {
+    const shown = sender.frame.shown.find((part) => part.name === name && !told.has(part.slot));
+    const value = shown && values[shown.slot];
+    return value === undefined || typeof value === "string" ? null : [Number(value)];
+}
+function ofField(teller, name, message) {
+    if (name !== teller.message)
+        return null;
+    const value = message[teller.name];
+    if (value === null || value === undefined)
+        return null;
+    return Array.isArray(value) ? value.map(Number) : [Number(value)];
+}

@@ -1,0 +1,55 @@
+/** Bytes out of texts, and comparisons of bytes. */
+
+export const NO_BYTES: Uint8Array = new Uint8Array(0);
+
+/** The bytes of hexadecimal digits. */
+export function hex(digits: string): Uint8Array {
+  const bytes = new Uint8Array(digits.length >> 1);
+  for (let index = 0; index < bytes.length; index++) {
+    bytes[index] = parseInt(digits.slice(2 * index, 2 * index + 2), 16);
+  }
+  return bytes;
+}
+
+/** Two hexadecimal digits a byte. */
+export function toHex(bytes: Uint8Array): string {
+  let digits = "";
+  for (let index = 0; index < bytes.length; index++) {
+    digits += bytes[index]!.toString(16).padStart(2, "0");
+  }
+  return digits;
+}
+
+/** True if the bytes are the same. */
+export function equal(one: ArrayLike<number>, other: ArrayLike<number>): boolean {
+  if (one.length !== other.length) return false;
+  for (let index = 0; index < one.length; index++) if (one[index] !== other[index]) return false;
+  return true;
+}
+
+/** True if `word` stands at a place of the first `size` bytes. */
+export function standsAt(
+  bytes: ArrayLike<number>,
+  size: number,
+  place: number,
+  word: Uint8Array,
+): boolean {
+  if (place < 0 || place + word.length > size) return false;
+  for (let index = 0; index < word.length; index++) {
+    if (bytes[place + index] !== word[index]) return false;
+  }
+  return true;
+}
+
+/** Several pieces, one behind another. */
+export function concatenated(pieces: readonly ArrayLike<number>[]): Uint8Array {
+  let size = 0;
+  for (const piece of pieces) size += piece.length;
+  const bytes = new Uint8Array(size);
+  let at = 0;
+  for (const piece of pieces) {
+    bytes.set(piece, at);
+    at += piece.length;
+  }
+  return bytes;
+}

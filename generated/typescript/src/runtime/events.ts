@@ -1,0 +1,142 @@
+/** Events of a decoder: each covers some bytes of the input, and all of them cover all of it. */
+
+import { type Cut } from "./candidate.js";
+import type { Reason } from "./errors.js";
+import type { Value } from "./numbers.js";
+import type { MessagePlan } from "./plan.js";
+import type { Sender } from "./sender.js";
+
+/** A valid frame of a known message. */
+export interface MessageEvent<Message = unknown, Parts = unknown> {
+  readonly kind: "message";
+  /** Of the first byte, counted from the start of the input. */
+  readonly offset: number;
+  /** Bytes on the wire. */
+  readonly size: number;
+  /** The bytes on the wire. */
+  readonly raw: Uint8Array;
+  /** The endpoint whose bytes are decoded. */
+  readonly sender: string;
+  /** The form of the frame; empty where the endpoint has only one. */
+  readonly form: string;
+  /** The frame's identity, counters and values. */
+  readonly parts: Parts;
+  readonly message: Message;
+}
+
+/** A valid frame whose identity belongs to no message. */
+export interface UnknownEvent<Parts = unknown> {
+  readonly kind: "unknown";
+  readonly offset: number;
+  readonly size: number;
+  readonly raw: Uint8Array;
+  readonly sender: string;
+  readonly form: string;
+  readonly parts: Parts;
+  readonly payload: Uint8Array;
+}
+
+/** Bytes that are no frame. */
+export interface InvalidEvent {
+  readonly kind: "invalid";
+  readonly offset: number;
+  readonly size: number;
+  readonly raw: Uint8Array;
+  /** The endpoint whose bytes are decoded; empty where there are several. */
+  readonly sender: string;
+  readonly reason: Reason;
+  /** The reason in more words. */
+  readonly problem: string;
+}
+
+/** What a decoder yields. */
+export type Event<Message = unknown, Parts = unknown> =
+  | MessageEvent<Message, Parts>
+  | UnknownEvent<Parts>
+  | InvalidEvent;
+
+/** Base of events. The bytes are looked up where they came in, which nobody changes. */
+class Span {
+  constructor(
+    readonly offset: number,
+    readonly size: number,
+    private readonly data: Uint8Array,
+    private readonly start: number,
+  ) {}
+
+  get raw(): Uint8Array {
+    return this.data.subarray(this.start, this.start + this.size);
+  }
+}
+
+/** A valid frame. What is seldom asked for is made then. */
+export class Framed extends Span {
+  constructor(
+    readonly kind: "message" | "unknown",
+    offset: number,
+    size: number,
+    data: Uint8Array,
+    start: number,
+    /** What knows the frame. */
+    readonly codec: Sender,
+    /** Values of its parts, by their slots. */
+    readonly values: readonly (Value | undefined)[],
+    readonly payload: Uint8Array,
+    readonly message: unknown,
+    readonly plan: MessagePlan | null,
+  ) {
+    super(offset, size, data, start);
+  }
+
+  get sender(): string {
+    return this.codec.frame.sender;
+  }
+
+  get form(): string {
+    return this.codec.frame.form;
+  }
+
+  get parts(): Record<string, Value> {
+    const found: Record<string, Value> = {};
+    for (const part of this.codec.frame.shown) found[part.key] = this.values[part.slot]!;
+    return found;
+  }
+}
+
+/** Bytes that are no frame. */
+export class Invalid extends Span {
+  readonly kind = "invalid";
+
+  constructor(
+    offset: number,
+    size: number,
+    data: Uint8Array,
+    start: number,
+    readonly sender: string,
+    readonly reason: Reason,
+    readonly problem: string,
+  ) {
+    super(offset, size, data, start);
+  }
+}
+
+export type AnyEvent = Framed | Invalid;
+
+/** The event of a complete frame, with the message of its payload. Throws a Fault. */
+export function framed(
+  codec: Sender,
+  cut: Cut,
+  offset: number,
+  data: Uint8Array,
+  start: number,
+  size: number,
+): Framed {
+  const group = codec.group(cut.values);
+  if (!group) {
+    const { values, payload } = cut;
+    return new Framed("unknown", offset, size, data, start, codec, values, payload, null, null);
+  }
+  const [plan, message] = codec.read(group, cut.payload);
+  const { values, payload } = cut;
+  return new Framed("message", offset, size, data, start, codec, values, payload, message, plan);
+}

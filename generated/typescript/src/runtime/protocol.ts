@@ -1,0 +1,211 @@
+/** The codec of a protocol: encode, decode, and an encoder that counts. */
+
+import { frameOf, valueParts, type GivenParts } from "./assembly.js";
+import { standsAt } from "./bytes.js";
+import { Candidate, Failure, verdictOn, type ToldValues } from "./candidate.js";
+import { DecodeError, EncodeError, Fault } from "./errors.js";
+import { framed, type Framed } from "./events.js";
+import type { Value } from "./numbers.js";
+import type { Frame } from "./plan.js";
+import { Sender } from "./sender.js";
+import { Told, type Telling } from "./told.js";
+
+/** Choices of an encoder. */
+export interface EncodeOptions<Parts = GivenParts, Name extends string = string> {
+  /** The endpoint; needed where several send the message in different frames. */
+  readonly sender?: Name | undefined;
+  /** The form of the frame. Without it, the first that fits is taken. */
+  readonly form?: string | undefined;
+  /** False: take whatever fits the wire, also values that the schema forbids. */
+  readonly strict?: boolean | undefined;
+  /** Counters and other values of the frame. */
+  readonly parts?: Parts | undefined;
+}
+
+/** Choices of `decode`. */
+export interface DecodeOptions<Name extends string = string> {
+  /** The endpoint that sent the frame. Without it, any may have. */
+  readonly sender?: Name | undefined;
+  /** Identities that are not sent, by the names of their parts. */
+  readonly told?: Readonly<Record<string, Telling | undefined>> | undefined;
+}
+
+/** A message: an object with its name. */
+export interface NamedMessage {
+  readonly message: string;
+}
+
+/** The senders of a protocol. */
+export class Protocol {
+  private kept: readonly Sender[] | null = null;
+
+  constructor(
+    /** Give the frame of each sender; they are asked when one is first needed. */
+    private readonly frames: readonly (() => Frame)[],
+    /** Names of the senders whose frames are alike, so that any may stand for the others. */
+    private readonly alike: readonly (readonly string[])[],
+  ) {}
+
+  private get made(): readonly Sender[] {
+    this.kept ??= this.frames.map((frame) => new Sender(frame()));
+    return this.kept;
+  }
+
+  /** An endpoint as a sender, in each form of its frames. Throws a RangeError. */
+  senders(name?: string): readonly Sender[] {
+    const found = this.made.filter(
+      (sender) => name === undefined || sender.frame.sender === name || sender.key === name,
+    );
+    if (!found.length) throw new RangeError(`"${name}" sends nothing`);
+    return found;
+  }
+
+  /** The event of exactly one frame. Throws a DecodeError. */
+  read(frame: Uint8Array, options: DecodeOptions = {}): Framed {
+    const senders = this.senders(options.sender);
+    const told = new Told(senders);
+    told.tell(options.told ?? {});
+    told.beginFrame();
+    let found: DecodeError | null = null;
+    for (const sender of senders) {
+      try {
+        return readAs(sender, frame, told.valuesFor(sender));
+      } catch (error) {
+        if (!(error instanceof DecodeError)) throw error;
+        if (!found || error.offset > found.offset) found = error;
+      }
+    }
+    throw found!;
+  }
+
+  /** The message of exactly one frame. Throws a DecodeError. Modules know its type. */
+  decode(frame: Uint8Array, options: DecodeOptions = {}): any {
+    const event = this.read(frame, options);
+    if (!event.plan) throw new DecodeError("unknown", "no message has this identity");
+    return event.message;
+  }
+
+  /** The frame of a message. Throws an EncodeError. */
+  encode(message: NamedMessage, options: EncodeOptions<object> = {}): Uint8Array {
+    const parts = (options.parts ?? {}) as GivenParts;
+    const strict = options.strict ?? true;
+    return firstThatFits(this.sendersOf(message, options), (sender) =>
+      frameOf(sender, sender.named(message.message)!, message, parts, strict),
+    );
+  }
+
+  /** An endpoint that sends the message, in the forms that carry it. */
+  private sendersOf(message: NamedMessage, options: EncodeOptions<object>): readonly Sender[] {
+    const { message: name } = message;
+    const all = this.made.filter((sender) => sender.named(name));
+    const chosen = options.sender;
+    const named = all.filter(
+      ({ frame, key }) => chosen === undefined || frame.sender === chosen || key === chosen,
+    );
+    const [first] = named;
+    if (!first) {
+      const problem = all.length ? `${chosen} does not send ${name}` : `there is no ${name}`;
+      throw new EncodeError("message", problem);
+    }
+    const names = [...new Set(named.map(({ frame }) => frame.sender))];
+    if (names.length > 1 && !this.alike.some((set) => names.every((item) => set.includes(item)))) {
+      throw new EncodeError("sender", `${name} needs a sender: ${names.join(" or ")}`);
+    }
+    const own = named.filter(({ frame }) => frame.sender === first.frame.sender);
+    const inForm = own.filter(
+      ({ frame }) => options.form === undefined || frame.form === options.form,
+    );
+    if (!inForm.length) throw new EncodeError("form", `"${options.form}" is no form of ${name}`);
+    return inForm;
+  }
+}
+
+/** The frame in the first form that can be made. Throws the EncodeError of the last. */
+function firstThatFits(
+  senders: readonly Sender[],
+  encode: (sender: Sender) => Uint8Array,
+): Uint8Array {
+  for (const sender of senders.slice(0, -1)) {
+    try {
+      return encode(sender);
+    } catch (error) {
+      if (!(error instanceof EncodeError)) throw error;
+    }
+  }
+  return encode(senders[senders.length - 1]!);
+}
+
+function readAs(sender: Sender, data: Uint8Array, told: ToldValues): Framed {
+  const { startWords } = sender.frame;
+  if (startWords.length && !startWords.some((word) => standsAt(data, data.length, 0, word))) {
+    throw new DecodeError("noise", "no frame starts so");
+  }
+  const [verdict, offset] = verdictOn(sender, data, told);
+  if (verdict instanceof Failure) {
+    throw new DecodeError(verdict.fault.reason, verdict.fault.problem, offset);
+  }
+  if (verdict.size < data.length) {
+    const problem = `the frame has only ${verdict.size} of these ${data.length} bytes`;
+    throw new DecodeError("size", problem, verdict.size);
+  }
+  try {
+    return framed(sender, verdict, 0, data.slice(), 0, data.length);
+  } catch (error) {
+    if (!(error instanceof Fault)) throw error;
+    const place = Math.min(error.offset, verdict.payload.length);
+    const offset = wireOffset(sender, data, told, place);
+    throw new DecodeError(error.reason, error.problem, offset, error.path);
+  }
+}
+
+/** Place of a byte of the payload in the frame, stuffing included. */
+function wireOffset(sender: Sender, data: Uint8Array, told: ToldValues, offset: number): number {
+  const candidate = new Candidate(sender, told);
+  for (let place = 0; place < data.length; place++) {
+    candidate.push(data[place]!);
+    if (candidate.contentSize > sender.frame.headSize + offset) return place;
+  }
+  return data.length;
+}
+
+/** Makes the frames of one endpoint, one after another, and advances their counters. */
+export class Encoder<Message extends NamedMessage = NamedMessage, Parts = GivenParts> {
+  private readonly senders: readonly Sender[];
+  private readonly next = new Map<string, Value>();
+
+  constructor(protocol: Protocol, sender: string) {
+    this.senders = protocol.senders(sender);
+    for (const part of this.senders.flatMap(valueParts)) {
+      if (part.isCounter) this.next.set(part.name, part.default ?? part.least);
+    }
+  }
+
+  /**
+   * The frame of a message, with the next value of each counter that `parts` does not give.
+   *
+   * A given value is used once and does not change the count, nor does an EncodeError.
+   */
+  encode(message: Message, options: Omit<EncodeOptions<Parts>, "sender"> = {}): Uint8Array {
+    const given = (options.parts ?? {}) as GivenParts;
+    const { form } = options;
+    const senders = this.senders.filter(
+      (sender) =>
+        sender.named(message.message) && (form === undefined || sender.frame.form === form),
+    );
+    if (!senders.length) throw new EncodeError("message", `${message.message} is not sent`);
+    return firstThatFits(senders, (sender) => {
+      const counters = valueParts(sender).filter(
+        (part) => part.isCounter && (given[part.name] ?? null) === null,
+      );
+      const counted = counters.map((part) => [part.name, this.next.get(part.name)] as const);
+      const parts = { ...given, ...Object.fromEntries(counted) };
+      const plan = sender.named(message.message)!;
+      const wire = frameOf(sender, plan, message, parts, options.strict ?? true);
+      for (const part of counters) {
+        const value = this.next.get(part.name)!;
+        this.next.set(part.name, value >= part.greatest ? part.least : Number(value) + 1);
+      }
+      return wire;
+    });
+  }
+}

@@ -1,0 +1,191 @@
+/** A sender: its frame, with what is looked up of it. */
+
+import { NO_BYTES } from "./bytes.js";
+import { EncodeError, Fault } from "./errors.js";
+import type { Value } from "./numbers.js";
+import { areAmong, holds } from "./plan.js";
+import type { Frame, Group, LengthNumber, MessagePlan, NumberPart, Part, Runs } from "./plan.js";
+import { Reader } from "./reader.js";
+import { Writer } from "./writer.js";
+
+function only(runs: Runs): readonly Value[] | null {
+  const isOne = runs.every((each) => each.length === 1 && each[0]![0] === each[0]![1]);
+  return isOne ? runs.map((each) => each[0]![0]) : null;
+}
+
+function keyOf(values: readonly Value[]): Value {
+  return values.length === 1 ? values[0]! : values.join();
+}
+
+function isFirstLength(part: NumberPart): part is LengthNumber {
+  return part.kind === "length" && !part.isFurther;
+}
+
+/** The numbers of parts, those that are bits of others among them. */
+export function numbersOf(parts: readonly Part[]): readonly NumberPart[] {
+  return parts.flatMap((part) => {
+    if (part.kind === "number") return [part.part];
+    return part.kind === "bits" ? part.members : [];
+  });
+}
+
+export class Sender {
+  private readonly listed = new Map<Value, Group>();
+  private readonly wide: Group[] = [];
+  /** Bytes that complete a start. None where the same literal ends frames. */
+  readonly completesStart = new Uint8Array(256);
+  /** A start and an end with nothing between them, which is never a frame. */
+  readonly emptyFrame: Uint8Array;
+  readonly startSize: number;
+  readonly hasWireSum: boolean;
+  /** The length that tells where a frame ends. */
+  readonly length: LengthNumber | null;
+
+  constructor(readonly frame: Frame) {
+    for (const group of frame.groups) {
+      const values = only(group.identities);
+      if (values) this.listed.set(keyOf(values), group);
+      else this.wide.push(group);
+    }
+    this.startSize = frame.startWords[0]?.length ?? 0;
+    const own = frame.sharesDelimiter ? [] : frame.startWords;
+    for (const word of own) this.completesStart[word[word.length - 1]!] = 1;
+    this.length = numbersOf(frame.parts).find(isFirstLength) ?? null;
+    this.hasWireSum = frame.sums.some((sum) => sum.overWire);
+    this.emptyFrame = NO_BYTES;
+    if (frame.start === "after_end") this.emptyFrame = frame.end;
+    else if (frame.sharesDelimiter) {
+      this.emptyFrame = Uint8Array.of(...frame.startBytes, ...frame.end);
+    }
+  }
+
+  get key(): string {
+    const { sender, form } = this.frame;
+    return form ? `${sender}_${form}` : sender;
+  }
+
+  /** The identity among the values of a frame. */
+  identity(values: readonly (Value | undefined)[]): Value[] {
+    return this.frame.identity.map((slot) => values[slot]!);
+  }
+
+  /** The messages of an identity; undefined where it is unknown. */
+  group(values: readonly (Value | undefined)[]): Group | undefined {
+    const slots = this.frame.identity;
+    const key = slots.length === 1 ? values[slots[0]!]! : keyOf(this.identity(values));
+    const found = this.listed.get(key);
+    if (found || !this.wide.length) return found;
+    const identity = this.identity(values);
+    return this.wide.find((group) => areAmong(group.identities, identity));
+  }
+
+  /** The value of a part that is not sent; null where the identity gives it none. */
+  virtual(index: number, values: readonly (Value | undefined)[]): Uint8Array | null {
+    const part = this.frame.virtual[index]!;
+    const identity = this.identity(values);
+    const found = part.values.find((item) => areAmong(item.identities, identity));
+    const value = found ? found.value : part.default;
+    if (value === null) return null;
+    const bytes = new Uint8Array(part.number.size);
+    part.number.encode(value, bytes, 0);
+    return bytes;
+  }
+
+  tailSize(payload: number): number {
+    return payload ? this.frame.tailSize : this.frame.tailSizeEmpty;
+  }
+
+  /** The payload's size where the content has that size; -1 if there is none. */
+  payloadSize(content: number): number {
+    const extra = content - this.frame.headSize;
+    if (extra === this.frame.tailSizeEmpty) return 0;
+    const size = extra - this.frame.tailSize;
+    return size > 0 ? size : -1;
+  }
+
+  get isFitted(): boolean {
+    return this.frame.kept !== null || this.frame.isCut;
+  }
+
+  /** Bytes that are known of a payload; null where its fields take all of it. */
+  knownOf(message: MessagePlan, payload: Uint8Array): number | null {
+    return message.tellsItsEnd ? prefixSize(message, payload) : message.known;
+  }
+
+  /** What a frame has of a payload, cut or filled up to its size; null: that varies. */
+  fitted(payload: Uint8Array, size: number | null): Uint8Array {
+    if (size === null) return payload;
+    const cut = this.frame.isCut ? payload.subarray(0, size) : payload;
+    if (this.frame.kept === null || cut.length >= size) return cut;
+    const filled = new Uint8Array(size);
+    filled.set(cut);
+    return filled;
+  }
+
+  private leaves(message: MessagePlan, size: number): boolean {
+    return this.frame.isCut && message.tellsItsEnd && size > message.sizes.least;
+  }
+
+  /** The message of a payload, and its plan. Throws a Fault. */
+  read(group: Group, payload: Uint8Array): readonly [MessagePlan, unknown] {
+    const [first] = group.messages as readonly [MessagePlan];
+    let known = payload;
+    if (this.leaves(first, payload.length)) {
+      known = this.fitted(payload, this.knownOf(first, payload));
+    } else if (this.isFitted) {
+      const sizes = new Set(group.messages.map((message) => message.known));
+      known = this.fitted(payload, sizes.size === 1 ? first.known : null);
+    }
+    const fitting = group.messages.find((message) => holds(message.sizes, known.length)) ?? first;
+    return [fitting, readPayload(fitting, known)];
+  }
+
+  /** The bytes of a message's payload that an encoder puts into a frame. */
+  trimmed(payload: Uint8Array): Uint8Array {
+    const { kept } = this.frame;
+    if (kept === null) return payload;
+    let size = payload.length;
+    while (size > kept && payload[size - 1] === 0) size--;
+    return payload.subarray(0, size);
+  }
+
+  /** The message called `name`, if the endpoint sends one. */
+  named(name: string): MessagePlan | undefined {
+    for (const group of this.frame.groups) {
+      for (const message of group.messages) if (message.name === name) return message;
+    }
+    return this.frame.encodeOnly.find((message) => message.name === name);
+  }
+}
+
+/** The message of a payload's bytes. Throws a Fault. */
+export function readPayload(message: MessagePlan, payload: Uint8Array): unknown {
+  const size = payload.length;
+  if (!holds(message.sizes, size)) {
+    const problem = `${message.name} does not have ${size} bytes of payload`;
+    throw new Fault("size", problem, "", Math.min(size, message.sizes.greatest));
+  }
+  const reader = new Reader(payload);
+  const found = message.read(reader);
+  reader.finish();
+  return found;
+}
+
+/** The payload of a message. Throws an EncodeError. */
+export function writePayload(message: MessagePlan, value: unknown, strict: boolean): Uint8Array {
+  const writer = new Writer(strict);
+  message.write(writer, value as never);
+  const payload = writer.finish();
+  if (!holds(message.sizes, payload.length)) {
+    const problem = `makes ${payload.length} bytes of payload, which ${message.name} can't have`;
+    throw new EncodeError("", problem);
+  }
+  return payload;
+}
+
+/** Bytes at the start of `data` that the message takes. Throws a Fault. */
+export function prefixSize(message: MessagePlan, data: Uint8Array): number {
+  const reader = new Reader(data);
+  message.read(reader);
+  return reader.at;
+}

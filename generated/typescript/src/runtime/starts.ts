@@ -1,0 +1,78 @@
+/** Search for places where a frame may start. */
+
+import { standsAt } from "./bytes.js";
+import type { Frame } from "./plan.js";
+
+/** Finds places where a frame may begin, in the first `size` bytes of some data. */
+export interface Starts {
+  /** Bytes in front of a place that tell whether it is a start. */
+  readonly context: number;
+  /** The first start from `low` on that lies before `high`; -1 if there is none. */
+  find(data: Uint8Array, size: number, low: number, high: number): number;
+  /** The first place from `low` on that more bytes may yet make a start; else the end. */
+  undecided(data: Uint8Array, size: number, low: number): number;
+}
+
+function startWords(words: readonly Uint8Array[]): Starts {
+  const wordSize = words[0]!.length;
+  const begins = new Uint8Array(256);
+  for (const word of words) begins[word[0]!] = 1;
+  return {
+    context: 0,
+    find(data, size, low, high) {
+      const last = Math.min(high, size - wordSize + 1);
+      for (let place = low; place < last; place++) {
+        if (!begins[data[place]!]) continue;
+        if (wordSize === 1 || words.some((word) => standsAt(data, size, place, word))) return place;
+      }
+      return -1;
+    },
+    undecided(data, size, low) {
+      for (let place = Math.max(low, size - wordSize + 1); place < size; place++) {
+        const left = data.subarray(place, size);
+        const isBegun = words.some((word) => standsAt(word, word.length, 0, left));
+        if (isBegun) return place;
+      }
+      return size;
+    },
+  };
+}
+
+function behind(end: Uint8Array): Starts {
+  return {
+    context: end.length,
+    find(data, size, low, high) {
+      for (let place = low; place < high && place <= size; place++) {
+        if (standsAt(data, size, place - end.length, end)) return place;
+      }
+      return -1;
+    },
+    undecided: (_data, size) => size,
+  };
+}
+
+const ANYWHERE: Starts = {
+  context: 0,
+  find: (_data, _size, low, high) => (low < high ? low : -1),
+  undecided: (_data, size) => size,
+};
+
+/** The search for the starts of such frames. */
+export function startsOf(frame: Frame): Starts {
+  if (frame.start === "word") return startWords(frame.startWords);
+  return frame.start === "after_end" ? behind(frame.end) : ANYWHERE;
+}
+
+/** The search for the starts of frames of several forms. */
+export function startsOfForms(each: readonly Starts[]): Starts {
+  return {
+    context: Math.max(...each.map((starts) => starts.context)),
+    find(data, size, low, high) {
+      const found = each.map((starts) => starts.find(data, size, low, high));
+      const places = found.filter((place) => place >= 0);
+      return places.length ? Math.min(...places) : -1;
+    },
+    undecided: (data, size, low) =>
+      Math.min(...each.map((starts) => starts.undecided(data, size, low))),
+  };
+}
