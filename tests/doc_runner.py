@@ -2,7 +2,9 @@
 
     console   `$ command` lines, each with what it prints
     python    statements; a page shares its names (see `doc_python`)
-    text      what the Python in front of it prints
+    javascript  `// NAME.mjs` in the first line: a program of node
+    typescript  `// NAME.ts` in the first line: a source that compiles strictly
+    text      what the Python or the JavaScript in front of it prints
     c         `/* NAME.c */` in the first line: a source, compiled together with the generated C of
               the headers that it includes. A program exits with 0. A source without `main` is
               linked with `doc_programs/NAME.c`, which stands in for the rest of the firmware.
@@ -28,6 +30,7 @@ from typing import Self
 from cli_support import PATIENCE
 from doc_pages import FILES, ROOT, Block, Page, agrees
 from tooling import require_tool
+from typescript_engine import require_npm
 
 PROGRAMS = ROOT / "tests" / "doc_programs"
 _WARNINGS = ("-Wall", "-Wextra", "-Werror")
@@ -103,6 +106,25 @@ class Runner:
         self._python.stdin.flush()
         self._printed, error = json.loads(self._python.stdout.readline())
         assert not error, f"{block.text}\n{error}"
+
+    def _run_javascript(self, block: Block) -> None:
+        self._install_package()
+        (self._workspace / block.file).write_text(block.text, encoding="utf-8")
+        self._printed = self.succeed(require_tool("node"), block.file)
+
+    def _run_typescript(self, block: Block) -> None:
+        self._install_package()
+        (self._workspace / block.file).write_text(block.text, encoding="utf-8")
+        (self._workspace / "package.json").write_text('{"type": "module"}', encoding="utf-8")
+        flags = ["--strict", "--noEmit", "--target", "es2022", "--module", "nodenext"]
+        self.succeed(require_npm("tsc"), *flags, block.file)
+
+    def _install_package(self) -> None:
+        """Do what npm does: the package is found by its name."""
+        link = self._workspace / "node_modules" / "protogen-codecs"
+        if not link.exists():
+            link.parent.mkdir(exist_ok=True)
+            link.symlink_to(self._workspace / "generated" / "typescript")
 
     def _run_text(self, block: Block) -> None:
         assert agrees(block.text, self._printed), self._printed

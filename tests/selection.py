@@ -40,6 +40,7 @@ THINNED = (
     "test_round_trips.py",
     "test_runtime_decoder.py",
     "test_struct_sizes.py",
+    "test_typescript_streams.py",
 )
 """Files of which only the tests of the kept schemas are selected, and those of no schema."""
 
@@ -106,6 +107,7 @@ WITHOUT = {
     "test_runtime_decoder.py": "whatever_the_bytes.*length",
     "test_schema_fuzzing.py": "codec_works|every_shape",
     "test_struct_sizes.py": "random",
+    "test_typescript.py": "compile|resolves|expect",
 }
 """Regular expressions over names of tests: all but these are selected of a file."""
 

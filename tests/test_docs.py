@@ -29,7 +29,18 @@ from tooling import require_module
 
 from protogen.compiler import compile_file
 
-LANGUAGES = {"yaml", "python", "text", "console", "sh", "c", "cpp", *FILES}
+LANGUAGES = {
+    "yaml",
+    "python",
+    "text",
+    "console",
+    "sh",
+    "c",
+    "cpp",
+    "javascript",
+    "typescript",
+    *FILES,
+}
 RUN = LANGUAGES - {"yaml", "sh"}
 FAULTY = {"wrong.yaml", "rover_seen.yaml", "sensor_guess.yaml"}
 """Schemas that show what a problem looks like."""
@@ -103,7 +114,8 @@ class TestPages:
         assert page.languages <= LANGUAGES
         assert page.fences == 2 * len(page.blocks)
         for former, block in pairwise([Block("", ""), *page.blocks]):
-            assert block.language != "text" or former.language == "python", block.text
+            speaks = former.language in ("python", "javascript")
+            assert block.language != "text" or speaks, block.text
 
     @pytest.mark.parametrize("page", [page for page in pages() if page.excerpts], ids=str)
     def test_excerpts_stand_in_generated_files(self, page: Page, prepared: Path) -> None:
