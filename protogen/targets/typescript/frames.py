@@ -108,6 +108,7 @@ class FramePrinter:
             "greatestPayload": str(framing.payload.greatest),
             "sevenBit": boolean(plan.seven_bit),
             "rescans": boolean(plan.rescans),
+            "takesWhole": boolean(plan.takes_whole),
             "cutAmbiguous": boolean(plan.cut_ambiguous),
             "isBounded": boolean(frame.limit is not None),
             "kept": "null" if frame.payload.kept is None else str(frame.payload.kept),

@@ -6,6 +6,8 @@ export type Value = number | bigint | string;
 export interface PartNumber {
     /** Bytes before any stuffing. */
     readonly size: number;
+    /** True if it is an unsigned integer that fills whole bytes. */
+    readonly isPlain: boolean;
     /** The value of the bytes there. Throws a Fault where no value has them. */
     decode(bytes: ArrayLike<number>, at: number): Value;
     /** Write the value. Throws an EncodeError with an empty path where it does not fit. */

@@ -32,10 +32,12 @@ class Unsigned {
         this.low = low;
         this.isPart = isPart;
         this.greatest = (1n << BigInt(bits)) - 1n;
-        this.isSmall = size <= 4 && !sevenBit && !isPart && bits === 8 * size;
+        this.isPlain = size <= 4 && !sevenBit && !isPart && bits === 8 * size;
     }
     decode(bytes, at) {
-        if (this.isSmall) {
+        if (this.isPlain) {
+            if (this.size === 1)
+                return bytes[at];
             let raw = 0;
             for (let index = 0; index < this.size; index++) {
                 raw = raw * 256 + bytes[this.little ? at + this.size - 1 - index : at + index];
@@ -81,6 +83,7 @@ class Digits {
         this.bits = bits;
         this.alphabet = alphabet;
         this.size = size;
+        this.isPlain = false;
         this.values = new Map();
         alphabet.forEach((character, value) => this.values.set(character, BigInt(value)));
     }
@@ -122,6 +125,7 @@ class Characters {
     constructor(size, sevenBit) {
         this.size = size;
         this.sevenBit = sevenBit;
+        this.isPlain = false;
     }
     decode(bytes, at) {
         let text = "";

@@ -6,6 +6,7 @@ import { framed, Framed, Invalid, type AnyEvent, type Event } from "./events.js"
 import { Search, type Judge } from "./search.js";
 import type { Sender } from "./sender.js";
 import type { Telling } from "./told.js";
+import { WholeFrames } from "./whole.js";
 
 const LEAST_ROOM = 4096;
 
@@ -19,6 +20,8 @@ const LEAST_ROOM = 4096;
 export class Decoder<Message = unknown, Parts = unknown> {
   private readonly search: Search;
   private readonly name: string;
+  /** Takes what is plain; null where only candidates do. */
+  private readonly whole: WholeFrames | null;
   private readonly shares: boolean;
   private readonly greatest: number;
   private readonly isAnywhere: boolean;
@@ -51,6 +54,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
     const names = new Set(senders.map((sender) => sender.frame.sender));
     this.name = names.size === 1 ? first.frame.sender : "";
     this.search = new Search(senders);
+    this.whole = senders.length === 1 ? WholeFrames.of(first) : null;
     this.shares = first.frame.sharesDelimiter;
     this.greatest = Math.max(...senders.map((sender) => sender.frame.greatest));
     this.isAnywhere = first.frame.start === "anywhere";
@@ -177,6 +181,12 @@ export class Decoder<Message = unknown, Parts = unknown> {
     this.isFresh = false;
     if (!this.isAnywhere) this.noise(start, true);
     this.scan = this.pushed = start;
+    const event = this.whole?.take(this.data, this.size, start, this.offset);
+    if (event) {
+      this.events.push(event);
+      this.done = this.scan = start + event.size;
+      return;
+    }
     this.candidate = this.begin(this.beganFresh);
   }
 

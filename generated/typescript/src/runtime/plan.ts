@@ -243,6 +243,8 @@ export interface Frame {
   readonly greatestPayload: number;
   readonly sevenBit: boolean;
   readonly rescans: boolean;
+  /** True if a frame that stands in the input can be taken as a whole. */
+  readonly takesWhole: boolean;
   readonly cutAmbiguous: boolean;
   readonly isBounded: boolean;
   /** Bytes that stay, at least, where zeros at the payload's end are left out; else null. */

@@ -9,6 +9,8 @@ export type Value = number | bigint | string;
 export interface PartNumber {
   /** Bytes before any stuffing. */
   readonly size: number;
+  /** True if it is an unsigned integer that fills whole bytes. */
+  readonly isPlain: boolean;
   /** The value of the bytes there. Throws a Fault where no value has them. */
   decode(bytes: ArrayLike<number>, at: number): Value;
   /** Write the value. Throws an EncodeError with an empty path where it does not fit. */
@@ -60,7 +62,7 @@ function store(
 /** An integer of `bits` bits from bit `low` on, of an unsigned integer of `size` bytes. */
 class Unsigned implements PartNumber {
   private readonly greatest: bigint;
-  private readonly isSmall: boolean;
+  readonly isPlain: boolean;
 
   constructor(
     readonly bits: number,
@@ -71,11 +73,12 @@ class Unsigned implements PartNumber {
     private readonly isPart: boolean,
   ) {
     this.greatest = (1n << BigInt(bits)) - 1n;
-    this.isSmall = size <= 4 && !sevenBit && !isPart && bits === 8 * size;
+    this.isPlain = size <= 4 && !sevenBit && !isPart && bits === 8 * size;
   }
 
   decode(bytes: ArrayLike<number>, at: number): Value {
-    if (this.isSmall) {
+    if (this.isPlain) {
+      if (this.size === 1) return bytes[at]!;
       let raw = 0;
       for (let index = 0; index < this.size; index++) {
         raw = raw * 256 + bytes[this.little ? at + this.size - 1 - index : at + index]!;
@@ -127,6 +130,7 @@ export function bitsNumber(
 
 /** An integer as so many digits, the most significant one first. */
 class Digits implements PartNumber {
+  readonly isPlain = false;
   private readonly values = new Map<number, bigint>();
 
   constructor(
@@ -173,6 +177,8 @@ export function digits(bits: number, alphabet: Uint8Array, size: number): PartNu
 
 /** A text of up to `size` characters, which zeros fill up. */
 class Characters implements PartNumber {
+  readonly isPlain = false;
+
   constructor(
     readonly size: number,
     private readonly sevenBit: boolean,

@@ -12,6 +12,8 @@ import type { Telling } from "./told.js";
 export declare class Decoder<Message = unknown, Parts = unknown> {
     private readonly search;
     private readonly name;
+    /** Takes what is plain; null where only candidates do. */
+    private readonly whole;
     private readonly shares;
     private readonly greatest;
     private readonly isAnywhere;

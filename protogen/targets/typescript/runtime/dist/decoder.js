@@ -3,6 +3,7 @@ import { Cut, Failure } from "./candidate.js";
 import { Fault } from "./errors.js";
 import { framed, Framed, Invalid } from "./events.js";
 import { Search } from "./search.js";
+import { WholeFrames } from "./whole.js";
 const LEAST_ROOM = 4096;
 /**
  * Cuts what is on a line into events: what one endpoint sends, or several.
@@ -38,6 +39,7 @@ export class Decoder {
         const names = new Set(senders.map((sender) => sender.frame.sender));
         this.name = names.size === 1 ? first.frame.sender : "";
         this.search = new Search(senders);
+        this.whole = senders.length === 1 ? WholeFrames.of(first) : null;
         this.shares = first.frame.sharesDelimiter;
         this.greatest = Math.max(...senders.map((sender) => sender.frame.greatest));
         this.isAnywhere = first.frame.start === "anywhere";
@@ -157,6 +159,12 @@ export class Decoder {
         if (!this.isAnywhere)
             this.noise(start, true);
         this.scan = this.pushed = start;
+        const event = this.whole?.take(this.data, this.size, start, this.offset);
+        if (event) {
+            this.events.push(event);
+            this.done = this.scan = start + event.size;
+            return;
+        }
         this.candidate = this.begin(this.beganFresh);
     }
     begin(isFresh) {

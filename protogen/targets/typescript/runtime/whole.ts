@@ -1,0 +1,210 @@
+/**
+ * Frames that stand in the input as a whole and are plainly in order, taken without a candidate.
+ *
+ * Whatever is not plain is left to a candidate, which looks at it byte by byte and knows the reason.
+ */
+
+import { equal, standsAt } from "./bytes.js";
+import { Cut, sumIsRight } from "./candidate.js";
+import { mayBe } from "./content.js";
+import { Fault } from "./errors.js";
+import { framed, type Framed } from "./events.js";
+import type { Value } from "./numbers.js";
+import { at as placeAt, holds } from "./plan.js";
+import type { Covered, Group, Literal, NumberPart, Sum } from "./plan.js";
+import type { Sender } from "./sender.js";
+
+interface Placed<Item> {
+  readonly item: Item;
+  readonly offset: number;
+}
+
+/** Content of a frame, from `base` on, and the wire bytes that it is made of. */
+interface Found {
+  readonly bytes: Uint8Array;
+  readonly base: number;
+  readonly payload: number;
+  /** Place behind the frame. */
+  readonly end: number;
+}
+
+/** Takes whole frames of one sender. */
+export class WholeFrames {
+  private readonly literals: Placed<Literal>[] = [];
+  private readonly numbers: Placed<NumberPart>[] = [];
+  /** Bytes of content in front of what is stuffed. */
+  private readonly before: number;
+  private readonly scratch: Uint8Array;
+  private values: (Value | undefined)[] = [];
+  private group: Group | undefined;
+
+  private constructor(private readonly sender: Sender) {
+    const { frame } = sender;
+    let offset = 0;
+    frame.parts.slice(0, frame.payloadIndex).forEach((part) => {
+      if (part.kind === "literal") this.literals.push({ item: part, offset });
+      if (part.kind === "number") this.numbers.push({ item: part.part, offset });
+      offset += part.size;
+    });
+    const inFront = frame.parts.slice(0, Math.max(0, frame.firstStuffed));
+    this.before = inFront.reduce((size, part) => size + part.size, 0);
+    this.scratch = new Uint8Array(frame.greatest + 1);
+  }
+
+  /** What takes the frames of a sender; null where the frame does not allow that. */
+  static of(sender: Sender): WholeFrames | null {
+    const { frame } = sender;
+    const isPlain = frame.parts.every(
+      (part, index) => part.kind !== "bits" && (index < frame.payloadIndex || !part.isOptional),
+    );
+    const isTold = frame.told.length > 0 || frame.virtual.length > 0;
+    const allows = frame.takesWhole && isPlain && !isTold && !frame.sharesDelimiter;
+    return allows && !sender.hasWireSum ? new WholeFrames(sender) : null;
+  }
+
+  /** The event of the frame there; null: a candidate has to look. */
+  take(data: Uint8Array, size: number, at: number, offset: number): Framed | null {
+    const { frame } = this.sender;
+    try {
+      const found = this.find(data, size, at);
+      if (!found || found.end - at > frame.givenUpAt || this.startsInside(data, at, found.end)) {
+        return null;
+      }
+      if (!frame.sums.every((sum) => this.isRight(sum, found))) return null;
+      const start = found.base + frame.headSize;
+      const payload = found.bytes.slice(start, start + found.payload);
+      if (frame.sevenBit) for (const byte of payload) if (byte > 0x7f) return null;
+      const cut = new Cut(found.end - at, this.values, payload);
+      return framed(this.sender, cut, offset + at, data, at, cut.size);
+    } catch (error) {
+      if (error instanceof Fault) return null;
+      throw error;
+    }
+  }
+
+  private find(data: Uint8Array, size: number, at: number): Found | null {
+    const { frame } = this.sender;
+    if (size - at < frame.least) return null;
+    if (frame.start === "after_end" && standsAt(data, size, at, frame.end)) return null;
+    const stop = frame.endIsUnique ? endIn(data, size, at + frame.markSize, frame.end) : -1;
+    if (frame.endIsUnique && stop < 0) return null;
+    return frame.transparency ? this.stuffed(data, size, at, stop) : this.plain(data, size, at, stop);
+  }
+
+  private plain(data: Uint8Array, size: number, at: number, stop: number): Found | null {
+    const { headSize, end } = this.sender.frame;
+    if (at + headSize > size || !this.readHead(data, at)) return null;
+    const payload = this.payloadSize(stop - at);
+    if (payload < 0) return null;
+    const behind = at + headSize + payload + this.sender.tailSize(payload);
+    if (stop < 0 ? !standsAt(data, size, behind, end) : behind !== stop) return null;
+    return behind > size ? null : { bytes: data, base: at, payload, end: behind + end.length };
+  }
+
+  /** The same where some of it is stuffed. */
+  private stuffed(data: Uint8Array, size: number, at: number, stop: number): Found | null {
+    const { headSize, transparency, behindRegion, end } = this.sender.frame;
+    const { before, scratch } = this;
+    const last = stop < 0 ? size : stop - behindRegion;
+    const unstuffer = transparency!.decoder();
+    for (let index = 0; index < before; index++) scratch[index] = data[at + index]!;
+    let filled = before;
+    let place = at + before;
+    let payload = -1;
+    let due = stop < 0 ? headSize : scratch.length;
+    while (place < last && filled < due) {
+      const released = unstuffer.push(data[place++]!);
+      for (let index = 0; index < released.length; index++) scratch[filled++] = released[index]!;
+      if (stop < 0 && payload < 0 && filled >= headSize) {
+        if (!this.readHead(scratch, 0)) return null;
+        payload = this.payloadSize(-1);
+        if (payload < 0) return null;
+        due = headSize + payload + this.sender.tailSize(payload) - behindRegion;
+      }
+    }
+    const rest = unstuffer.finish();
+    if (stop < 0 ? rest.length || filled !== due || payload < 0 : place !== last) return null;
+    for (let index = 0; index < rest.length; index++) scratch[filled++] = rest[index]!;
+    if (place + behindRegion + end.length > size) return null;
+    for (let index = 0; index < behindRegion; index++) scratch[filled++] = data[place++]!;
+    if (!standsAt(data, size, place, end)) return null;
+    if (stop >= 0) {
+      if (filled < headSize || !this.readHead(scratch, 0)) return null;
+      payload = this.payloadSize(filled);
+      const whole = headSize + payload + this.sender.tailSize(payload);
+      if (payload < 0 || whole !== filled) return null;
+    }
+    return { bytes: scratch, base: 0, payload, end: place + end.length };
+  }
+
+  /** Read the parts in front of the payload. False: they are not plainly those of a frame. */
+  private readHead(bytes: Uint8Array, base: number): boolean {
+    for (const { item, offset } of this.literals) {
+      if (!standsAt(bytes, bytes.length, base + offset, item.bytes)) return false;
+    }
+    const values = new Array<Value | undefined>(this.sender.frame.slots);
+    for (const { item, offset } of this.numbers) {
+      const value = item.number.decode(bytes, base + offset);
+      values[item.slot] = value;
+      if (item.kind === "value" && item.isHeld && !mayBe(item, value)) return false;
+    }
+    this.values = values;
+    this.group = this.sender.group(values);
+    return true;
+  }
+
+  /** The payload's size: by a length, or by the identity, or by all content; -1 if none is plain. */
+  private payloadSize(content: number): number {
+    const { frame, length } = this.sender;
+    const { group } = this;
+    if (!length) {
+      return group && group.fixed !== null
+        ? group.fixed
+        : content < 0
+          ? -1
+          : this.sender.payloadSize(content);
+    }
+    const value = this.values[length.slot] as number;
+    const size = value === length.base ? 0 : value - length.base - length.optional;
+    if (value < length.least || value > length.greatest) return -1;
+    if (size > frame.greatestPayload || (size <= 0 && value !== length.base)) return -1;
+    const isHeld = group && frame.rescans;
+    return isHeld && !group.carried.some((sizes) => holds(sizes, size)) ? -1 : size;
+  }
+
+  /** True if a start stands inside that would end the frame. */
+  private startsInside(data: Uint8Array, at: number, end: number): boolean {
+    const { completesStart, startSize, frame } = this.sender;
+    if (!frame.startIsUnique) return false;
+    for (let place = at + startSize; place < end; place++) {
+      if (!completesStart[data[place]!]) continue;
+      const first = place + 1 - startSize;
+      if (first > at && frame.startWords.some((word) => standsAt(data, end, first, word))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  private isRight(sum: Sum, found: Found): boolean {
+    const { headSize } = this.sender.frame;
+    const bytesOf = (covered: Covered): Uint8Array => {
+      if ("bytes" in covered) return covered.bytes;
+      if ("virtual" in covered) throw new Fault("checksum", "it covers what is not sent");
+      const from = placeAt(covered.from, headSize, found.payload);
+      const to = placeAt(covered.to, headSize, found.payload);
+      return found.bytes.subarray(found.base + from, found.base + to);
+    };
+    const place = found.base + placeAt(sum.place, headSize, found.payload);
+    return sumIsRight(sum, sum.covers.map(bytesOf), found.bytes, place);
+  }
+}
+
+/** The first place of an end; -1 where there is none. */
+function endIn(data: Uint8Array, size: number, from: number, end: Uint8Array): number {
+  for (let place = data.indexOf(end[0]!, from); place >= 0 && place + end.length <= size; ) {
+    if (end.length === 1 || equal(data.subarray(place, place + end.length), end)) return place;
+    place = data.indexOf(end[0]!, place + 1);
+  }
+  return -1;
+}
