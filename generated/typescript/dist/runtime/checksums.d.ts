@@ -2,8 +2,8 @@
 import type { Order } from "./numbers.js";
 /** A checksum algorithm. */
 export interface Checksum {
-    /** The checksum of the bytes; a `bigint` where it has more than 32 bits. */
-    compute(bytes: Uint8Array): number | bigint;
+    /** The checksum of bytes from a place to another; a `bigint` where it has more than 32 bits. */
+    compute(bytes: Uint8Array, from: number, to: number): number | bigint;
 }
 /** What a sum or an exclusive or begins with, takes, and is changed by at the end. */
 export interface Folding {

@@ -24,7 +24,7 @@ export declare const PLAIN_TEXT: TextForm;
  * The last argument of most methods is the name of the field or the index of the element.
  */
 export declare class Reader {
-    readonly bytes: Uint8Array;
+    bytes: Uint8Array;
     /** The place of the next byte. */
     at: number;
     /** The place behind the last byte of the payload, or of the region. */
@@ -32,6 +32,8 @@ export declare class Reader {
     private readonly path;
     private regions;
     constructor(bytes: Uint8Array);
+    /** Begin at another payload. */
+    restart(bytes: Uint8Array, at: number, end: number): this;
     /** The Fault of a field. */
     fault(step: Step, reason: "size" | "value" | "encoding", problem: string, missing?: number): Fault;
     /** Begin what lies inside of a field or an element. */

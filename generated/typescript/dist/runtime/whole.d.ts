@@ -3,7 +3,7 @@
  *
  * Whatever is not plain is left to a candidate, which looks at it byte by byte and knows the reason.
  */
-import { type Framed } from "./events.js";
+import { Framed } from "./events.js";
 import type { Sender } from "./sender.js";
 /** Takes whole frames of one sender. */
 export declare class WholeFrames {
@@ -13,6 +13,7 @@ export declare class WholeFrames {
     /** Bytes of content in front of what is stuffed. */
     private readonly before;
     private readonly scratch;
+    private readonly reader;
     private values;
     private group;
     private constructor();
@@ -20,6 +21,8 @@ export declare class WholeFrames {
     static of(sender: Sender): WholeFrames | null;
     /** The event of the frame there; null: a candidate has to look. */
     take(data: Uint8Array, size: number, at: number, offset: number): Framed | null;
+    /** The event of a frame that is right. Throws a Fault where its payload is no message's. */
+    private event;
     private find;
     private plain;
     /** The same where some of it is stuffed. */
@@ -31,4 +34,5 @@ export declare class WholeFrames {
     /** True if a start stands inside that would end the frame. */
     private startsInside;
     private isRight;
+    private covered;
 }

@@ -3,18 +3,20 @@
  *
  * Whatever is not plain is left to a candidate, which looks at it byte by byte and knows the reason.
  */
-import { equal, standsAt } from "./bytes.js";
+import { concatenated, equal, NO_BYTES, standsAt } from "./bytes.js";
 import { Cut, sumIsRight } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { Fault } from "./errors.js";
-import { framed } from "./events.js";
+import { framed, Framed } from "./events.js";
 import { at as placeAt, holds } from "./plan.js";
+import { Reader } from "./reader.js";
 /** Takes whole frames of one sender. */
 export class WholeFrames {
     constructor(sender) {
         this.sender = sender;
         this.literals = [];
         this.numbers = [];
+        this.reader = new Reader(NO_BYTES);
         this.values = [];
         const { frame } = sender;
         let offset = 0;
@@ -45,22 +47,35 @@ export class WholeFrames {
             if (!found || found.end - at > frame.givenUpAt || this.startsInside(data, at, found.end)) {
                 return null;
             }
-            if (!frame.sums.every((sum) => this.isRight(sum, found)))
-                return null;
             const start = found.base + frame.headSize;
-            const payload = found.bytes.slice(start, start + found.payload);
-            if (frame.sevenBit)
-                for (const byte of payload)
-                    if (byte > 0x7f)
-                        return null;
-            const cut = new Cut(found.end - at, this.values, payload);
-            return framed(this.sender, cut, offset + at, data, at, cut.size);
+            const behind = start + found.payload;
+            for (const sum of frame.sums)
+                if (!this.isRight(sum, found))
+                    return null;
+            if (frame.sevenBit && hasHighBit(found.bytes, start, behind))
+                return null;
+            return this.event(found, data, at, offset + at);
         }
         catch (error) {
             if (error instanceof Fault)
                 return null;
             throw error;
         }
+    }
+    /** The event of a frame that is right. Throws a Fault where its payload is no message's. */
+    event(found, data, at, offset) {
+        const { group, values, sender } = this;
+        const size = found.end - at;
+        const start = found.base + sender.frame.headSize;
+        const only = group?.messages.length === 1 && !sender.isFitted ? group.messages[0] : null;
+        if (!only || !holds(only.sizes, found.payload)) {
+            const payload = found.bytes.slice(start, start + found.payload);
+            return framed(sender, new Cut(size, values, payload), offset, data, at, size);
+        }
+        const reader = this.reader.restart(found.bytes, start, start + found.payload);
+        const message = only.read(reader);
+        reader.finish();
+        return new Framed("message", offset, size, data, at, sender, values, NO_BYTES, message, only);
     }
     find(data, size, at) {
         const { frame } = this.sender;
@@ -185,18 +200,32 @@ export class WholeFrames {
     }
     isRight(sum, found) {
         const { headSize } = this.sender.frame;
-        const bytesOf = (covered) => {
-            if ("bytes" in covered)
-                return covered.bytes;
-            if ("virtual" in covered)
-                throw new Fault("checksum", "it covers what is not sent");
-            const from = placeAt(covered.from, headSize, found.payload);
-            const to = placeAt(covered.to, headSize, found.payload);
-            return found.bytes.subarray(found.base + from, found.base + to);
-        };
-        const place = found.base + placeAt(sum.place, headSize, found.payload);
-        return sumIsRight(sum, sum.covers.map(bytesOf), found.bytes, place);
+        const { base, bytes, payload } = found;
+        const place = base + placeAt(sum.place, headSize, payload);
+        const [first] = sum.covers;
+        if (sum.covers.length === 1 && first && "from" in first) {
+            const from = base + placeAt(first.from, headSize, payload);
+            const to = base + placeAt(first.to, headSize, payload);
+            return sumIsRight(sum, sum.algorithm.compute(bytes, from, to), bytes, place);
+        }
+        const joined = concatenated(sum.covers.map((covered) => this.covered(covered, found)));
+        return sumIsRight(sum, sum.algorithm.compute(joined, 0, joined.length), bytes, place);
     }
+    covered(covered, { bytes, base, payload }) {
+        if ("bytes" in covered)
+            return covered.bytes;
+        if ("virtual" in covered)
+            throw new Fault("checksum", "it covers what is not sent");
+        const { headSize } = this.sender.frame;
+        const from = placeAt(covered.from, headSize, payload);
+        return bytes.subarray(base + from, base + placeAt(covered.to, headSize, payload));
+    }
+}
+function hasHighBit(bytes, from, to) {
+    for (let place = from; place < to; place++)
+        if (bytes[place] > 0x7f)
+            return true;
+    return false;
 }
 /** The first place of an end; -1 where there is none. */
 function endIn(data, size, from, end) {

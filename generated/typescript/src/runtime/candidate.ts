@@ -5,7 +5,7 @@
  * nothing but them, so that it does not matter how they arrive.
  */
 
-import { equal, NO_BYTES, standsAt } from "./bytes.js";
+import { concatenated, equal, NO_BYTES, standsAt } from "./bytes.js";
 import { Content } from "./content.js";
 import { Fault } from "./errors.js";
 import type { Value } from "./numbers.js";
@@ -342,7 +342,8 @@ export class Candidate {
     const { content } = this;
     const pieces = sum.covers.map((covered) => this.covered(sum, covered));
     const place = at(sum.place, this.sender.frame.headSize, content.payloadSize);
-    if (!sumIsRight(sum, pieces, content.bytes, place)) {
+    const joined = concatenated(pieces);
+    if (!sumIsRight(sum, sum.algorithm.compute(joined, 0, joined.length), content.bytes, place)) {
       throw new Fault("checksum", `${sum.name} is not that of the bytes`);
     }
   }
@@ -364,31 +365,20 @@ export class Candidate {
   }
 }
 
-function joinedOf(pieces: readonly Uint8Array[]): Uint8Array {
-  if (pieces.length === 1) return pieces[0]!;
-  const joined = new Uint8Array(pieces.reduce((size, piece) => size + piece.length, 0));
-  let place = 0;
-  for (const piece of pieces) {
-    joined.set(piece, place);
-    place += piece.length;
-  }
-  return joined;
-}
-
 /** The value of a checksum, where the algorithm has this result. */
 export function dueOf(sum: Sum, result: number | bigint): number | bigint {
   if (!sum.isBits) return result;
   return Number((BigInt(result) >> BigInt(sum.lowest)) & BigInt(sum.greatest));
 }
 
-/** True if the bytes at a place are those of the checksum of some pieces. */
+/** True if the bytes at a place are those of a checksum with this result. */
 export function sumIsRight(
   sum: Sum,
-  pieces: readonly Uint8Array[],
+  result: number | bigint,
   bytes: Uint8Array,
   place: number,
 ): boolean {
-  const due = dueOf(sum, sum.algorithm.compute(joinedOf(pieces)));
+  const due = dueOf(sum, result);
   if (sum.size === 1 && !sum.isBits && sum.number.isPlain) return bytes[place] === due;
   const found = bytes.subarray(place, place + sum.size);
   if (sum.isBits) return BigInt(sum.number.decode(found, 0)) === BigInt(due);

@@ -131,12 +131,9 @@ export function framed(
   start: number,
   size: number,
 ): Framed {
-  const group = codec.group(cut.values);
-  if (!group) {
-    const { values, payload } = cut;
-    return new Framed("unknown", offset, size, data, start, codec, values, payload, null, null);
-  }
-  const [plan, message] = codec.read(group, cut.payload);
   const { values, payload } = cut;
-  return new Framed("message", offset, size, data, start, codec, values, payload, message, plan);
+  const group = codec.group(values);
+  const [plan, message] = group ? codec.read(group, payload) : [null, null];
+  const kind = plan ? "message" : "unknown";
+  return new Framed(kind, offset, size, data, start, codec, values, payload, message, plan);
 }

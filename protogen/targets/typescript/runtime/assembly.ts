@@ -285,7 +285,8 @@ class Assembly {
   private sum(index: number): Value {
     const sum = this.sender.frame.sums[index]!;
     const pieces = sum.covers.map((covered) => this.covered(covered, sum.name));
-    return dueOf(sum, sum.algorithm.compute(concatenated(pieces)));
+    const joined = concatenated(pieces);
+    return dueOf(sum, sum.algorithm.compute(joined, 0, joined.length));
   }
 
   private covered(covered: Covered, name: string): Uint8Array {

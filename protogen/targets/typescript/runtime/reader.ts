@@ -40,8 +40,18 @@ export class Reader {
   private readonly path: Step[] = [];
   private regions = 0;
 
-  constructor(readonly bytes: Uint8Array) {
+  constructor(public bytes: Uint8Array) {
     this.end = bytes.length;
+  }
+
+  /** Begin at another payload. */
+  restart(bytes: Uint8Array, at: number, end: number): this {
+    this.bytes = bytes;
+    this.at = at;
+    this.end = end;
+    this.regions = 0;
+    if (this.path.length) this.path.length = 0;
+    return this;
   }
 
   /** The Fault of a field. */

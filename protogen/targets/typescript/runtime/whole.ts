@@ -4,14 +4,15 @@
  * Whatever is not plain is left to a candidate, which looks at it byte by byte and knows the reason.
  */
 
-import { equal, standsAt } from "./bytes.js";
+import { concatenated, equal, NO_BYTES, standsAt } from "./bytes.js";
 import { Cut, sumIsRight } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { Fault } from "./errors.js";
-import { framed, type Framed } from "./events.js";
+import { framed, Framed } from "./events.js";
 import type { Value } from "./numbers.js";
 import { at as placeAt, holds } from "./plan.js";
 import type { Covered, Group, Literal, NumberPart, Sum } from "./plan.js";
+import { Reader } from "./reader.js";
 import type { Sender } from "./sender.js";
 
 interface Placed<Item> {
@@ -35,6 +36,7 @@ export class WholeFrames {
   /** Bytes of content in front of what is stuffed. */
   private readonly before: number;
   private readonly scratch: Uint8Array;
+  private readonly reader = new Reader(NO_BYTES);
   private values: (Value | undefined)[] = [];
   private group: Group | undefined;
 
@@ -70,16 +72,31 @@ export class WholeFrames {
       if (!found || found.end - at > frame.givenUpAt || this.startsInside(data, at, found.end)) {
         return null;
       }
-      if (!frame.sums.every((sum) => this.isRight(sum, found))) return null;
       const start = found.base + frame.headSize;
-      const payload = found.bytes.slice(start, start + found.payload);
-      if (frame.sevenBit) for (const byte of payload) if (byte > 0x7f) return null;
-      const cut = new Cut(found.end - at, this.values, payload);
-      return framed(this.sender, cut, offset + at, data, at, cut.size);
+      const behind = start + found.payload;
+      for (const sum of frame.sums) if (!this.isRight(sum, found)) return null;
+      if (frame.sevenBit && hasHighBit(found.bytes, start, behind)) return null;
+      return this.event(found, data, at, offset + at);
     } catch (error) {
       if (error instanceof Fault) return null;
       throw error;
     }
+  }
+
+  /** The event of a frame that is right. Throws a Fault where its payload is no message's. */
+  private event(found: Found, data: Uint8Array, at: number, offset: number): Framed {
+    const { group, values, sender } = this;
+    const size = found.end - at;
+    const start = found.base + sender.frame.headSize;
+    const only = group?.messages.length === 1 && !sender.isFitted ? group.messages[0]! : null;
+    if (!only || !holds(only.sizes, found.payload)) {
+      const payload = found.bytes.slice(start, start + found.payload);
+      return framed(sender, new Cut(size, values, payload), offset, data, at, size);
+    }
+    const reader = this.reader.restart(found.bytes, start, start + found.payload);
+    const message = only.read(reader);
+    reader.finish();
+    return new Framed("message", offset, size, data, at, sender, values, NO_BYTES, message, only);
   }
 
   private find(data: Uint8Array, size: number, at: number): Found | null {
@@ -188,16 +205,30 @@ export class WholeFrames {
 
   private isRight(sum: Sum, found: Found): boolean {
     const { headSize } = this.sender.frame;
-    const bytesOf = (covered: Covered): Uint8Array => {
-      if ("bytes" in covered) return covered.bytes;
-      if ("virtual" in covered) throw new Fault("checksum", "it covers what is not sent");
-      const from = placeAt(covered.from, headSize, found.payload);
-      const to = placeAt(covered.to, headSize, found.payload);
-      return found.bytes.subarray(found.base + from, found.base + to);
-    };
-    const place = found.base + placeAt(sum.place, headSize, found.payload);
-    return sumIsRight(sum, sum.covers.map(bytesOf), found.bytes, place);
+    const { base, bytes, payload } = found;
+    const place = base + placeAt(sum.place, headSize, payload);
+    const [first] = sum.covers;
+    if (sum.covers.length === 1 && first && "from" in first) {
+      const from = base + placeAt(first.from, headSize, payload);
+      const to = base + placeAt(first.to, headSize, payload);
+      return sumIsRight(sum, sum.algorithm.compute(bytes, from, to), bytes, place);
+    }
+    const joined = concatenated(sum.covers.map((covered) => this.covered(covered, found)));
+    return sumIsRight(sum, sum.algorithm.compute(joined, 0, joined.length), bytes, place);
   }
+
+  private covered(covered: Covered, { bytes, base, payload }: Found): Uint8Array {
+    if ("bytes" in covered) return covered.bytes;
+    if ("virtual" in covered) throw new Fault("checksum", "it covers what is not sent");
+    const { headSize } = this.sender.frame;
+    const from = placeAt(covered.from, headSize, payload);
+    return bytes.subarray(base + from, base + placeAt(covered.to, headSize, payload));
+  }
+}
+
+function hasHighBit(bytes: Uint8Array, from: number, to: number): boolean {
+  for (let place = from; place < to; place++) if (bytes[place]! > 0x7f) return true;
+  return false;
 }
 
 /** The first place of an end; -1 where there is none. */

@@ -244,7 +244,8 @@ class Assembly {
     sum(index) {
         const sum = this.sender.frame.sums[index];
         const pieces = sum.covers.map((covered) => this.covered(covered, sum.name));
-        return dueOf(sum, sum.algorithm.compute(concatenated(pieces)));
+        const joined = concatenated(pieces);
+        return dueOf(sum, sum.algorithm.compute(joined, 0, joined.length));
     }
     covered(covered, name) {
         if ("bytes" in covered)

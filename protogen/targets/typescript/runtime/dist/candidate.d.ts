@@ -101,7 +101,7 @@ export declare class Candidate {
 }
 /** The value of a checksum, where the algorithm has this result. */
 export declare function dueOf(sum: Sum, result: number | bigint): number | bigint;
-/** True if the bytes at a place are those of the checksum of some pieces. */
-export declare function sumIsRight(sum: Sum, pieces: readonly Uint8Array[], bytes: Uint8Array, place: number): boolean;
+/** True if the bytes at a place are those of a checksum with this result. */
+export declare function sumIsRight(sum: Sum, result: number | bigint, bytes: Uint8Array, place: number): boolean;
 /** The verdict on a candidate that is the whole input, and the offset of the byte that gave it. */
 export declare function verdictOn(sender: Sender, data: Uint8Array, told: ToldValues): readonly [Verdict, number];

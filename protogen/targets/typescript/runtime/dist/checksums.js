@@ -5,19 +5,31 @@ function folded(width, folding, isSum) {
     const little = folding.words === "little";
     const { init = 0, xorout = 0, mask: kept = mask, add = 0, negated = false } = folding;
     const hasWords = size > 1;
-    function wordOf(bytes, at) {
+    function wordOf(bytes, at, to) {
         let word = 0;
         for (let index = 0; index < size; index++) {
             const place = little ? at + size - 1 - index : at + index;
-            word = word * 256 + (place < bytes.length ? bytes[place] : 0);
+            word = word * 256 + (place < to ? bytes[place] : 0);
         }
         return word;
     }
-    function compute(bytes) {
+    function compute(bytes, from, to) {
         let register = init;
-        for (let at = 0; at < bytes.length; at += size) {
-            const unit = hasWords ? wordOf(bytes, at) : bytes[at];
-            register = isSum ? (register + unit) % (mask + 1) : (register ^ unit) >>> 0;
+        if (hasWords) {
+            for (let at = from; at < to; at += size) {
+                const word = wordOf(bytes, at, to);
+                register = isSum ? (register + word) % (mask + 1) : (register ^ word) >>> 0;
+            }
+        }
+        else if (isSum) {
+            for (let at = from; at < to; at++)
+                register += bytes[at];
+            register %= mask + 1;
+        }
+        else {
+            for (let at = from; at < to; at++)
+                register ^= bytes[at];
+            register >>>= 0;
         }
         if (negated)
             register = (mask + 1 - register) % (mask + 1);
@@ -37,10 +49,10 @@ export function sum(width = 8, folding = {}) {
 /** Fletcher's checksum of bytes: the sum is the low byte, that of the running sums the high one. */
 export function fletcher16(modulus = 255) {
     return {
-        compute(bytes) {
+        compute(bytes, from, to) {
             let one = 0;
             let two = 0;
-            for (let index = 0; index < bytes.length; index++) {
+            for (let index = from; index < to; index++) {
                 one = (one + bytes[index]) % modulus;
                 two = (two + one) % modulus;
             }
@@ -86,16 +98,16 @@ function narrowCrc(width, poly, init, refin, refout, xorout) {
         return register >>> 0;
     }
     return {
-        compute(bytes) {
+        compute(bytes, from, to) {
             table ?? (table = Uint32Array.from({ length: 256 }, (_, byte) => entry(byte)));
             let register = first;
             if (refin) {
-                for (let index = 0; index < bytes.length; index++) {
+                for (let index = from; index < to; index++) {
                     register = (register >>> 8) ^ table[(register ^ bytes[index]) & 0xff];
                 }
             }
             else {
-                for (let index = 0; index < bytes.length; index++) {
+                for (let index = from; index < to; index++) {
                     register = (register << 8) ^ table[(register >>> 24) ^ bytes[index]];
                 }
                 register >>>= shift;
@@ -110,9 +122,9 @@ function wideCrc(width, poly, init, refin, refout, xorout) {
     const mask = (1n << size) - 1n;
     const divisor = refin ? reversed(poly, width) : poly;
     return {
-        compute(bytes) {
+        compute(bytes, from, to) {
             let register = refin ? reversed(init, width) : init;
-            for (let index = 0; index < bytes.length; index++) {
+            for (let index = from; index < to; index++) {
                 const byte = BigInt(bytes[index]);
                 register ^= refin ? byte : byte << (size - 8n);
                 for (let bit = 0; bit < 8; bit++) {

@@ -18,6 +18,16 @@ export class Reader {
         this.regions = 0;
         this.end = bytes.length;
     }
+    /** Begin at another payload. */
+    restart(bytes, at, end) {
+        this.bytes = bytes;
+        this.at = at;
+        this.end = end;
+        this.regions = 0;
+        if (this.path.length)
+            this.path.length = 0;
+        return this;
+    }
     /** The Fault of a field. */
     fault(step, reason, problem, missing = 0) {
         // More bytes behind a region would not help.
