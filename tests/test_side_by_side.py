@@ -45,7 +45,7 @@ def test_all_targets_print_what_each_prints_alone(begun: list[str]) -> None:
     targets = list(TARGETS.values())
     printed = module.emit_all(targets, protocols)
     assert printed == [target.emit(protocols) for target in targets]
-    assert begun == ["c"]
+    assert begun == ["c", "typescript"]
 
 
 def test_what_a_target_refuses_is_reported(begun: list[str]) -> None:
