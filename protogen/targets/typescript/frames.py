@@ -227,15 +227,15 @@ class FramePrinter:
             mapping(
                 {"message": text(item.message), "name": text(self._teller(item.message, item.name))}
             )
-            for item in part.set_by
+            for item in part.telling.set_by
         )
         return mapping(
             {
                 "name": text(part.name),
                 "slot": str(self._slots[part.name]),
-                "default": str(part.default),
+                "default": str(part.telling.default),
                 "bits": str(part.type.bits),
-                "once": boolean(part.once),
+                "once": boolean(part.telling.once),
                 "setBy": listed(set_by),
             }
         )

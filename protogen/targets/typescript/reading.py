@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from protogen.model.expressions import plain_name
-from protogen.model.packing import Packing
+from protogen.model.packing import FilledPacking, Packing
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -133,6 +133,8 @@ class ReadFunction:
 
     def _repeat(self, step: RepeatStep, at: str, level: int) -> str:
         scope, count = self._scope, step.count
+        if isinstance(step.packing, FilledPacking):
+            return self._filled_array(step, step.packing, at)
         if step.packing is not None:
             return self._packed_array(step, step.packing, at)
         name, index = scope.variable(step.name or "items"), scope.variable("i")
@@ -304,6 +306,22 @@ class ReadFunction:
         found = (self._bits(item, run, packing, {}) for item in items)
         scope.line(f"const {name} = {listed(found)};")
         self._end_run(packing, run, '""')
+        scope.line("r.leave();")
+        return name
+
+    def _filled_array(self, step: RepeatStep, packing: FilledPacking, at: str) -> str:
+        """Numbers whose bytes tell how many there are."""
+        scope, type_ = self._scope, step.element.type
+        assert isinstance(type_, Integer)
+        name = scope.variable(step.name or "items")
+        little = boolean(packing.byte_order == "little")
+        bounds = f"{step.count.least}, {step.count.greatest}"
+        found = f"BigInt.as{'Int' if type_.signed else 'Uint'}N({type_.bits}, bits)"
+        found = found if is_bigint(type_) else f"Number({found})"
+        found = closed("r", type_, found, "index", scope)
+        runs = f"rt.readRun(r, {packing.width}, {little}, {bounds}, {at})"
+        scope.line(f"r.enter({at});")
+        scope.line(f"const {name} = {runs}.map((bits, index) => {found});")
         scope.line("r.leave();")
         return name
 

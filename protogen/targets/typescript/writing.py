@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from protogen.model.computed import Computed, computed
-from protogen.model.packing import Packing
+from protogen.model.packing import FilledPacking, Packing
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -136,7 +136,13 @@ class WriteFunction:
         least, greatest = self._bounds(count)
         scope.line(f"const {items} = w.list({given}, {least}, {greatest}, {at});")
         scope.line(f"w.enter({at});")
-        if step.packing is not None:
+        if isinstance(step.packing, FilledPacking):
+            assert isinstance(step.element, IntegerStep)
+            little = boolean(step.packing.byte_order == "little")
+            value = self._checked(step.element, "item", "index")
+            made = f"{items}.map((item, index) => BigInt({value}))"
+            scope.line(f"rt.writeRun(w, {made}, {step.packing.width}, {little});")
+        elif step.packing is not None:
             self._packed(packed_numbers([step]), step.packing, {step.name: items}, level)
         else:
             with scope.block(f"for (let {index} = 0; {index} < {items}.length; {index}++)"):

@@ -27,6 +27,7 @@ export {
   type EncodeOptions,
   type NamedMessage,
 } from "./protocol.js";
+export { readRun, writeRun } from "./runs.js";
 export { readPayload, writePayload } from "./sender.js";
 export { latin1, PLAIN_TEXT, type Reader } from "./reader.js";
 export { eventsOf, streamOf } from "./stream.js";

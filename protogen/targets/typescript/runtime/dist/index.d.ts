@@ -12,6 +12,7 @@ export { bitsNumber, characters, digits, number, type Value } from "./numbers.js
 export { nearest, physical } from "./physical.js";
 export type { Frame, MessagePlan } from "./plan.js";
 export { Encoder, Protocol, type DecodeOptions, type EncodeOptions, type NamedMessage, } from "./protocol.js";
+export { readRun, writeRun } from "./runs.js";
 export { readPayload, writePayload } from "./sender.js";
 export { latin1, PLAIN_TEXT, type Reader } from "./reader.js";
 export { eventsOf, streamOf } from "./stream.js";

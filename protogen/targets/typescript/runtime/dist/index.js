@@ -9,6 +9,7 @@ export { readBigDigits, readBigNumeral, readDigits, readNumeral, writeDigits, wr
 export { bitsNumber, characters, digits, number } from "./numbers.js";
 export { nearest, physical } from "./physical.js";
 export { Encoder, Protocol, } from "./protocol.js";
+export { readRun, writeRun } from "./runs.js";
 export { readPayload, writePayload } from "./sender.js";
 export { latin1, PLAIN_TEXT } from "./reader.js";
 export { eventsOf, streamOf } from "./stream.js";
