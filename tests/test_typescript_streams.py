@@ -23,7 +23,7 @@ FOLDERS = ("c_schemas", "stuffed_schemas", "form_schemas", "told_schemas")
 OTHERS = [path for name in FOLDERS for path in sorted((ROOT / "tests" / name).glob("*.yaml"))]
 LIBRARY = sorted((ROOT / "protogen" / "library").glob("*.yaml"))
 ALL = [*DOCUMENTS, *DIALECTS, *FRAMINGS, *OTHERS, *LIBRARY]
-REFUSED = {"part_fields", "part_fields_alone", "lengths", "nextion"}
+REFUSED = {"part_fields", "part_fields_alone"}
 """Schemas that the target can't print yet."""
 SCHEMAS = [path for path in ALL if path not in LIBRARY and path.stem not in REFUSED]
 FILES = [file for file in map(read_vectors, vector_files()) if file.schema.stem not in REFUSED]

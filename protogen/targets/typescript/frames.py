@@ -21,6 +21,7 @@ from protogen.model.parts import (
     NumberPart,
     Part,
     PayloadPart,
+    ToldLength,
     ToldPart,
     TypedPart,
     ValuePart,
@@ -237,6 +238,7 @@ class FramePrinter:
                 "bits": str(part.type.bits),
                 "once": boolean(part.telling.once),
                 "setBy": listed(set_by),
+                "length": self._number_part(part) if isinstance(part, ToldLength) else "null",
             }
         )
 

@@ -17,10 +17,6 @@ def refuse(protocol: Protocol) -> None:
 
 
 def _reasons(protocol: Protocol) -> Iterator[str]:
-    for sender in protocol.senders:
-        part = sender.frame.told_length
-        if part is not None:
-            yield f"its decoders can't be told a length, as that of {sender.name}, {part.name}"
     for message in protocol.messages:
         for field in message.held:
             what = f"field {field.name} of {message.name}, which is a part of the frame"

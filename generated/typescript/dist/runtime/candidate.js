@@ -58,6 +58,7 @@ export class Candidate {
         this.content = new Content(sender, told);
         this.delimiters = frame.end.length && frame.endIsUnique ? [frame.end] : [];
         try {
+            this.content.begin();
             this.cross();
         }
         catch (error) {
@@ -89,9 +90,10 @@ export class Candidate {
         }
         this.wire[this.wireSize++] = byte;
         try {
-            if (this.refused)
+            if (!this.refused)
+                this.take(byte);
+            else if (this.wireSize > this.sender.startSize)
                 throw this.refused;
-            this.take(byte);
             if (!this.cut && this.wireSize >= this.sender.frame.givenUpAt) {
                 throw new Fault("length", `no frame has more than ${this.sender.frame.greatest} bytes`);
             }

@@ -133,6 +133,8 @@ export interface Told {
         readonly message: string;
         readonly name: string;
     }[];
+    /** What it is where it tells the size of frames, not what they are. */
+    readonly length: LengthNumber | null;
 }
 /** Values of each identity part: runs from the first to the last. */
 export type Runs = readonly (readonly (readonly [Value, Value])[])[];

@@ -15,6 +15,8 @@ export declare class Sender {
     readonly hasWireSum: boolean;
     /** The length that tells where a frame ends. */
     readonly length: LengthNumber | null;
+    /** The same where it is not sent, and a receiver is told it. */
+    readonly toldLength: LengthNumber | null;
     constructor(frame: Frame);
     get key(): string;
     /** The identity among the values of a frame. */
@@ -26,6 +28,8 @@ export declare class Sender {
     tailSize(payload: number): number;
     /** The payload's size where the content has that size; -1 if there is none. */
     payloadSize(content: number): number;
+    /** What a receiver has to be told of the size of a frame, by its slot. */
+    tellSize(values: (Value | undefined)[], payload: number): void;
     get isFitted(): boolean;
     /** Bytes that are known of a payload; null where its fields take all of it. */
     knownOf(message: MessagePlan, payload: Uint8Array): number | null;

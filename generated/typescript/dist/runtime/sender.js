@@ -40,7 +40,8 @@ export class Sender {
         const own = frame.sharesDelimiter ? [] : frame.startWords;
         for (const word of own)
             this.completesStart[word[word.length - 1]] = 1;
-        this.length = numbersOf(frame.parts).find(isFirstLength) ?? null;
+        this.toldLength = frame.told.find((part) => part.length)?.length ?? null;
+        this.length = this.toldLength ?? numbersOf(frame.parts).find(isFirstLength) ?? null;
         this.hasWireSum = frame.sums.some((sum) => sum.overWire);
         this.emptyFrame = NO_BYTES;
         if (frame.start === "after_end")
@@ -89,6 +90,14 @@ export class Sender {
             return 0;
         const size = extra - this.frame.tailSize;
         return size > 0 ? size : -1;
+    }
+    /** What a receiver has to be told of the size of a frame, by its slot. */
+    tellSize(values, payload) {
+        const { toldLength } = this;
+        if (!toldLength || payload < 0)
+            return;
+        const { base, optional, slot } = toldLength;
+        values[slot] = base + (payload ? payload + optional : 0);
     }
     get isFitted() {
         return this.frame.kept !== null || this.frame.isCut;

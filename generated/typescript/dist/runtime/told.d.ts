@@ -5,6 +5,7 @@ import type { Sender } from "./sender.js";
 export type Telling = number | readonly number[];
 /** The values of a decoder's told parts, by their names. */
 export declare class Told {
+    private readonly senders;
     private readonly parts;
     private readonly values;
     private readonly following;
@@ -18,6 +19,10 @@ export declare class Told {
     valuesFor(sender: Sender): ToldValues;
     /** Take values, or those of the frames to come. Throws a RangeError; then nothing is taken. */
     tell(given: Readonly<Record<string, Telling | undefined>>): void;
+    /** Throw a RangeError for a length that no frame has, but for the one before any is told. */
+    private checkLengths;
+    /** What holds for one frame that is all there is, without lengths that are not given. */
+    valuesForOne(sender: Sender, given: object, data: number): ToldValues;
     /** Take a frame: what was told may hold no more, and it may tell something itself. */
     passFrame(sender: Sender, values: ToldValues, name: string | null, message: unknown): void;
     /** Take the numbers of a frame, which may tell something of those behind it. */

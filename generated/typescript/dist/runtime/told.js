@@ -2,6 +2,7 @@
 /** The values of a decoder's told parts, by their names. */
 export class Told {
     constructor(senders) {
+        this.senders = senders;
         this.parts = new Map();
         this.values = new Map();
         this.following = new Map();
@@ -46,10 +47,35 @@ export class Told {
             if (wrong !== undefined) {
                 throw new RangeError(`${name} can't be ${wrong}: it has ${part.bits} bits`);
             }
+            if (part.length)
+                this.checkLengths(part, part.length, listed);
             taken.set(name, listed.length ? listed : [part.default]);
         }
         for (const [name, listed] of taken)
             this.fresh.set(name, listed);
+    }
+    /** Throw a RangeError for a length that no frame has, but for the one before any is told. */
+    checkLengths(part, length, values) {
+        for (const value of values) {
+            const isTaken = this.senders.some(({ frame }) => {
+                if (!frame.told.some((item) => item.name === part.name))
+                    return false;
+                const greatest = length.base + length.optional + frame.greatestPayload;
+                const least = Math.max(length.least, length.base);
+                return least <= value && value <= Math.min(length.greatest, greatest);
+            });
+            if (!isTaken && value !== part.default) {
+                throw new RangeError(`${part.name} can't be ${value}: no frame has that length`);
+            }
+        }
+    }
+    /** What holds for one frame that is all there is, without lengths that are not given. */
+    valuesForOne(sender, given, data) {
+        const found = [...this.valuesFor(sender)];
+        const isGiven = sender.frame.told.some((part) => part.length && part.name in given);
+        if (!isGiven)
+            sender.tellSize(found, sender.payloadSize(data - sender.frame.end.length));
+        return found;
     }
     /** Take a frame: what was told may hold no more, and it may tell something itself. */
     passFrame(sender, values, name, message) {

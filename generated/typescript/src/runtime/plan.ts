@@ -143,6 +143,8 @@ export interface Told {
   readonly once: boolean;
   /** Numbers of frames that tell it: those of a part, or of a message's field. */
   readonly setBy: readonly { readonly message: string; readonly name: string }[];
+  /** What it is where it tells the size of frames, not what they are. */
+  readonly length: LengthNumber | null;
 }
 
 /** Values of each identity part: runs from the first to the last. */

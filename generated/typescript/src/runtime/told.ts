@@ -2,7 +2,7 @@
 
 import type { ToldValues } from "./candidate.js";
 import type { Value } from "./numbers.js";
-import type { Told as ToldPart } from "./plan.js";
+import type { LengthNumber, Told as ToldPart } from "./plan.js";
 import type { Sender } from "./sender.js";
 
 /** A number, or those of frames that follow each other. */
@@ -15,7 +15,7 @@ export class Told {
   private readonly following = new Map<string, number[]>();
   private fresh = new Map<string, readonly number[]>();
 
-  constructor(senders: readonly Sender[]) {
+  constructor(private readonly senders: readonly Sender[]) {
     for (const { frame } of senders) {
       for (const part of frame.told) {
         this.parts.set(part.name, part);
@@ -59,9 +59,33 @@ export class Told {
       if (wrong !== undefined) {
         throw new RangeError(`${name} can't be ${wrong}: it has ${part.bits} bits`);
       }
+      if (part.length) this.checkLengths(part, part.length, listed);
       taken.set(name, listed.length ? listed : [part.default]);
     }
     for (const [name, listed] of taken) this.fresh.set(name, listed);
+  }
+
+  /** Throw a RangeError for a length that no frame has, but for the one before any is told. */
+  private checkLengths(part: ToldPart, length: LengthNumber, values: readonly number[]): void {
+    for (const value of values) {
+      const isTaken = this.senders.some(({ frame }) => {
+        if (!frame.told.some((item) => item.name === part.name)) return false;
+        const greatest = length.base + length.optional + frame.greatestPayload;
+        const least = Math.max(length.least, length.base);
+        return least <= value && value <= Math.min(length.greatest, greatest);
+      });
+      if (!isTaken && value !== part.default) {
+        throw new RangeError(`${part.name} can't be ${value}: no frame has that length`);
+      }
+    }
+  }
+
+  /** What holds for one frame that is all there is, without lengths that are not given. */
+  valuesForOne(sender: Sender, given: object, data: number): ToldValues {
+    const found = [...this.valuesFor(sender)];
+    const isGiven = sender.frame.told.some((part) => part.length && part.name in given);
+    if (!isGiven) sender.tellSize(found, sender.payloadSize(data - sender.frame.end.length));
+    return found;
   }
 
   /** Take a frame: what was told may hold no more, and it may tell something itself. */

@@ -40,6 +40,8 @@ export class Sender {
   readonly hasWireSum: boolean;
   /** The length that tells where a frame ends. */
   readonly length: LengthNumber | null;
+  /** The same where it is not sent, and a receiver is told it. */
+  readonly toldLength: LengthNumber | null;
 
   constructor(readonly frame: Frame) {
     for (const group of frame.groups) {
@@ -50,7 +52,8 @@ export class Sender {
     this.startSize = frame.startWords[0]?.length ?? 0;
     const own = frame.sharesDelimiter ? [] : frame.startWords;
     for (const word of own) this.completesStart[word[word.length - 1]!] = 1;
-    this.length = numbersOf(frame.parts).find(isFirstLength) ?? null;
+    this.toldLength = frame.told.find((part) => part.length)?.length ?? null;
+    this.length = this.toldLength ?? numbersOf(frame.parts).find(isFirstLength) ?? null;
     this.hasWireSum = frame.sums.some((sum) => sum.overWire);
     this.emptyFrame = NO_BYTES;
     if (frame.start === "after_end") this.emptyFrame = frame.end;
@@ -101,6 +104,14 @@ export class Sender {
     if (extra === this.frame.tailSizeEmpty) return 0;
     const size = extra - this.frame.tailSize;
     return size > 0 ? size : -1;
+  }
+
+  /** What a receiver has to be told of the size of a frame, by its slot. */
+  tellSize(values: (Value | undefined)[], payload: number): void {
+    const { toldLength } = this;
+    if (!toldLength || payload < 0) return;
+    const { base, optional, slot } = toldLength;
+    values[slot] = base + (payload ? payload + optional : 0);
   }
 
   get isFitted(): boolean {

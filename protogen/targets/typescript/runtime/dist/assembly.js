@@ -103,7 +103,9 @@ function valueOf(part, given, strict) {
 }
 /** Throw an EncodeError unless a decoder takes exactly these bytes for the frame. */
 function checkCut(sender, wire, payload, values) {
-    const [verdict] = verdictOn(sender, wire, values);
+    const told = [...values];
+    sender.tellSize(told, payload.length);
+    const [verdict] = verdictOn(sender, wire, told);
     if (verdict.size < wire.length) {
         const problem = `a decoder would end the frame behind ${verdict.size} of its bytes`;
         throw new EncodeError("payload", problem);
@@ -140,6 +142,8 @@ class Assembly {
         if (frame.sevenBit && this.payload.some((byte) => byte > 0x7f)) {
             throw new EncodeError("payload", "a byte has its most significant bit set");
         }
+        if (this.sender.toldLength)
+            this.length(this.sender.toldLength);
         const whole = this.bytes(0, this.content.length);
         const region = this.region();
         if (!region)

@@ -28,6 +28,8 @@ export declare class Content {
     private literal;
     private clearBits;
     constructor(sender: Sender, told: readonly (Value | undefined)[]);
+    /** Take what was told, before the first byte. Throws a Fault where no frame has it. */
+    begin(): void;
     /** Take the next byte. True: a part was completed, and more may be known. */
     accept(byte: number): boolean;
     /** The verdict on a byte behind the content's last one. */

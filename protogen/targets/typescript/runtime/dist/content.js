@@ -29,6 +29,12 @@ export class Content {
         this.values = new Array(frame.slots).fill(undefined);
         for (const part of frame.told)
             this.values[part.slot] = told[part.slot] ?? part.default;
+    }
+    /** Take what was told, before the first byte. Throws a Fault where no frame has it. */
+    begin() {
+        const { toldLength, frame } = this.sender;
+        if (toldLength)
+            this.readLength(toldLength);
         if (frame.lastIdentity < 0)
             this.identify();
         this.enter();

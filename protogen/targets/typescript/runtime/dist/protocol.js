@@ -37,7 +37,8 @@ export class Protocol {
         let found = null;
         for (const sender of senders) {
             try {
-                return readAs(sender, frame, told.valuesFor(sender));
+                const values = told.valuesForOne(sender, options.told ?? {}, frame.length);
+                return readAs(sender, frame, values);
             }
             catch (error) {
                 if (!(error instanceof DecodeError))
