@@ -120,12 +120,21 @@ export interface LcdDump {
   timestamp: number;
   /** Row, 0..255 (rflex-protocol.txt, SYS_LCD_DUMP). */
   row: number;
-  /** Byte count, 0..255 (rflex-protocol.txt, SYS_LCD_DUMP). */
+  /** Byte count, 0..255, computed where it is left out (rflex-protocol.txt, SYS_LCD_DUMP). */
   byte_count: number;
   /**
    * Eight pixels in each byte; a b21r has 240 rows of 40 bytes (rflex_commands.cc, parseSysReport).
    */
   pixels: Uint8Array;
+}
+
+/** What an encoder takes for LcdDump. */
+export interface LcdDumpInput {
+  readonly message: "lcd_dump";
+  readonly timestamp: number;
+  readonly row: number;
+  readonly byte_count?: number | undefined;
+  readonly pixels: Uint8Array;
 }
 
 /** Asks for the system of an axis (003_037af2f07b705118.txt, lines 67-75). */
@@ -486,7 +495,7 @@ export type Message = Senders[SenderName]["message"];
 export type MessageInput = 
   | RequestSystemStatus
   | SystemStatus
-  | LcdDump
+  | LcdDumpInput
   | AxisGetSystem
   | MotorCommand
   | ConfirmMotorCommand

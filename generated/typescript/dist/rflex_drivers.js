@@ -98,7 +98,7 @@ function readLcdDump(r) {
 function writeLcdDump(w, m) {
   w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
   w.u8(w.int(m.row, 0, 255, "row"));
-  const byte_count = w.int(m.byte_count, 0, 255, "byte_count");
+  const byte_count = w.int(m.byte_count ?? (rt.sizeOf(m.pixels)), 0, 255, "byte_count");
   w.u8(byte_count);
   const count = byte_count;
   w.octets(m.pixels, count, count, false, "pixels");

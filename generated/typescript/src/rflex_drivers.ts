@@ -120,12 +120,21 @@ export interface LcdDump {
   timestamp: number;
   /** Row, 0..255 (rflex-protocol.txt, SYS_LCD_DUMP). */
   row: number;
-  /** Byte count, 0..255 (rflex-protocol.txt, SYS_LCD_DUMP). */
+  /** Byte count, 0..255, computed where it is left out (rflex-protocol.txt, SYS_LCD_DUMP). */
   byte_count: number;
   /**
    * Eight pixels in each byte; a b21r has 240 rows of 40 bytes (rflex_commands.cc, parseSysReport).
    */
   pixels: Uint8Array;
+}
+
+/** What an encoder takes for LcdDump. */
+export interface LcdDumpInput {
+  readonly message: "lcd_dump";
+  readonly timestamp: number;
+  readonly row: number;
+  readonly byte_count?: number | undefined;
+  readonly pixels: Uint8Array;
 }
 
 /** Asks for the system of an axis (003_037af2f07b705118.txt, lines 67-75). */
@@ -486,7 +495,7 @@ export type Message = Senders[SenderName]["message"];
 export type MessageInput = 
   | RequestSystemStatus
   | SystemStatus
-  | LcdDump
+  | LcdDumpInput
   | AxisGetSystem
   | MotorCommand
   | ConfirmMotorCommand
@@ -558,10 +567,10 @@ function readLcdDump(r: rt.Reader): LcdDump {
   return { message: "lcd_dump", timestamp, row, byte_count, pixels };
 }
 
-function writeLcdDump(w: rt.Writer, m: LcdDump): void {
+function writeLcdDump(w: rt.Writer, m: LcdDumpInput): void {
   w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
   w.u8(w.int(m.row, 0, 255, "row"));
-  const byte_count = w.int(m.byte_count, 0, 255, "byte_count");
+  const byte_count = w.int(m.byte_count ?? (rt.sizeOf(m.pixels)), 0, 255, "byte_count");
   w.u8(byte_count);
   const count = byte_count;
   w.octets(m.pixels, count, count, false, "pixels");
