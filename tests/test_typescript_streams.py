@@ -14,7 +14,6 @@ from compiled import DIALECTS, DOCUMENTS, FRAMINGS, ROOT, module_at, name_of, pr
 from corpus import material_of, portions, single_bytes, stream_of
 from vectors import VectorFile, read_vectors, vector_files
 
-from protogen.errors import UserError
 from protogen.fuzzing.samples import boundary_rounds, samples
 from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError
@@ -23,10 +22,8 @@ FOLDERS = ("c_schemas", "stuffed_schemas", "form_schemas", "told_schemas")
 OTHERS = [path for name in FOLDERS for path in sorted((ROOT / "tests" / name).glob("*.yaml"))]
 LIBRARY = sorted((ROOT / "protogen" / "library").glob("*.yaml"))
 ALL = [*DOCUMENTS, *DIALECTS, *FRAMINGS, *OTHERS, *LIBRARY]
-REFUSED = {"part_fields", "part_fields_alone"}
-"""Schemas that the target can't print yet."""
-SCHEMAS = [path for path in ALL if path not in LIBRARY and path.stem not in REFUSED]
-FILES = [file for file in map(read_vectors, vector_files()) if file.schema.stem not in REFUSED]
+SCHEMAS = [path for path in ALL if path not in LIBRARY]
+FILES = [read_vectors(path) for path in vector_files()]
 
 STREAMS = int(os.environ.get("PROTOGEN_TYPESCRIPT_STREAMS", "40"))
 """Streams of each sender of the documents. With 10,000, there are 100,000 of all of them."""
@@ -34,9 +31,7 @@ FEW = 12
 """Messages that are tried of a sender in the library."""
 
 of_schema = pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
-of_library = pytest.mark.parametrize(
-    "path", [path for path in LIBRARY if path.stem not in REFUSED], ids=name_of
-)
+of_library = pytest.mark.parametrize("path", LIBRARY, ids=name_of)
 of_vectors = pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)
 
 
@@ -81,15 +76,6 @@ def test_damaged_streams_of_the_library_are_cut_alike(path: Path) -> None:
 @pytest.mark.parametrize("path", DOCUMENTS, ids=name_of)
 def test_many_streams_of_the_documents_are_cut_alike(path: Path) -> None:
     check_streams(path, seeds=range(100, 100 + STREAMS))
-
-
-@pytest.mark.parametrize("path", [it for it in ALL if it.stem in REFUSED], ids=name_of)
-def test_what_can_not_be_printed_is_an_error_that_says_why(path: Path) -> None:
-    with pytest.raises(
-        UserError, match=f"target typescript can't print {path.stem}: its "
-    ) as error:
-        engine.module_of(protocol_of(path))
-    assert error.value.hint is not None
 
 
 def check_streams(path: Path, seeds: range) -> None:

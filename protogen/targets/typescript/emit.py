@@ -10,7 +10,6 @@ from protogen.model.protocol import Protocol
 from protogen.targets.banner import C, banner
 from protogen.targets.output import File
 from protogen.targets.printing import environment
-from protogen.targets.typescript.limits import refuse
 from protogen.targets.typescript.module import Module
 from protogen.targets.typescript.names import names_of
 from protogen.version import VERSION
@@ -23,8 +22,6 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
     """The files of the package."""
     if not protocols:
         return ()
-    for protocol in protocols:
-        refuse(protocol)
     names = sorted(names_of(protocol).file for protocol in protocols)
     text = (
         environment(_PACKAGE).get_template("package.json.j2").render(names=names, version=VERSION)

@@ -164,6 +164,7 @@ class Module:
             "sizes": sizes_of(message.sizes),
             "known": "null" if known is None else str(known),
             "tellsItsEnd": boolean(tells),
+            "held": listed(text(field.part) for field in message.held),
             "read": read,
             "write": write,
         }

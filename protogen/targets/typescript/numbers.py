@@ -6,7 +6,7 @@ from fractions import Fraction
 from math import inf, nextafter
 
 from protogen.model.numbers import FreeNumeral, Numeral
-from protogen.model.payload_plan import FloatStep, IntegerStep
+from protogen.model.payload_plan import FloatStep, IntegerStep, PartStep
 from protogen.model.types import Float, Integer, Type
 from protogen.targets.typescript.literals import (
     boolean,
@@ -17,6 +17,7 @@ from protogen.targets.typescript.literals import (
     listed,
     mapping,
     real,
+    text,
 )
 from protogen.targets.typescript.scope import Scope
 
@@ -54,7 +55,15 @@ def read_number(step: IntegerStep | FloatStep, at: str, scope: Scope) -> str:
         if type_.byte_bits == 7:
             return f"r.float7({type_.bits}, {_is_little(type_)}, {at})"
         return f"r.f{type_.bits}({_is_little(type_)}, {at})"
-    return closed("r", type_, _read_integer(type_, at, scope), at, scope)
+    found = _read_part(step, at) if isinstance(step, PartStep) else _read_integer(type_, at, scope)
+    return closed("r", type_, found, at, scope)
+
+
+def _read_part(step: PartStep, at: str) -> str:
+    """The expression of a number that the frame has."""
+    name = "r.bigPart" if is_bigint(step.type) else "r.part"
+    found = call(name, text(step.part), at)
+    return f"{found} !== 0" if step.type.role == "bool" else found
 
 
 def closed(by: str, type_: Integer, found: str, at: str, scope: Scope) -> str:
@@ -156,6 +165,8 @@ def _below(bound: Fraction) -> float:
 
 def write_number(step: IntegerStep | FloatStep, value: str, at: str, scope: Scope) -> str:
     """The statement that writes a checked value."""
+    if isinstance(step, PartStep):
+        return call("w.part", text(step.part), value) + ";"
     type_ = step.type
     if isinstance(type_, Float):
         return f"w.float({value}, {type_.bits}, {_is_little(type_)}, {_base(type_)});"
