@@ -1,0 +1,103 @@
+"""The reference: the Markdown target's text as HTML, with frames drawn in place of its diagrams."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from markdown_it import MarkdownIt
+from markupsafe import Markup
+
+from protogen.model.protocol import Protocol
+from protogen.targets.html.drawing import drawings
+from protogen.targets.markdown.emit import page_text
+
+if TYPE_CHECKING:
+    from markdown_it.rules_inline import StateInline
+    from markdown_it.token import Token
+
+_ANCHOR = re.compile(r'<a id="([^"<>&]+)"></a>')
+"""An anchor as the Markdown target writes it. Texts of a schema hold no `<`, as that is escaped."""
+_HEADINGS = ("h2", "h3")
+
+
+def reference(protocol: Protocol) -> tuple[Markup, tuple[Heading, ...]]:
+    """The page's text, and its headings for a table of contents."""
+    parser = _parser()
+    tokens = parser.parse(page_text(protocol))
+    headings = tuple(_name_headings(tokens))
+    shown = parser.renderer.render(tokens, parser.options, {"drawings": iter(drawings(protocol))})
+    return Markup(shown), headings  # noqa: S704 - made by a parser that passes no HTML.
+
+
+class Heading:
+    """A heading of the page."""
+
+    def __init__(self, level: int, anchor: str, text: str) -> None:
+        self.level = level
+        self.anchor = anchor
+        self.text = text
+
+
+def _parser() -> MarkdownIt:
+    parser = MarkdownIt("commonmark", {"html": False}).enable("table")
+    parser.inline.ruler.before("text", "anchor", _take_anchor)
+    rules: Any = parser.renderer.rules
+    rules["anchor"] = _show_anchor
+    rules["fence"] = _show_fence
+    rules["table_open"] = lambda *_: '<div class="wide" tabindex="0"><table>\n'
+    rules["table_close"] = lambda *_: "</table></div>\n"
+    rules["th_open"] = lambda *_: '<th scope="col">'
+    rules["td_open"] = lambda *_: "<td>"
+    return parser
+
+
+def _take_anchor(state: StateInline, silent: bool) -> bool:
+    found = _ANCHOR.match(state.src, state.pos)
+    if found is None:
+        return False
+    if not silent:
+        state.push("anchor", "", 0).content = found[1]
+    state.pos = found.end()
+    return True
+
+
+def _show_anchor(tokens: Sequence[Token], index: int, *_: object) -> str:
+    return f'<span id="{Markup.escape(tokens[index].content)}"></span>'
+
+
+def _show_fence(tokens: Sequence[Token], index: int, _: object, env: Any) -> str:
+    token = tokens[index]
+    if token.info == "mermaid":
+        return str(next(env["drawings"]))
+    return f'<pre tabindex="0"><code>{Markup.escape(token.content)}</code></pre>\n'
+
+
+def _name_headings(tokens: Sequence[Token]) -> Iterator[Heading]:
+    """Give each heading the name that leads to it, and yield those of the contents."""
+    known: set[str] = set()
+    for opened, inline in zip(tokens, tokens[1:], strict=False):
+        if opened.type != "heading_open":
+            continue
+        children = inline.children or []
+        anchor = next((item.content for item in children if item.type == "anchor"), "")
+        inline.children = [item for item in children if item.type != "anchor"]
+        text = "".join(item.content for item in inline.children)
+        name = anchor or _free(_slug(text), known)
+        known.add(name)
+        opened.attrSet("id", name)
+        if opened.tag in _HEADINGS:
+            yield Heading(int(opened.tag[1]), name, text)
+
+
+def _slug(text: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") or "section"
+
+
+def _free(name: str, known: set[str]) -> str:
+    """The name, with a number behind it where it is taken."""
+    found, number = name, 2
+    while found in known:
+        found, number = f"{name}-{number}", number + 1
+    return found
