@@ -14,16 +14,16 @@ from jinja2 import (
 
 
 @cache
-def environment(package: str) -> Environment:
+def environment(package: str, *, autoescape: bool = False) -> Environment:
     """The templates of a target's package.
 
-    Nothing is escaped: the views give text that is right for its language already. Compiled
-    templates are kept between runs where there is a place for it, because compiling them takes
+    Nothing is escaped, as views give text that is right for its language already; with
+    `autoescape`, all but markup is, for HTML. Compiled templates are kept between runs where there is a place for it, because compiling them takes
     longer than printing.
     """
     return Environment(
         loader=PackageLoader(package),
-        autoescape=False,  # noqa: S701
+        autoescape=autoescape,  # noqa: S701
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

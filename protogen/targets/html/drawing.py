@@ -176,16 +176,14 @@ def _drawing(blocks: Iterable[Block], title: str) -> Markup:
             shapes += _bits(block, y)
             y += _HEIGHT + _GAP
     width = min(start, _ROW) * _BYTE if not any(block.runs for block in drawn) else _ROW * _BYTE
-    words = ". ".join(block.label for block in drawn)
     return Markup(
         '<figure class="frame"><div class="wide" tabindex="0">'
-        '<svg role="img" width="{w}" height="{h}" viewBox="-1 0 {v} {h}" aria-label="{words}">'
+        '<svg role="img" width="{w}" height="{h}" viewBox="-1 0 {v} {h}" aria-label="{title}">'
         "{shapes}</svg></div><figcaption>{title}, to scale</figcaption></figure>\n"
     ).format(
         w=width + 2,
         v=width + 2,
         h=y + 4,
-        words=f"{title}. {words}",
         shapes=Markup("").join(shapes),
         title=title,
     )
@@ -201,10 +199,10 @@ def _boxes(block: Block, start: int) -> Iterator[Markup]:
         label = block.name if first else ""
         yield _box(block.label, block.kind, (x, y, width), label, is_whole=block.is_whole)
         if first and block.start is not None:
-            yield _text(x + 2, y - 4, str(block.start), "number")
+            yield _text(x + 2, y - 4, str(block.start), "n")
         if block.is_whole:
-            for tick in range(1, units):
-                yield Markup('<path class="tick" d="M{} {}v5"/>').format(x + tick * _BYTE, y)
+            ticks = "".join(f"M{x + tick * _BYTE} {y}v5" for tick in range(1, units))
+            yield Markup('<path d="{}"/>').format(ticks) if ticks else Markup("")
         start, left, first = start + units, left - units, False
 
 
@@ -214,7 +212,7 @@ def _bits(block: Block, y: int) -> Iterator[Markup]:
     width = _ROW * _BYTE / bits
     named = {bit for run in block.runs for bit in range(run.low, run.low + run.size)}
     unnamed = (Run("", bit, 1) for bit in range(bits) if bit not in named)
-    yield _text(2, y + _GAP - 4, f"bits of {block.name}, {bits - 1} to 0", "number")
+    yield _text(2, y + _GAP - 4, f"bits of {block.name}, {bits - 1} to 0", "n")
     for run in (*block.runs, *unnamed):
         x = (bits - run.low - run.size) * width
         last = run.low + run.size - 1
@@ -230,7 +228,7 @@ def _box(
     x, y, width = place
     shape = Markup(
         '<g class="{kind}"><title>{title}</title>'
-        '<rect x="{x:g}" y="{y:g}" width="{width:g}" height="{height}"{dash}/>{text}</g>'
+        '<rect x="{x:g}" y="{y:g}" width="{width:g}"{dash}/>{text}</g>'
     )
     return shape.format(
         kind=kind,
@@ -238,9 +236,8 @@ def _box(
         x=x,
         y=y,
         width=width,
-        height=_HEIGHT,
         dash=Markup("") if is_whole else Markup(' stroke-dasharray="4 3"'),
-        text=_text(x + width / 2, y + 21, _cut(label, width), "name"),
+        text=_text(x + width / 2, y + 21, _cut(label, width), ""),
     )
 
 
@@ -254,4 +251,5 @@ def _cut(label: str, width: float) -> str:
 def _text(x: float, y: float, text: str, kind: str) -> Markup:
     if not text:
         return Markup("")
-    return Markup('<text class="{}" x="{:g}" y="{:g}">{}</text>').format(kind, x, y, text)
+    own = Markup(' class="{}"').format(kind) if kind else ""
+    return Markup('<text{} x="{:g}" y="{:g}">{}</text>').format(own, x, y, text)

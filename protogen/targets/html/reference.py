@@ -50,6 +50,8 @@ def _parser() -> MarkdownIt:
     rules["table_close"] = lambda *_: "</table></div>\n"
     rules["th_open"] = lambda *_: '<th scope="col">'
     rules["td_open"] = lambda *_: "<td>"
+    for name in ("td", "th", "tr", "thead", "tbody"):
+        rules[f"{name}_close"] = lambda *_: "\n"  # HTML lets their ends be left out.
     return parser
 
 

@@ -1,0 +1,41 @@
+/** Puts the page's parts to work. */
+import * as codec from "./codec.js";
+import { explained } from "./api.js";
+import { DecodeView } from "./decode_view.js";
+import { by } from "./dom.js";
+import { Explainer } from "./explain.js";
+import { keep, stateIn } from "./links.js";
+import { fromHex } from "./octets.js";
+import { resolved } from "./plans.js";
+import { startSearch } from "./search_view.js";
+import { Tabs } from "./tabs.js";
+
+const plans = resolved(JSON.parse(by("plans").textContent));
+const explainer = new Explainer(plans, codec);
+by("bench").hidden = false;
+by("to-bench").hidden = false;
+startSearch(JSON.parse(by("entries").textContent));
+const tabs = new Tabs(["decode", "encode", "file"]);
+let isRestoring = false;
+const decode = new DecodeView(explainer, (text, endpoint) => {
+  if (!isRestoring && text.length < 4000) keep({ d: endpoint || "any", hex: text.replace(/\s+/g, " ").trim() });
+});
+
+function restore() {
+  const state = stateIn(location.hash);
+  if (!state) return;
+  isRestoring = true;
+  const side = state.get("d");
+  if (side !== null) {
+    tabs.open("decode");
+    decode.set(state.get("hex") ?? "", side === "any" ? "" : side);
+  }
+  isRestoring = false;
+  by("bench").scrollIntoView();
+}
+
+globalThis.addEventListener("hashchange", restore);
+restore();
+globalThis.protogen = {
+  explain: (hex, endpoint) => explained(explainer, fromHex(hex), endpoint),
+};
