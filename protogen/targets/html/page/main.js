@@ -3,6 +3,7 @@ import * as codec from "./codec.js";
 import { explained } from "./api.js";
 import { DecodeView } from "./decode_view.js";
 import { by } from "./dom.js";
+import { EncodeView } from "./encode_view.js";
 import { Explainer } from "./explain.js";
 import { keep, stateIn } from "./links.js";
 import { fromHex } from "./octets.js";
@@ -21,6 +22,14 @@ const decode = new DecodeView(explainer, (text, endpoint) => {
   if (!isRestoring && text.length < 4000) keep({ d: endpoint || "any", hex: text.replace(/\s+/g, " ").trim() });
 });
 
+isRestoring = true;
+const encode = new EncodeView(
+  explainer,
+  (event, time) => decode.event(event, time),
+  (message, sender, hex) => isRestoring || keep({ m: message, s: sender, hex: hex.length < 4000 ? hex : "" }),
+);
+isRestoring = false;
+
 function restore() {
   const state = stateIn(location.hash);
   if (!state) return;
@@ -30,6 +39,14 @@ function restore() {
     tabs.open("decode");
     decode.set(state.get("hex") ?? "", side === "any" ? "" : side);
   }
+  const message = state.get("m");
+  if (message !== null) {
+    tabs.open("encode");
+    const sender = state.get("s") ?? undefined;
+    encode.pick(message, sender);
+    const hex = (state.get("hex") ?? "").replace(/[^0-9A-Fa-f]/g, "");
+    if (hex) encode.load(message, encode.sender, fromHex(hex));
+  }
   isRestoring = false;
   by("bench").scrollIntoView();
 }
@@ -37,5 +54,6 @@ function restore() {
 globalThis.addEventListener("hashchange", restore);
 restore();
 globalThis.protogen = {
+  encode,
   explain: (hex, endpoint) => explained(explainer, fromHex(hex), endpoint),
 };
