@@ -165,80 +165,76 @@ def _runs_of(item: BitField) -> Iterator[Run]:
 
 def _drawing(blocks: Iterable[Block], title: str) -> Markup:
     drawn = [block for block in blocks if block.sizes.greatest]
-    shapes, start, y = [], 0, 0
+    rows: list[list[Markup]] = []
+    start = 0
     for block in drawn:
-        shapes += _boxes(block, start)
+        for row, shape in _boxes(block, start):
+            rows += [[] for _ in range(row + 1 - len(rows))]
+            rows[row].append(shape)
         start += block.drawn
-    rows = max(1, -(-start // _ROW))
-    y = rows * (_HEIGHT + _GAP)
-    for block in drawn:
-        if block.runs:
-            shapes += _bits(block, y)
-            y += _HEIGHT + _GAP
-    width = min(start, _ROW) * _BYTE if not any(block.runs for block in drawn) else _ROW * _BYTE
+    rows += [[*_bits(block)] for block in drawn if block.runs]
+    has_runs = any(block.runs for block in drawn)
+    width = _BYTE * (_ROW if has_runs else min(start, _ROW)) + 2
     return Markup(
         '<figure class="frame"><div class="wide" tabindex="0">'
-        '<svg role="img" width="{w}" height="{h}" viewBox="-1 0 {v} {h}" aria-label="{title}">'
+        '<svg role="img" width="{w}" height="{h}" viewBox="-1 0 {w} {h}" aria-label="{title}">'
         "{shapes}</svg></div><figcaption>{title}, to scale</figcaption></figure>\n"
     ).format(
-        w=width + 2,
-        v=width + 2,
-        h=y + 4,
-        shapes=Markup("").join(shapes),
+        w=width,
+        h=len(rows) * (_HEIGHT + _GAP) + 4,
+        shapes=Markup("").join(map(_row, range(len(rows)), rows)),
         title=title,
     )
 
 
-def _boxes(block: Block, start: int) -> Iterator[Markup]:
-    """A box for each row that the block has bytes in."""
+def _row(index: int, shapes: Iterable[Markup]) -> Markup:
+    y = index * (_HEIGHT + _GAP) + _GAP
+    return Markup('<g transform="translate(0 {})">{}</g>').format(y, Markup("").join(shapes))
+
+
+def _boxes(block: Block, start: int) -> Iterator[tuple[int, Markup]]:
+    """A box for each row that the block has bytes in, with the row."""
     left, first = block.drawn, True
     while left:
         column, row = start % _ROW, start // _ROW
         units = min(left, _ROW - column)
-        x, y, width = column * _BYTE, row * (_HEIGHT + _GAP) + _GAP, units * _BYTE
+        x, width = column * _BYTE, units * _BYTE
         label = block.name if first else ""
-        yield _box(block.label, block.kind, (x, y, width), label, is_whole=block.is_whole)
+        yield row, _box(block.label, block.kind, x, width, label, is_whole=block.is_whole)
         if first and block.start is not None:
-            yield _text(x + 2, y - 4, str(block.start), "n")
-        if block.is_whole:
-            ticks = "".join(f"M{x + tick * _BYTE} {y}v5" for tick in range(1, units))
-            yield Markup('<path d="{}"/>').format(ticks) if ticks else Markup("")
+            yield row, _number(x + 2, str(block.start))
+        if block.is_whole and units > 1:
+            ticks = "".join(f"M{x + tick * _BYTE} 0v5" for tick in range(1, units))
+            yield row, Markup('<path d="{}"/>').format(ticks)
         start, left, first = start + units, left - units, False
 
 
-def _bits(block: Block, y: int) -> Iterator[Markup]:
+def _bits(block: Block) -> Iterator[Markup]:
     """The bits of a block, the most significant one on the left, as wide as the drawing."""
     bits = 8 * block.sizes.greatest
     width = _ROW * _BYTE / bits
     named = {bit for run in block.runs for bit in range(run.low, run.low + run.size)}
     unnamed = (Run("", bit, 1) for bit in range(bits) if bit not in named)
-    yield _text(2, y + _GAP - 4, f"bits of {block.name}, {bits - 1} to 0", "n")
+    yield _number(2, f"bits of {block.name}, {bits - 1} to 0")
     for run in (*block.runs, *unnamed):
         x = (bits - run.low - run.size) * width
         last = run.low + run.size - 1
         place = f"bit {last}" if run.size == 1 else f"bits {run.low}..{last}"
         kind = "field" if run.name else "unused"
         label = f"{run.name or 'no name'}: {place} of {block.name}"
-        yield _box(label, kind, (x, y + _GAP, run.size * width), run.name, is_whole=True)
+        yield _box(label, kind, x, run.size * width, run.name, is_whole=True)
 
 
-def _box(
-    title: str, kind: str, place: tuple[float, float, float], label: str, *, is_whole: bool
-) -> Markup:
-    x, y, width = place
-    shape = Markup(
-        '<g class="{kind}"><title>{title}</title>'
-        '<rect x="{x:g}" y="{y:g}" width="{width:g}"{dash}/>{text}</g>'
-    )
-    return shape.format(
-        kind=kind,
-        title=title,
-        x=x,
-        y=y,
-        width=width,
-        dash=Markup("") if is_whole else Markup(' stroke-dasharray="4 3"'),
-        text=_text(x + width / 2, y + 21, _cut(label, width), ""),
-    )
+def _box(title: str, kind: str, x: float, width: float, label: str, *, is_whole: bool) -> Markup:
+    shown = _cut(label, width)
+    text = Markup('<text x="{:g}">{}</text>').format(x + width / 2, shown) if shown else ""
+    dash = "" if is_whole else Markup(' stroke-dasharray="4 3"')
+    shape = '<g class="{}"><title>{}</title><rect x="{:g}" width="{:g}"{}/>{}</g>'
+    return Markup(shape).format(kind, title, x, width, dash, text)
+
+
+def _number(x: float, text: str) -> Markup:
+    return Markup('<text class="n" x="{:g}" y="-4">{}</text>').format(x, text)
 
 
 def _cut(label: str, width: float) -> str:
@@ -246,10 +242,3 @@ def _cut(label: str, width: float) -> str:
     if len(label) <= room:
         return label
     return f"{label[: room - 1]}…" if room > 1 else ""
-
-
-def _text(x: float, y: float, text: str, kind: str) -> Markup:
-    if not text:
-        return Markup("")
-    own = Markup(' class="{}"').format(kind) if kind else ""
-    return Markup('<text{} x="{:g}" y="{:g}">{}</text>').format(own, x, y, text)

@@ -56,7 +56,7 @@ def page_text(protocol: Protocol) -> str:
         style=Markup(style),  # noqa: S704 - ours.
         script=Markup(script),  # noqa: S704 - what could end it was taken out.
         plans=_data(plans(protocol)),
-        entries=_data([*entries(protocol)]),
+        entries=_data(entries(protocol)),
         policy=_policy(style, script),
     )
 

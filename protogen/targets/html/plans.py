@@ -80,7 +80,7 @@ def plans(protocol: Protocol) -> Json:
     return {
         "name": protocol.name,
         "schema": protocol.files[0],
-        "baud": protocol.link.baud,
+        "byteRate": _rate(protocol),
         "senders": senders,
         "messages": messages,
         "examples": [
@@ -97,6 +97,12 @@ def plans(protocol: Protocol) -> Json:
         "types": writer.types,
         "enums": writer.enums,
     }
+
+
+def _rate(protocol: Protocol) -> float | None:
+    """Bytes a second that the link carries."""
+    time = protocol.link.byte_time
+    return None if time is None else float(1 / time)
 
 
 class _Plans:

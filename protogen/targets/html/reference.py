@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 _ANCHOR = re.compile(r'<a id="([^"<>&]+)"></a>')
 """An anchor as the Markdown target writes it. Texts of a schema hold no `<`, as that is escaped."""
+_CODE_CELL = re.compile(r"<td><code>([^<]*)</code>(?=<|\n)")
+"""A cell with nothing but code, of which a page has thousands."""
 _HEADINGS = ("h2", "h3")
 
 
@@ -27,7 +29,8 @@ def reference(protocol: Protocol) -> tuple[Markup, tuple[Heading, ...]]:
     parser = _parser()
     tokens = parser.parse(page_text(protocol))
     headings = tuple(_name_headings(tokens))
-    shown = parser.renderer.render(tokens, parser.options, {"drawings": iter(drawings(protocol))})
+    text = parser.renderer.render(tokens, parser.options, {"drawings": iter(drawings(protocol))})
+    shown = _CODE_CELL.sub(r'<td class="c">\1', text)
     return Markup(shown), headings  # noqa: S704 - made by a parser that passes no HTML.
 
 
@@ -51,7 +54,7 @@ def _parser() -> MarkdownIt:
     rules["th_open"] = lambda *_: '<th scope="col">'
     rules["td_open"] = lambda *_: "<td>"
     for name in ("td", "th", "tr", "thead", "tbody"):
-        rules[f"{name}_close"] = lambda *_: "\n"  # HTML lets their ends be left out.
+        rules[f"{name}_close"] = lambda *_: ""  # HTML lets their ends be left out.
     return parser
 
 

@@ -16,11 +16,17 @@ _IMPORT = re.compile(
     re.MULTILINE,
 )
 _EXPORTED = re.compile(r"^export (?:async )?(?:function\*?|class|const) (?P<name>\w+)", re.MULTILINE)
-_DOC = re.compile(r"^[^\S\n]*/\*\*.*?\*/[^\S\n]*\n", re.MULTILINE | re.DOTALL)
-_REMARK = re.compile(r"^[^\S\n]*//.*\n", re.MULTILINE)
-_INDENT = re.compile(r"^[^\S\n]+", re.MULTILINE)
-_BLANK = re.compile(r"\n{2,}")
-
+_TOKEN = re.compile(
+    r"(?P<remark>//[^\n]*|/\*.*?\*/)"
+    r"|(?P<text>'(?:\\.|[^'\\\n])*'|\"(?:\\.|[^\"\\\n])*\")"
+    r"|(?P<word>[\w$]+)|(?P<line>\s*\n\s*)|(?P<blank>[^\S\n]+)|(?P<mark>.)",
+    re.DOTALL,
+)
+_REGEX = re.compile(r"/(?:\\.|\[(?:\\.|[^\]\\\n])*\]|[^/\\\[\n])+/[a-z]*")
+_BEFORE_REGEX = re.compile(r"(?:^|[({\[,;:=!&|?+\n>~]|\b(?:return|typeof|case|of|in))$")
+"""What stands in front of a regular expression, and of no division."""
+_NO_BREAK_BEHIND = "{([,;:?=&|"
+_NO_BREAK_BEFORE = "})],;:?.&|="
 
 def bundled(modules: Mapping[str, str], entry: str, more: Mapping[str, Iterable[str]]) -> str:
     """The script that runs the module `entry`; `more` names what modules give besides exports."""
@@ -68,7 +74,57 @@ def _module(path: str, text: str, numbers: Mapping[str, str], more: Iterable[str
 
 
 def _short(text: str) -> str:
-    """The module without comments and indentation. No text in it may span lines."""
-    for pattern in (_DOC, _REMARK, _INDENT):
-        text = pattern.sub("", text)
-    return _BLANK.sub("\n", text)
+    """The module without comments, and without blanks and line breaks that nothing needs."""
+    parts, end, blank = ["\n"], 0, ""
+    while end < len(text):
+        token, kind = _token(text, end, parts[-1])
+        end += len(token)
+        if kind in ("remark", "blank", "line"):
+            blank = "\n" if kind == "line" else blank or " "
+            continue
+        if blank and _needs(blank, parts[-1], token):
+            parts.append(blank)
+        parts.append(token)
+        blank = ""
+    return "".join(parts[1:]) + "\n"
+
+
+def _token(text: str, start: int, last: str) -> tuple[str, str]:
+    """The token that begins there, and its kind; `last` is what was kept in front of it."""
+    if text[start] == "`":
+        return _template(text, start), "text"
+    is_remark = text[start : start + 2] in ("//", "/*")
+    if text[start] == "/" and not is_remark and _BEFORE_REGEX.search(last):
+        found = _REGEX.match(text, start)
+        if found is not None:
+            return found[0], "text"
+    token = _TOKEN.match(text, start)
+    assert token is not None
+    assert token.lastgroup is not None
+    return token[0], token.lastgroup
+
+
+def _template(text: str, start: int) -> str:
+    """The template literal that begins there, with those inside of it."""
+    end, depth = start + 1, 0
+    while depth or text[end] != "`":
+        if depth and text[end] == "`":
+            end += len(_template(text, end))
+            continue
+        if text[end] == "\\":
+            end += 1
+        elif text.startswith("${", end):
+            depth, end = depth + 1, end + 1
+        elif depth:
+            depth += (text[end] == "{") - (text[end] == "}")
+        end += 1
+    return text[start : end + 1]
+
+
+def _needs(blank: str, last: str, token: str) -> bool:
+    """True if a blank or a line break between two tokens means something."""
+    before, behind = last[-1], token[0]
+    if blank == "\n":
+        return before not in _NO_BREAK_BEHIND and behind not in _NO_BREAK_BEFORE
+    words = (before.isalnum() or before in "_$") and (behind.isalnum() or behind in "_$")
+    return words or (before == behind and before in "+-/") or (before == "/" and behind == "*")

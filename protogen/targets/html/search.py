@@ -3,37 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from protogen.model.messages import Message
 from protogen.model.parts import IdentityPart
 from protogen.model.protocol import Protocol
 from protogen.model.types import Field
 from protogen.targets.markdown.fields.paths import named_fields
-from protogen.targets.markdown.text.anchors import message_anchor
-
-Entry = tuple[str, str, str, str]
-"""Kind, name, more words that are looked through, and the anchor that it leads to."""
 
 _MOST_IDENTITIES = 4
 """Identities of one message that are found by their bytes."""
 
 
-def entries(protocol: Protocol) -> Iterator[Entry]:
-    """All that can be looked for, in the order of the page."""
-    for message in protocol.messages:
-        words = (message.title, message.summary, *_identities(protocol, message))
-        anchor = message_anchor(message.name)
-        yield "message", message.name, _joined(words, message.name), anchor
-        for path, field in named_fields(message.plan.steps):
-            yield "field", f"{message.name}.{path}", _joined(_words(field)), anchor
-            for name, value in _values(field):
-                yield "value", name, f"{value} {message.name}.{path}", anchor
-    for sender in protocol.senders:
-        for part in sender.frame.declared:
-            yield "part", part.name, f"{sender.name} {part.about.doc}".strip(), "frames"
-    for decision in protocol.decisions:
-        words = (decision.question, decision.choice)
-        yield "decision", decision.name, _joined(words), f"decision-{decision.name}"
+def entries(protocol: Protocol) -> dict[str, Any]:
+    """All that can be looked for, in the order of the page: names, with more words of each."""
+    parts = {
+        part.name: " ".join(part.about.doc.split())
+        for sender in protocol.senders
+        for part in sender.frame.declared
+    }
+    decisions = {
+        item.name: _joined((" ".join(item.question.split()), " ".join(item.choice.split())))
+        for item in protocol.decisions
+    }
+    messages = [_message(protocol, message) for message in protocol.messages]
+    return {"messages": messages, "parts": parts, "decisions": decisions}
+
+
+def _message(protocol: Protocol, message: Message) -> list[Any]:
+    """A message: its name, words and fields; of each field, its path, words and values."""
+    words = (message.title, " ".join(message.summary.split()), *_identities(protocol, message))
+    fields = [
+        [path.shown, _joined(_words(field)), dict(_values(field))]
+        for path, field in named_fields(message.plan.steps)
+    ]
+    return [message.name, _joined(words, message.name), fields]
 
 
 def _joined(words: tuple[str, ...], name: str = "") -> str:

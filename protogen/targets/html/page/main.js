@@ -5,6 +5,7 @@ import { DecodeView } from "./decode_view.js";
 import { by } from "./dom.js";
 import { EncodeView } from "./encode_view.js";
 import { Explainer } from "./explain.js";
+import { FileView } from "./file_view.js";
 import { keep, stateIn } from "./links.js";
 import { fromHex } from "./octets.js";
 import { resolved } from "./plans.js";
@@ -29,6 +30,11 @@ const encode = new EncodeView(
   (message, sender, hex) => isRestoring || keep({ m: message, s: sender, hex: hex.length < 4000 ? hex : "" }),
 );
 isRestoring = false;
+new FileView(explainer, decode.endpoints, (hex, endpoint) => {
+  tabs.open("decode");
+  decode.set(hex, endpoint);
+  by("bytes").focus();
+});
 
 function restore() {
   const state = stateIn(location.hash);

@@ -26,7 +26,28 @@ function rank(name, all, query) {
   return 3;
 }
 
-export function startSearch(entries) {
+/** The entries of an index: kind, name, more words, and the anchor that it leads to. */
+export function entriesOf(index) {
+  const entries = [];
+  for (const [name, words, fields] of index.messages) {
+    const anchor = `message-${name}`;
+    entries.push(["message", name, words, anchor]);
+    for (const [path, own, values] of fields) {
+      entries.push(["field", `${name}.${path}`, own, anchor]);
+      for (const [value, raw] of Object.entries(values)) {
+        entries.push(["value", value, `${raw} ${name}.${path}`, anchor]);
+      }
+    }
+  }
+  for (const [name, words] of Object.entries(index.parts)) entries.push(["part", name, words, "frames"]);
+  for (const [name, words] of Object.entries(index.decisions)) {
+    entries.push(["decision", name, words, `decision-${name}`]);
+  }
+  return entries;
+}
+
+export function startSearch(index) {
+  const entries = entriesOf(index);
   const query = by("query");
   by("search").hidden = false;
   const update = () => {
