@@ -32,9 +32,9 @@ _GAP = 16
 """Space above a row, for the numbers of bytes."""
 _LONGEST = 2 * _ROW
 """Bytes of the longest block that is drawn whole."""
-_SHORTENED = 8
+_SHORTENED = 6
 """Bytes that are drawn of what varies, or is longer."""
-_CHARACTER = 6.4
+_CHARACTER = 6.7
 """Width of a character of a label."""
 
 
@@ -238,7 +238,7 @@ def _number(x: float, text: str) -> Markup:
 
 
 def _cut(label: str, width: float) -> str:
-    room = int((width - 4) / _CHARACTER)
+    room = int((width - 2) / _CHARACTER)
     if len(label) <= room:
         return label
     return f"{label[: room - 1]}…" if room > 1 else ""

@@ -51,9 +51,9 @@ def _parser() -> MarkdownIt:
     rules["fence"] = _show_fence
     rules["table_open"] = lambda *_: '<div class="wide" tabindex="0"><table>\n'
     rules["table_close"] = lambda *_: "</table></div>\n"
-    rules["th_open"] = lambda *_: '<th scope="col">'
+    rules["th_open"] = lambda *_: "<th>"
     rules["td_open"] = lambda *_: "<td>"
-    for name in ("td", "th", "tr", "thead", "tbody"):
+    for name in ("td", "th", "tr", "thead", "tbody", "list_item"):
         rules[f"{name}_close"] = lambda *_: ""  # HTML lets their ends be left out.
     return parser
 
@@ -76,7 +76,7 @@ def _show_fence(tokens: Sequence[Token], index: int, _: object, env: Any) -> str
     token = tokens[index]
     if token.info == "mermaid":
         return str(next(env["drawings"]))
-    return f'<pre tabindex="0"><code>{Markup.escape(token.content)}</code></pre>\n'
+    return f"<pre>{Markup.escape(token.content)}</pre>\n"
 
 
 def _name_headings(tokens: Sequence[Token]) -> Iterator[Heading]:

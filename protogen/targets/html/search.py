@@ -45,7 +45,7 @@ def _joined(words: tuple[str, ...], name: str = "") -> str:
 
 
 def _words(field: Field) -> tuple[str, ...]:
-    return field.type.label, field.unit or "", " ".join(field.about.doc.split())
+    return field.unit or "", " ".join(field.about.doc.split())
 
 
 def _identities(protocol: Protocol, message: Message) -> Iterator[str]:

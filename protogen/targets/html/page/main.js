@@ -16,6 +16,7 @@ const plans = resolved(JSON.parse(by("plans").textContent));
 const explainer = new Explainer(plans, codec);
 by("bench").hidden = false;
 by("to-bench").hidden = false;
+by("outline").open = globalThis.innerWidth >= 900;
 startSearch(JSON.parse(by("entries").textContent));
 const tabs = new Tabs(["decode", "encode", "file"]);
 let isRestoring = false;

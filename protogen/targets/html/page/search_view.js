@@ -54,7 +54,7 @@ export function startSearch(index) {
     const matches = found(entries, query.value);
     const count = matches.length;
     by("count").textContent = query.value.trim() ? `${count || "nothing"} found` : "";
-    by("outline").open = !query.value.trim();
+    by("outline").hidden = Boolean(query.value.trim());
     show(by("found"), matches.slice(0, MOST).map(item));
   };
   query.addEventListener("input", update);
