@@ -30,6 +30,7 @@ _CALLS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("clang-format", "clang-tidy", "cmake", "cppcheck", "git"), ("--version",)),
     **dict.fromkeys(("avr-size", "avr-nm", "size", "nm"), ("--version",)),
     **dict.fromkeys(("qemu-s390x", "qemu-system-arm"), ("--version",)),
+    "chromium": ("--version",),
     "frama-c": ("-version",),
 }
 """Arguments with which a program in working order exits with 0."""

@@ -25,7 +25,7 @@ _TOKEN = re.compile(
 _REGEX = re.compile(r"/(?:\\.|\[(?:\\.|[^\]\\\n])*\]|[^/\\\[\n])+/[a-z]*")
 _BEFORE_REGEX = re.compile(r"(?:^|[({\[,;:=!&|?+\n>~]|\b(?:return|typeof|case|of|in))$")
 """What stands in front of a regular expression, and of no division."""
-_NO_BREAK_BEHIND = "{([,;:?=&|"
+_NO_BREAK_BEHIND = "\n{([,;:?=&|"
 _NO_BREAK_BEFORE = "})],;:?.&|="
 
 def bundled(modules: Mapping[str, str], entry: str, more: Mapping[str, Iterable[str]]) -> str:

@@ -1,0 +1,93 @@
+"""Pages of the HTML target in Chromium, and what Python says of the same bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from tooling import require_module, require_tool
+
+from protogen.cli.wire.codec import Codec
+from protogen.cli.wire.explain import _rows, _sender, _title, _value
+from protogen.model.protocol import Protocol
+from protogen.targets.html.emit import emit
+
+AXE = Path(__file__).parents[1] / ".cache" / "axe" / "node_modules" / "axe-core" / "axe.min.js"
+
+
+@contextmanager
+def chromium() -> Iterator[Any]:
+    """Debian's Chromium; without it, skip the test or fail."""
+    program = require_tool("chromium")
+    require_module("playwright")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        try:
+            yield browser
+        finally:
+            browser.close()
+
+
+class Opened:
+    """A page that was opened as a file, and what it complained of."""
+
+    def __init__(self, browser: Any, path: Path, **context: Any) -> None:
+        self.context = browser.new_context(**context)
+        self.page = self.context.new_page()
+        self.complaints: list[str] = []
+        self.requests: list[str] = []
+        self.page.on("console", lambda message: self.complaints.append(message.text))
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("dialog", lambda dialog: self.complaints.append(dialog.message))
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.url = path.as_uri()
+        self.page.goto(self.url)
+
+    def run(self, code: str, value: object = None) -> Any:
+        """What a function of JavaScript gives for a value."""
+        return self.page.evaluate(code, value)
+
+    def __enter__(self) -> Opened:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.context.close()
+
+
+def written(protocols: Sequence[Protocol], folder: Path) -> Path:
+    """The folder, with the pages of protocols in it."""
+    for file in emit(protocols):
+        (folder / file.path).write_bytes(file.bytes)
+    return folder
+
+
+def explained(codec: Codec, sender: str, data: bytes) -> list[list[list[str]]]:
+    """The rows of each event that `protogen explain` shows."""
+    decoder = codec.decoder(sender, None)
+    protocol = codec.protocol
+    return [
+        [
+            [
+                str(event.offset + row.offset),
+                row.bits or row.wire.hex(" ").upper(),
+                row.bytes.hex(" ").upper(),
+                row.path,
+                row.type,
+                _value(row.value),
+                row.meaning,
+                row.fault,
+            ]
+            for row in _rows(protocol, _sender(protocol, event), event, decoder.told)
+        ]
+        for event in (*decoder.feed(data), *decoder.flush())
+    ]
+
+
+def titles(codec: Codec, sender: str, data: bytes) -> list[str]:
+    """The titles of the same events."""
+    decoder = codec.decoder(sender, None)
+    return [" ".join(_title(event)) for event in (*decoder.feed(data), *decoder.flush())]
