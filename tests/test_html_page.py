@@ -90,7 +90,9 @@ def schema_with(texts: list[str]) -> dict[str, Any]:
             for index, text in enumerate(texts)
         },
         "decisions": {
-            "accepted": dict(zip(("question", "document", "choice", "because"), texts, strict=False))
+            "accepted": dict(
+                zip(("question", "document", "choice", "because"), texts, strict=False)
+            )
         },
     }
 
@@ -130,7 +132,7 @@ class Elements(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.names.append(tag)
         self.attributes += attrs
-        if tag not in _VOID and not (tag in ("rect", "path")):
+        if tag not in _VOID and tag not in ("rect", "path"):
             self._around.append(tag)
 
     def handle_endtag(self, tag: str) -> None:
@@ -206,7 +208,9 @@ class TestText:
 class TestScript:
     def test_modules_stand_behind_those_that_they_import(self):
         modules = {
-            "main.js": 'import { two as b } from "./in/b.js";\nimport * as a from "./a.js";\nb();\n',
+            "main.js": (
+                'import { two as b } from "./in/b.js";\nimport * as a from "./a.js";\nb();\n'
+            ),
             "in/b.js": 'import { one } from "../a.js";\nexport function two() {\n  one();\n}\n',
             "a.js": "export const one = () => 1;\nconst hidden = 2;\n",
         }
@@ -422,9 +426,7 @@ class TestEncode:
                                 changed = first[1] | {path: raw}
                                 due: list[int] = []
                                 with suppress(Refused):
-                                    due = [
-                                        *engine.frame(sender.name, message, changed, first[2])
-                                    ]
+                                    due = [*engine.frame(sender.name, message, changed, first[2])]
                                 given = [message, sender.endpoint, [*first[3]], path, str(raw)]
                                 found = opened.run(code, given)
                                 if found is not None and due:
@@ -463,17 +465,20 @@ class TestEncode:
         made = page.locator("#made .copies code").all_inner_texts()
         wire = bytes.fromhex("55 06 01 47 F4 01 06 FF B8")
         assert made[0] == wire.hex(" ").upper()
-        assert made[1] == "static const uint8_t frame[] = {" + ", ".join(
-            f"0x{byte:02X}" for byte in wire
-        ) + "};"
-        assert eval(made[2], {}) == wire  # noqa: S307 - our own text.
+        assert (
+            made[1]
+            == "static const uint8_t frame[] = {"
+            + ", ".join(f"0x{byte:02X}" for byte in wire)
+            + "};"
+        )
+        assert eval(made[2], {}) == wire
         assert made[3] == "protogen encode matty.yaml go speed=500 steer=-250 @counter=1"
 
     def test_names_of_values_are_a_menu(self, matty):
         page = matty.page
         page.click("#tab-encode")
         page.select_option("#message", "mode")
-        named = page.locator('#fields select option').all_inner_texts()
+        named = page.locator("#fields select option").all_inner_texts()
         assert "idle" in named
         page.select_option("#fields select", label="idle")
         assert page.input_value('#fields input[type="text"]') == "0"

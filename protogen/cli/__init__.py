@@ -30,6 +30,7 @@ _MODULES = {
     "encode": "wire.encode",
     "convert": "wire.convert",
     "explain": "wire.explain",
+    "open": "opening",
     "fuzz": "fuzz",
     "diff": "evolution.diff",
     "breaking": "evolution.breaking",

@@ -18,8 +18,8 @@ def environment(package: str, *, autoescape: bool = False) -> Environment:
     """The templates of a target's package.
 
     Nothing is escaped, as views give text that is right for its language already; with
-    `autoescape`, all but markup is, for HTML. Compiled templates are kept between runs where there is a place for it, because compiling them takes
-    longer than printing.
+    `autoescape`, all but markup is, for HTML. Compiled templates are kept between runs where there
+    is a place for it, because compiling them takes longer than printing.
     """
     return Environment(
         loader=PackageLoader(package),

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from protogen.cli.exits import CLEAN
 from protogen.cli.options import HexText, SchemaFile, SenderOfBytes, ToldParts
@@ -30,6 +32,9 @@ def explain(
     sender: SenderOfBytes = None,
     hex: HexText = None,
     told: ToldParts = None,
+    html: Annotated[
+        bool, typer.Option("--html", help="Show it on the page of the schema, in a browser.")
+    ] = False,
 ) -> int:
     """Show what each byte stands for.
 
@@ -41,6 +46,11 @@ def explain(
 
     codec = open_codec(schema)
     data = parse_hex(_standard_input() if hex is None else hex)
+    if html:
+        from protogen.cli.opening import open_page
+
+        open_page(codec.protocol, sender, data)
+        return CLEAN
     decoder = codec.decoder(sender, told)
     out = console()
     if not data:

@@ -12,7 +12,16 @@ from markupsafe import Markup
 
 from protogen.model.meanings import BitField
 from protogen.model.messages import Message
-from protogen.model.parts import BitsPart, LiteralPart, Part, PayloadPart, place_of, varying_bits
+from protogen.model.parts import (
+    BitsPart,
+    FixedBits,
+    LiteralPart,
+    Part,
+    PayloadPart,
+    TypedPart,
+    place_of,
+    varying_bits,
+)
 from protogen.model.protocol import Protocol
 from protogen.model.sizes import SizeSet
 from protogen.model.types import Field
@@ -140,7 +149,8 @@ def _note(part: Part) -> str:
 def _part_runs(part: Part) -> Iterator[Run]:
     if not isinstance(part, BitsPart) or part.whole is not None:
         return
-    for item in (*varying_bits(part), *part.constants):
+    named: tuple[TypedPart | FixedBits, ...] = (*varying_bits(part), *part.constants)
+    for item in named:
         yield Run(item.name, place_of(item.type), item.type.bits)
 
 
@@ -229,8 +239,9 @@ def _box(title: str, kind: str, x: float, width: float, label: str, *, is_whole:
     shown = _cut(label, width)
     text = Markup('<text x="{:g}">{}</text>').format(x + width / 2, shown) if shown else ""
     dash = "" if is_whole else Markup(' stroke-dasharray="4 3"')
-    shape = '<g class="{}"><title>{}</title><rect x="{:g}" width="{:g}"{}/>{}</g>'
-    return Markup(shape).format(kind, title, x, width, dash, text)
+    return Markup('<g class="{}"><title>{}</title><rect x="{:g}" width="{:g}"{}/>{}</g>').format(
+        kind, title, x, width, dash, text
+    )
 
 
 def _number(x: float, text: str) -> Markup:

@@ -38,9 +38,9 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
         for item in ordered
     ]
     style = _style()
-    text = _template("index").render(
-        protocols=ordered, style=Markup(style), policy=_policy(style, None)  # noqa: S704 - ours.
-    )
+    shown = Markup(style)  # noqa: S704 - ours.
+    policy = _policy(style, None)
+    text = _template("index").render(protocols=ordered, style=shown, policy=policy)
     index = File(PurePosixPath("index.html"), text, banner(MARKDOWN, ordered), shared=True)
     return (*pages, index)
 
@@ -49,7 +49,7 @@ def page_text(protocol: Protocol) -> str:
     """A protocol's page without its banner."""
     body, headings = reference(protocol)
     style, script = _style(), _safe(_script(protocol))
-    return _template("page").render(
+    text: str = _template("page").render(
         protocol=protocol,
         body=body,
         headings=headings,
@@ -59,6 +59,7 @@ def page_text(protocol: Protocol) -> str:
         entries=_data(entries(protocol)),
         policy=_policy(style, script),
     )
+    return text
 
 
 def _template(name: str) -> Any:
@@ -83,9 +84,7 @@ def _data(value: object) -> Markup:
 
 def _safe(script: str) -> str:
     """The script, of which no text ends its element; in a text, `<` is written as an escape."""
-    return (
-        script.replace("</", "<\\/").replace("<!--", "<\\!--").replace("<script", "<\\script")
-    )
+    return script.replace("</", "<\\/").replace("<!--", "<\\!--").replace("<script", "<\\script")
 
 
 def _script(protocol: Protocol) -> str:

@@ -265,9 +265,7 @@ class _Plans:
             }
         )
 
-    def _steps(
-        self, steps: Iterable[AnyStep], record: str, fields: Sequence[Field]
-    ) -> list[Json]:
+    def _steps(self, steps: Iterable[AnyStep], record: str, fields: Sequence[Field]) -> list[Json]:
         computes = computed(fields)
         return [
             self._step(step, record) | ({"computed": True} if step.name in computes else {})
@@ -379,13 +377,17 @@ class _Plans:
                 "until": count.until,
                 "least": count.least,
                 "greatest": count.greatest,
-                "tail": None if count.tail is None else {
+                "tail": None
+                if count.tail is None
+                else {
                     "separator": count.tail.separator,
                     "element": count.tail.element,
                     "least": count.tail.least,
                 },
                 "mark": None if count.mark is None else _expression(count.mark.expression),
-                "between": None if between is None else {
+                "between": None
+                if between is None
+                else {
                     "separator": between.separator,
                     "leads": between.leads,
                     "rest": between.takes_rest,

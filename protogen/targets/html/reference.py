@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from markdown_it import MarkdownIt
@@ -46,7 +47,8 @@ class Heading:
 def _parser() -> MarkdownIt:
     parser = MarkdownIt("commonmark", {"html": False}).enable("table")
     parser.inline.ruler.before("text", "anchor", _take_anchor)
-    rules: Any = parser.renderer.rules
+    renderer: Any = parser.renderer
+    rules = renderer.rules
     rules["anchor"] = _show_anchor
     rules["fence"] = _show_fence
     rules["table_open"] = lambda *_: '<div class="wide" tabindex="0"><table>\n'
@@ -82,7 +84,7 @@ def _show_fence(tokens: Sequence[Token], index: int, _: object, env: Any) -> str
 def _name_headings(tokens: Sequence[Token]) -> Iterator[Heading]:
     """Give each heading the name that leads to it, and yield those of the contents."""
     known: set[str] = set()
-    for opened, inline in zip(tokens, tokens[1:], strict=False):
+    for opened, inline in pairwise(tokens):
         if opened.type != "heading_open":
             continue
         children = inline.children or []

@@ -1,7 +1,7 @@
 """Modules of JavaScript as one script, which a page holds.
 
-A module becomes a function that gives what it exports; those that it imports stand in front of it. So
-it needs no module loader, which no page has that is opened as a file.
+A module becomes a function that gives what it exports; those that it imports stand in front of it.
+So it needs no module loader, which no page has that is opened as a file.
 """
 
 from __future__ import annotations
@@ -11,11 +11,13 @@ from collections.abc import Iterable, Mapping
 from posixpath import dirname, join, normpath
 
 _IMPORT = re.compile(
-    r'^(?P<kind>import|export)\s+(?:\*\s+as\s+(?P<whole>\w+)|\{(?P<names>[^}]*)\})'
+    r"^(?P<kind>import|export)\s+(?:\*\s+as\s+(?P<whole>\w+)|\{(?P<names>[^}]*)\})"
     r'\s+from\s+"(?P<path>[^"]+)";[^\S\n]*\n?',
     re.MULTILINE,
 )
-_EXPORTED = re.compile(r"^export (?:async )?(?:function\*?|class|const) (?P<name>\w+)", re.MULTILINE)
+_EXPORTED = re.compile(
+    r"^export (?:async )?(?:function\*?|class|const) (?P<name>\w+)", re.MULTILINE
+)
 _TOKEN = re.compile(
     r"(?P<remark>//[^\n]*|/\*.*?\*/)"
     r"|(?P<text>'(?:\\.|[^'\\\n])*'|\"(?:\\.|[^\"\\\n])*\")"
@@ -28,6 +30,7 @@ _BEFORE_REGEX = re.compile(r"(?:^|[({\[,;:=!&|?+\n>~]|\b(?:return|typeof|case|of
 _NO_BREAK_BEHIND = "\n{([,;:?=&|"
 _NO_BREAK_BEFORE = "})],;:?.&|="
 
+
 def bundled(modules: Mapping[str, str], entry: str, more: Mapping[str, Iterable[str]]) -> str:
     """The script that runs the module `entry`; `more` names what modules give besides exports."""
     order: list[str] = []
@@ -37,7 +40,9 @@ def bundled(modules: Mapping[str, str], entry: str, more: Mapping[str, Iterable[
     return '(() => {\n"use strict";\n' + "".join(parts) + "})();\n"
 
 
-def _visit(path: str, modules: Mapping[str, str], order: list[str], around: tuple[str, ...]) -> None:
+def _visit(
+    path: str, modules: Mapping[str, str], order: list[str], around: tuple[str, ...]
+) -> None:
     """Put a module behind those that it imports."""
     assert path not in around, f"{path} imports itself by {around}"
     if path in order:
@@ -60,7 +65,9 @@ def _module(path: str, text: str, numbers: Mapping[str, str], more: Iterable[str
             return f"const {found['whole']} = {name};\n"
         names = [item.strip() for item in found["names"].split(",") if item.strip()]
         if found["kind"] == "export":
-            given.extend(f"{item.split(' as ')[-1]}: {name}.{item.split(' as ')[0]}" for item in names)
+            given.extend(
+                f"{item.split(' as ')[-1]}: {name}.{item.split(' as ')[0]}" for item in names
+            )
             return ""
         bound = ", ".join(item.replace(" as ", ": ") for item in names)
         return f"const {{ {bound} }} = {name};\n" if names else ""
@@ -69,8 +76,8 @@ def _module(path: str, text: str, numbers: Mapping[str, str], more: Iterable[str
     given += [found["name"] for found in _EXPORTED.finditer(text)]
     text = re.sub(r"^export (?=async|function|class|const)", "", text, flags=re.MULTILINE)
     assert not re.search(r"^export ", text, re.MULTILINE), f"{path} exports in a way not known here"
-    own = f"const {numbers[path]} = (() => {{\n{_short(text)}return {{ {', '.join(given)} }};\n}})();\n"
-    return own
+    exports = f"return {{ {', '.join(given)} }};\n"
+    return f"const {numbers[path]} = (() => {{\n{_short(text)}{exports}}})();\n"
 
 
 def _short(text: str) -> str:
