@@ -247,15 +247,36 @@ Sample = tuple[str, dict[str, Any], dict[str, Any], bytes]
 """A message, its values, those of parts, and the frame."""
 
 
-def samples_of(codec: Codec, sender: Sender) -> Iterator[Sample]:
+def samples_of(codec: Codec, sender: Sender, most: int = _FRAMES) -> Iterator[Sample]:
     """Frames of each message: boundaries first, then random ones."""
     random, engine = Random(sender.name), PythonEngine(codec.runtime)
     for message in sender.messages:
         drawn = samples(message, sender.frame, random)
-        for _, (values, parts) in zip(range(_FRAMES), drawn, strict=False):
+        for _, (values, parts) in zip(range(most), drawn, strict=False):
             with suppress(Refused):
                 data = engine.frame(sender.name, message.name, values, parts)
                 yield message.name, values, parts, data
+
+
+def boundary_cases(codec: Codec, sender: Sender) -> Iterator[tuple[list[Any], list[int]]]:
+    """A frame of each message with one number changed, and the bytes that are due.
+
+    Where Python refuses the value, there are none.
+    """
+    engine = PythonEngine(codec.runtime)
+    drawn: dict[str, list[Sample]] = {}
+    for item in samples_of(codec, sender, 9):
+        drawn.setdefault(item[0], []).append(item)
+    for message, ((_, first, parts, frame), *others) in drawn.items():
+        if sender.received_as(message) != message:
+            continue
+        for path, raw in ((path, raw) for item in others for path, raw in item[1].items()):
+            if isinstance(raw, bool) or not isinstance(raw, int):
+                continue
+            due: list[int] = []
+            with suppress(Refused):
+                due = [*engine.frame(sender.name, message, first | {path: raw}, parts)]
+            yield [message, sender.endpoint, [*frame], path, str(raw)], due
 
 
 def damaged(data: bytes, random: Random) -> bytes:
@@ -360,7 +381,7 @@ class TestDecode:
         page.wait_for_selector("#events .invalid")
         page.hover("#events .run >> nth=3")
         assert "'A' ack" in page.inner_text("#events tr.lit")
-        page.hover("#events tbody tr >> nth=4")
+        page.hover("#events tbody tr >> nth=5")
         assert "BD" in page.inner_text("#events .run.lit")
         assert "crc is bd, not bc" in page.inner_text("#events .lit .fault")
         assert "checksum, crc is bd, not bc" in page.inner_text("#events h3")
@@ -388,7 +409,7 @@ class TestEncode:
                 for sender in codec.protocol.senders:
                     given = [
                         (message, data)
-                        for message, _, _, data in samples_of(codec, sender)
+                        for message, _, _, data in samples_of(codec, sender, 8)
                         if sender.received_as(message) == message
                     ]
                     cases = [(message, sender.endpoint, [*data]) for message, data in given]
@@ -399,7 +420,7 @@ class TestEncode:
     def test_each_raw_value_at_its_boundaries_gives_the_bytes_of_python(
         self, browser, folder, codecs
     ):
-        code = """([message, sender, bytes, path, raw]) => {
+        code = """cases => cases.map(([message, sender, bytes, path, raw]) => {
             protogen.encode.load(message, sender, Uint8Array.from(bytes));
             const field = [...document.querySelectorAll("#fields [data-key]")]
                 .find(item => item.dataset.key === path);
@@ -407,31 +428,19 @@ class TestEncode:
             field.value = raw;
             field.dispatchEvent(new Event("input"));
             return protogen.encode.bytes ? [...protogen.encode.bytes] : [];
-        }"""
+        })"""
         tried = 0
         for name, codec in codecs.items():
-            engine = PythonEngine(codec.runtime)
+            given: list[list[Any]] = []
+            dues: list[list[int]] = []
+            for sender in codec.protocol.senders:
+                for case, due in boundary_cases(codec, sender):
+                    given.append(case)
+                    dues.append(due)
             with Opened(browser, folder / f"{name}.html") as opened:
-                for sender in codec.protocol.senders:
-                    drawn: dict[str, list[Sample]] = {}
-                    for item in samples_of(codec, sender):
-                        drawn.setdefault(item[0], []).append(item)
-                    for message, (first, *others) in drawn.items():
-                        if sender.received_as(message) != message:
-                            continue
-                        for _, values, _, _ in others[:8]:
-                            for path, raw in values.items():
-                                if isinstance(raw, bool) or not isinstance(raw, int):
-                                    continue
-                                changed = first[1] | {path: raw}
-                                due: list[int] = []
-                                with suppress(Refused):
-                                    due = [*engine.frame(sender.name, message, changed, first[2])]
-                                given = [message, sender.endpoint, [*first[3]], path, str(raw)]
-                                found = opened.run(code, given)
-                                if found is not None and due:
-                                    assert found == due, f"{name} {message} {path}={raw}"
-                                    tried += 1
+                for case, found, due in zip(given, opened.run(code, given), dues, strict=True):
+                    assert found in (None, due), f"{name} {case}"
+                    tried += found is not None
         assert tried > 200
 
     def test_a_value_out_of_range_is_told_beside_its_field(self, matty):

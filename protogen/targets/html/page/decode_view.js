@@ -124,7 +124,7 @@ function table(event, rows, isStuffed) {
     const fault = cells.pop();
     const own = keep(cells).map((cell) => h("td", {}, cell));
     if (fault) own[own.length - 1].append(" ", h("span", { className: "fault" }, fault));
-    return h("tr", { "data-row": String(index) }, own);
+    return h("tr", { "data-row": String(index), "data-inside": Boolean(item.bits) }, own);
   });
   const found = h("table", { className: "cells" }, h("thead", {}, h("tr", {}, heads)), h("tbody", {}, lines));
   return h("div", { className: "wide", tabIndex: 0, role: "region", "aria-label": "Rows" }, found);
@@ -134,11 +134,12 @@ function table(event, rows, isStuffed) {
 function linked(bytes, rows) {
   const runsOf = [...bytes.children];
   if (runsOf[0]) runsOf[0].tabIndex = 0;
-  // A packed number has no bytes of its own: they are those of the run in front of it.
+  const lines = [...rows.querySelectorAll("tbody tr")];
   const light = (index) => {
+    // What is some bits has no bytes of its own: they are those of the run in front of it.
     let own = index;
-    while (own >= 0 && !runsOf.some((item) => item.dataset.row === String(own))) own--;
-    for (const item of [...runsOf, ...rows.querySelectorAll("tr")]) {
+    while (lines[own]?.dataset.inside !== undefined) own--;
+    for (const item of [...runsOf, ...lines]) {
       const { row } = item.dataset;
       if (row !== undefined) item.classList.toggle("lit", row === String(index) || row === String(own));
     }
