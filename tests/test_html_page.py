@@ -259,10 +259,7 @@ def samples_of(codec: Codec, sender: Sender, most: int = _FRAMES) -> Iterator[Sa
 
 
 def boundary_cases(codec: Codec, sender: Sender) -> Iterator[tuple[list[Any], list[int]]]:
-    """A frame of each message with one number changed, and the bytes that are due.
-
-    Where Python refuses the value, there are none.
-    """
+    """A frame of each message with one number changed, and the bytes that are due."""
     engine = PythonEngine(codec.runtime)
     drawn: dict[str, list[Sample]] = {}
     for item in samples_of(codec, sender, 9):
@@ -273,10 +270,10 @@ def boundary_cases(codec: Codec, sender: Sender) -> Iterator[tuple[list[Any], li
         for path, raw in ((path, raw) for item in others for path, raw in item[1].items()):
             if isinstance(raw, bool) or not isinstance(raw, int):
                 continue
-            due: list[int] = []
+            # A number that chooses or counts makes the form, but not Python, change the rest.
             with suppress(Refused):
                 due = [*engine.frame(sender.name, message, first | {path: raw}, parts)]
-            yield [message, sender.endpoint, [*frame], path, str(raw)], due
+                yield [message, sender.endpoint, [*frame], path, str(raw)], due
 
 
 def damaged(data: bytes, random: Random) -> bytes:
