@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -24,8 +24,8 @@ def diff(
     versions: Versions = None,
     against: Against = None,
     format: Annotated[
-        Literal["text", "markdown", "json"],
-        typer.Option(help="For people, a changelog entry, or for programs."),
+        Literal["text", "markdown", "json", "html"],
+        typer.Option(help="For people, a changelog entry, for programs, or a page."),
     ] = "text",
 ) -> int:
     """Say what changed between two versions, and show it with frames.
@@ -37,10 +37,12 @@ def diff(
     """
     from protogen.cli.evolution.versions import compared
     from protogen.evolution.findings import findings
+    from protogen.evolution.page import Section, page, section
     from protogen.evolution.report import as_json, markdown
 
     changed = False
-    reports = []
+    reports: list[dict[str, Any]] = []
+    pages: list[Section] = []
     out = console()
     with compared(versions or (), against, open_project()) as schemas:
         for name, before, after in schemas.pairs:
@@ -48,19 +50,25 @@ def diff(
                 changed = True
                 words = "is new" if before is None else "is gone"
                 reports.append({"schema": name, "text": words})
-                if format != "json":
+                if format == "html":
+                    pages.append(Section(name, f"{name} {words}"))
+                elif format != "json":
                     out.print(f"{name} {words}")
                 continue
             comparison, found = findings(before, after)
             changed = changed or bool(found)
             if format == "json":
                 reports.append({"schema": name} | as_json(comparison, found))
+            elif format == "html":
+                pages.append(section(name, comparison, found))
             elif format == "markdown":
                 typer.echo(markdown(comparison, found))
             else:
                 print_findings(out, comparison, found, name)
     if format == "json":
         echo_json(reports)
+    elif format == "html":
+        typer.echo(page(pages), nl=False)
     return FINDINGS if changed else CLEAN
 
 

@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-import json
-from base64 import b64encode
 from collections.abc import Sequence
 from functools import cache
-from hashlib import sha256
 from importlib.resources import files
 from pathlib import PurePosixPath
-from typing import Any
-
-from markupsafe import Markup
 
 from protogen.model.protocol import Protocol
 from protogen.targets.banner import MARKDOWN, banner
@@ -19,13 +13,11 @@ from protogen.targets.html.plans import plans
 from protogen.targets.html.reference import reference
 from protogen.targets.html.script import bundled
 from protogen.targets.html.search import entries
+from protogen.targets.html.shell import PACKAGE, data, printed
 from protogen.targets.output import File
-from protogen.targets.printing import environment
 from protogen.targets.typescript.emit import emit as emit_typescript
 
-_PACKAGE = "protogen.targets.html"
 _BUILT = PurePosixPath("dist")
-_STYLES = ("page", "frames", "bench", "print")
 
 
 def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
@@ -37,10 +29,7 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
         File(PurePosixPath(f"{item.name}.html"), page_text(item), banner(MARKDOWN, [item]))
         for item in ordered
     ]
-    style = _style()
-    shown = Markup(style)  # noqa: S704 - ours.
-    policy = _policy(style, None)
-    text = _template("index").render(protocols=ordered, style=shown, policy=policy)
+    text = printed("index", protocols=ordered)
     index = File(PurePosixPath("index.html"), text, banner(MARKDOWN, ordered), shared=True)
     return (*pages, index)
 
@@ -48,43 +37,15 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
 def page_text(protocol: Protocol) -> str:
     """A protocol's page without its banner."""
     body, headings = reference(protocol)
-    style, script = _style(), _safe(_script(protocol))
-    text: str = _template("page").render(
+    return printed(
+        "page",
+        _script(protocol),
         protocol=protocol,
         body=body,
         headings=headings,
-        style=Markup(style),  # noqa: S704 - ours.
-        script=Markup(script),  # noqa: S704 - what could end it was taken out.
-        plans=_data(plans(protocol)),
-        entries=_data(entries(protocol)),
-        policy=_policy(style, script),
+        plans=data(plans(protocol)),
+        entries=data(entries(protocol)),
     )
-    return text
-
-
-def _template(name: str) -> Any:
-    return environment(_PACKAGE, autoescape=True).get_template(f"{name}.html.j2")
-
-
-def _policy(style: str, script: str | None) -> str:
-    """What the page may run and load: its own script and style, and nothing else."""
-    run = "" if script is None else f" script-src {_hash(script)};"
-    return f"default-src 'none';{run} style-src {_hash(style)}; base-uri 'none'; form-action 'none'"
-
-
-def _hash(text: str) -> str:
-    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode('ascii')}'"
-
-
-def _data(value: object) -> Markup:
-    """JSON for the inside of a script element, which no text in it ends."""
-    text = json.dumps(value, ensure_ascii=True, separators=(",", ":"))
-    return Markup(text.replace("<", "\\u003c"))  # noqa: S704 - made safe just here.
-
-
-def _safe(script: str) -> str:
-    """The script, of which no text ends its element; in a text, `<` is written as an escape."""
-    return script.replace("</", "<\\/").replace("<!--", "<\\!--").replace("<script", "<\\script")
 
 
 def _script(protocol: Protocol) -> str:
@@ -102,15 +63,9 @@ def _script(protocol: Protocol) -> str:
 
 @cache
 def _page_modules() -> tuple[tuple[str, str], ...]:
-    folder = files(_PACKAGE) / "page"
+    folder = files(PACKAGE) / "page"
     return tuple(
         (item.name, item.read_text(encoding="utf-8"))
         for item in sorted(folder.iterdir(), key=lambda item: item.name)
         if item.name.endswith(".js")
     )
-
-
-@cache
-def _style() -> str:
-    folder = files(_PACKAGE) / "page"
-    return "".join((folder / f"{name}.css").read_text(encoding="utf-8") for name in _STYLES)

@@ -21,6 +21,13 @@ export class DecodeView {
     show(by("sender"), options(choices, choices[0]?.[0]));
     const examples = plans.examples ?? [];
     show(by("example"), options([["", "none"], ...examples.map(({ message, name }, at) => [String(at), `${message}: ${name}`])], ""));
+    const told = plans.senders.flatMap((item) => item.parts.filter((part) => part.kind === "told"));
+    this.told = [...new Set(told.map((part) => part.name))].map((name) => {
+      const field = h("input", { type: "text", size: 8, "data-told": name });
+      field.addEventListener("input", later(() => this.update()));
+      by("sender").closest("p").append(h("label", {}, `${name}, told `, field));
+      return [name, field];
+    });
     by("example").addEventListener("change", () => this.example());
     by("sender").addEventListener("change", () => this.update());
     by("bytes").addEventListener("input", later(() => this.update()));
@@ -45,15 +52,21 @@ export class DecodeView {
     by("note").textContent = "";
     try {
       const { form, pieces, notes } = piecesOf(text, this.endpoints);
-      const found = eventsOf(this.explainer.codec, pieces, endpoint, this.endpoints);
+      const found = eventsOf(this.explainer.codec, pieces, endpoint, this.endpoints, this.toldValues());
       const size = pieces.reduce((sum, item) => sum + item.bytes.length, 0);
       if (size) by("note").textContent = [summary(found, size, form), ...notes.slice(0, 3)].join(". ");
       this.showFrom(found, 0);
     } catch (error) {
-      if (!(error instanceof InputError)) throw error;
+      if (!(error instanceof InputError || error instanceof RangeError)) throw error;
       by("note").textContent = error.message;
     }
     this.onChange(text, endpoint);
+  }
+
+  /** Identities that the bytes do not say: numbers, or several for frames that follow each other. */
+  toldValues() {
+    const given = this.told.filter(([, field]) => field.value.trim());
+    return Object.fromEntries(given.map(([name, field]) => [name, field.value.trim().split(/[\s,]+/).map(Number)]));
   }
 
   /** Show a page of events, and a button for the next. */
@@ -127,7 +140,7 @@ function table(event, rows, isStuffed) {
     return h("tr", { "data-row": String(index), "data-inside": Boolean(item.bits) }, own);
   });
   const found = h("table", { className: "cells" }, h("thead", {}, h("tr", {}, heads)), h("tbody", {}, lines));
-  return h("div", { className: "wide", tabIndex: 0, role: "region", "aria-label": "Rows" }, found);
+  return h("div", { className: "wide", tabIndex: 0, role: "group", "aria-label": "Rows" }, found);
 }
 
 /** Light up the row of a run and the run of a row; arrows go from run to run. */

@@ -141,7 +141,7 @@ export class EncodeView {
       h("code", {}, text),
     ]);
     const [event] = this.explainer.events(bytes, this.sender);
-    show(by("made"), event ? this.shown(event, null) : null, h("div", { className: "copies" }, copies));
+    show(by("made"), h("div", { className: "copies" }, copies), event ? this.shown(event, null) : "");
   }
 
   /** The command that makes the same frame. */

@@ -205,5 +205,5 @@ function tableOf(heads, rows) {
   const line = (cells) => h("tr", {}, keep(cells).map((cell) => h("td", {}, cell instanceof Node ? cell : String(cell))));
   const head = h("tr", {}, keep(heads).map((name) => h("th", { scope: "col" }, name)));
   const table = h("table", {}, h("thead", {}, head), h("tbody", {}, rows.map(line)));
-  return h("div", { className: "wide", tabIndex: 0, role: "region", "aria-label": heads[0] }, table);
+  return h("div", { className: "wide", tabIndex: 0, role: "group", "aria-label": heads[0] }, table);
 }
