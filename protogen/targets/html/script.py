@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from posixpath import dirname, join, normpath
 
 _IMPORT = re.compile(
@@ -29,6 +30,9 @@ _BEFORE_REGEX = re.compile(r"(?:^|[({\[,;:=!&|?+\n>~]|\b(?:return|typeof|case|of
 """What stands in front of a regular expression, and of no division."""
 _NO_BREAK_BEHIND = "\n{([,;:?=&|"
 _NO_BREAK_BEFORE = "})],;:?.&|="
+
+_KEPT = 128
+"""Modules of which is remembered what was made of them: most are the same on each page."""
 
 
 def bundled(modules: Mapping[str, str], entry: str, more: Mapping[str, Iterable[str]]) -> str:
@@ -80,6 +84,7 @@ def _module(path: str, text: str, numbers: Mapping[str, str], more: Iterable[str
     return f"const {numbers[path]} = (() => {{\n{_short(text)}{exports}}})();\n"
 
 
+@lru_cache(_KEPT)
 def _short(text: str) -> str:
     """The module without comments, and without blanks and line breaks that nothing needs."""
     parts, end, blank = ["\n"], 0, ""
