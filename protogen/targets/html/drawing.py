@@ -82,8 +82,7 @@ class Block(msgspec.Struct, frozen=True, kw_only=True):
     def label(self) -> str:
         """What it is, in full."""
         size = f"{size_text(self.sizes)} byte{'' if self.sizes.fixed == 1 else 's'}"
-        place = "" if self.start is None else f"byte {self.start}, "
-        return f"{self.name}: {place}{size}{f', {self.note}' if self.note else ''}"
+        return f"{self.name}: {size}{f', {self.note}' if self.note else ''}"
 
 
 def drawings(protocol: Protocol) -> Iterator[Markup]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from base64 import b64encode
 from functools import cache
 from hashlib import sha256
@@ -14,6 +15,7 @@ from markupsafe import Markup
 from protogen.targets.printing import environment
 
 PACKAGE = "protogen.targets.html"
+_BREAKS = re.compile(r"\s*\n\s*")
 _STYLES = ("page", "frames", "bench", "print")
 
 
@@ -55,4 +57,5 @@ def _without_ends(script: str) -> str:
 @cache
 def _style() -> str:
     folder = files(PACKAGE) / "page"
-    return "".join((folder / f"{name}.css").read_text(encoding="utf-8") for name in _STYLES)
+    text = "".join((folder / f"{name}.css").read_text(encoding="utf-8") for name in _STYLES)
+    return _BREAKS.sub("", text)

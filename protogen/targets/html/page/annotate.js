@@ -192,7 +192,8 @@ class FrameReader {
     if (covers.some((name) => !this.found.has(name))) return found;
     const pieces = covers.map((name) => this.found.get(name));
     const covered = pieces.flatMap((piece) => (part.overWire ? piece.wire : piece.content));
-    const result = BigInt(this.frame.sums[part.sum].algorithm.compute(Uint8Array.from(covered)));
+    const { algorithm } = this.frame.sums[part.sum];
+    const result = BigInt(algorithm.compute(Uint8Array.from(covered), 0, covered.length));
     if (part.type.low !== undefined) {
       const due = BigInt.asUintN(part.type.bits, result >> BigInt(part.lowest ?? 0));
       return found.value === due ? found : { ...found, fault: `${part.name} is ${found.value}, not ${due}` };
