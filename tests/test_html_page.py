@@ -615,7 +615,9 @@ class TestFile:
             )
             page.wait_for_selector("#summary canvas")
             page.select_option("#summary select", label="gyro.int_x")
-            page.wait_for_function("document.querySelector('canvas').ariaLabel.includes('values')")
+            page.wait_for_function(
+                "() => document.querySelector('canvas').ariaLabel.includes('values')"
+            )
             said = page.get_attribute("canvas", "aria-label")
             assert "20 values from 0 to 190" in said or "19 values from 0 to 180" in said
             assert opened.complaints == []

@@ -15,7 +15,8 @@ export function h(tag, attributes = {}, ...children) {
   return found;
 }
 
-export const show = (holder, ...children) => holder.replaceChildren(...children.flat());
+export const show = (holder, ...children) =>
+  holder.replaceChildren(...children.flat().filter((child) => child !== null && child !== undefined));
 
 export const options = (names, chosen) =>
   names.map(([value, text]) => h("option", { value, selected: value === chosen }, text));

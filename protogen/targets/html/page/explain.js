@@ -20,16 +20,15 @@ export class Explainer {
   /** The plan of an event's sender; of bytes that are no frame, one whose frames begin so. */
   senderOf(event) {
     const { senders } = this.plans;
-    if (event.kind !== "invalid") {
-      return senders.find((it) => it.endpoint === event.sender && (it.form ?? "") === event.form);
-    }
     const forms = event.sender ? senders.filter((it) => it.endpoint === event.sender) : senders;
+    if (event.kind !== "invalid") return forms.find((it) => it.form === event.form) ?? forms[0];
     return forms.find((it) => it.start.every((byte, at) => event.raw[at] === byte)) ?? forms[0];
   }
 
+  /** The codec's frame of a sender: both have the forms of an endpoint in the same order. */
   frameOf(sender) {
-    const found = this.codec.protocol.senders(sender.endpoint);
-    return found.find(({ frame }) => frame.form === (sender.form ?? "")).frame;
+    const forms = this.plans.senders.filter((it) => it.endpoint === sender.endpoint);
+    return this.codec.protocol.senders(sender.endpoint)[forms.indexOf(sender)].frame;
   }
 
   rows(event) {

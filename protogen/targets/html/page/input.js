@@ -116,7 +116,7 @@ const nanoseconds = (seconds, fraction) => Number(seconds) * 1e9 + Number((fract
 
 function candump(text) {
   if (LOG_BEGIN.test(text)) {
-    return linesOf(text, "a log of candump", (line) => {
+    return linesOf(text, "a log", (line) => {
       const found = LOG_LINE.exec(line);
       if (!found || !(found[5] || found[4])) return null;
       if (found[4] && parseInt(found[4], 16) & ERROR_BIT) return undefined;
