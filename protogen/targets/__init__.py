@@ -53,8 +53,8 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
             LazyTarget("python", "python", "protogen.targets.python.emit"),
             LazyTarget("c", "c", "protogen.targets.c.emit"),
             LazyTarget("markdown", "markdown", "protogen.targets.markdown.emit"),
-            LazyTarget("html", "html", "protogen.targets.html.emit"),
             LazyTarget("typescript", "typescript", "protogen.targets.typescript.emit"),
+            LazyTarget("html", "html", "protogen.targets.html.emit"),
         )
     }
 )

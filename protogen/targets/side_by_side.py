@@ -23,7 +23,7 @@ _MANY = 500
 def emit_all(targets: Sequence[Target], protocols: Sequence[Protocol]) -> list[tuple[File, ...]]:
     """Return the files of each target. Of many messages, every second target has its own process.
 
-    Of Python, C, Markdown and TypeScript these are C and TypeScript.
+    Of Python, C, Markdown, TypeScript and HTML these are C and TypeScript.
     """
     messages = [message for protocol in protocols for message in protocol.messages]
     if len(messages) < _MANY or len(targets) < 2 or not _can_fork():
