@@ -19,6 +19,7 @@ from tooling import unavailable
 from protogen.cli.wire.codec import Codec, open_codec
 from protogen.compiler import compile_file
 from protogen.convert.inputs.hex_digits import HexError, parse_hex
+from protogen.errors import UserError
 from protogen.fuzzing.engine import Refused
 from protogen.fuzzing.python_engine import PythonEngine
 from protogen.fuzzing.samples import samples
@@ -199,6 +200,16 @@ class TestText:
     def test_the_index_names_every_protocol(self, folder, codecs):
         text = (folder / "index.html").read_text(encoding="utf-8")
         assert [*re.findall(r'<a href="(\w+)\.html">', text)] == sorted(codecs)
+
+    def test_what_typescript_has_no_codec_for_can_be_read(self, monkeypatch, codecs):
+        def refuse(_: object) -> None:
+            raise UserError("no codec")
+
+        monkeypatch.setattr("protogen.targets.html.emit.emit_typescript", refuse)
+        page = page_text(codecs["dagny"].protocol)
+        assert "<script" not in page
+        assert "script-src" not in page
+        assert "<table>" in page
 
     def test_pages_are_the_same_each_time(self, codecs):
         protocol = codecs["dagny"].protocol

@@ -7,6 +7,7 @@ from functools import cache
 from importlib.resources import files
 from pathlib import PurePosixPath
 
+from protogen.errors import UserError
 from protogen.model.protocol import Protocol
 from protogen.targets.banner import MARKDOWN, banner
 from protogen.targets.html.plans import plans
@@ -48,11 +49,18 @@ def page_text(protocol: Protocol) -> str:
     )
 
 
-def _script(protocol: Protocol) -> str:
-    """The bench, and the codec of the protocol."""
+def _script(protocol: Protocol) -> str | None:
+    """The bench and the codec of the protocol; None where the TypeScript target has no codec.
+
+    Then there is the reference alone.
+    """
+    try:
+        printed_codec = emit_typescript([protocol])
+    except UserError:
+        return None
     modules = dict(_page_modules())
     codec = ""
-    for file in emit_typescript([protocol]):
+    for file in printed_codec:
         if file.path.suffix == ".js" and file.path.is_relative_to(_BUILT):
             place = file.path.relative_to(_BUILT)
             modules[f"codec/{place}"] = file.text

@@ -27,6 +27,7 @@ from protogen.model.identities import Identities
 from protogen.model.meanings import BitField, Enum
 from protogen.model.messages import Message
 from protogen.model.numbers import FreeNumeral, Numeral
+from protogen.model.packing import FilledPacking
 from protogen.model.part_plans import CountedLength
 from protogen.model.parts import (
     BitsPart,
@@ -40,7 +41,8 @@ from protogen.model.parts import (
     NumberPart,
     Part,
     PayloadPart,
-    ToldPart,
+    ToldIdentity,
+    ToldLength,
     TypedPart,
     ValuePart,
     VirtualPart,
@@ -56,6 +58,7 @@ from protogen.model.payload_plan import (
     FloatStep,
     IntegerStep,
     OptionalStep,
+    PartStep,
     RecordStep,
     RegionStep,
     RepeatStep,
@@ -136,6 +139,8 @@ class _Plans:
                 "last": last.bytes.hex() if isinstance(last, LiteralPart) else None,
                 "length": None if plan.length is None else _length(plan.length),
                 "lengthOverWire": plan.length is not None and plan.length.over_wire,
+                "around": plan.head_size + plan.tail_size + len(plan.end_bytes),
+                "looksAhead": _looks_ahead(sender),
                 "further": {item.part.name: _length(item) for item in plan.further_lengths},
                 "isTrimmed": plan.is_trimmed,
                 "isCut": plan.is_cut,
@@ -191,8 +196,10 @@ class _Plans:
                 return _lean({**common, "kind": "payload"})
             case VirtualPart():
                 own: Json = {"kind": "virtual", "default": part.default}
-            case ToldPart():
-                own = {"kind": "told", "default": part.default}
+            case ToldIdentity():
+                own = {"kind": "told", "default": part.telling.default}
+            case ToldLength():
+                own = self._number_part(part) | {"kind": "told", "isLength": True}
             case ChecksumPart():
                 own = {
                     "kind": "sum",
@@ -278,6 +285,8 @@ class _Plans:
         key = None if names is None else names.fields.get(step.name)
         common: Json = {"name": step.name, "key": None if key == step.name else key}
         match step:
+            case PartStep():
+                own = self._scalar(step) | {"kind": "part", "part": step.part}
             case IntegerStep() | FloatStep() | BytesStep():
                 own = self._scalar(step)
             case ConstantStep():
@@ -325,6 +334,7 @@ class _Plans:
         if packing is None:
             return {}
         steps = step.steps if isinstance(step, RecordStep) else (step,)
+        is_filled = isinstance(packing, FilledPacking)
         numbers = [
             _lean(
                 {
@@ -336,8 +346,11 @@ class _Plans:
                     "const": None if item.constant is None else _number(item.constant),
                 }
             )
-            for item in packed_numbers(steps)
+            for item in packed_numbers(steps, int(is_filled))
         ]
+        if isinstance(packing, FilledPacking):
+            # The numbers are as many as fit, each like the first.
+            return {"packing": {"order": packing.order, "width": packing.width, "numbers": numbers}}
         own: Json = {"size": packing.size, "order": packing.order, "bits": packing.bits}
         return {"packing": {**own, "padding": packing.padding, "numbers": numbers}}
 
@@ -472,6 +485,12 @@ def _bytes_of(type_: Integer | Float) -> Json:
             "sevenBit": type_.byte_bits == 7,
         }
     )
+
+
+def _looks_ahead(sender: Sender) -> bool:
+    """True if something in front may have needed what stands behind it."""
+    held = (field.part for message in sender.messages for field in message.held)
+    return bool(sender.frame.virtual) or not all(map(sender.frame.is_known_early, held))
 
 
 def _length(item: CountedLength) -> Json:

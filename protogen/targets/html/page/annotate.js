@@ -15,14 +15,15 @@ const LEFT_OUT = "left out, as zeros at the end are";
 /** What each byte of `data` stands for, which `sender` is said to have sent. */
 export function annotate(plans, sender, frame, data, told = {}) {
   const wire = unstuff(sender, frame, data);
-  if (!sender.virtual.length) return new FrameReader(plans, sender, frame, wire, told).rowsOf();
-  const first = new FrameReader(plans, sender, frame, wire, {});
-  first.rowsOf(); // What is not sent follows from the identity, which may stand behind it.
-  return new FrameReader(plans, sender, frame, wire, {}, first.identity).rowsOf();
+  const first = new FrameReader(plans, sender, frame, wire, told);
+  const rows = first.rowsOf();
+  if (!sender.looksAhead) return rows;
+  // What is not sent follows from the identity, and a field may be a part behind the payload.
+  return new FrameReader(plans, sender, frame, wire, told, first.identity, first.numbers).rowsOf();
 }
 
 class FrameReader {
-  constructor(plans, sender, frame, wire, told, identity = null) {
+  constructor(plans, sender, frame, wire, told, identity = null, numbers = new Map()) {
     this.plans = plans;
     this.sender = sender;
     this.frame = frame;
@@ -32,7 +33,8 @@ class FrameReader {
     this.cursor = new Cursor(wire.units, 0);
     this.rows = [];
     this.found = new Map();
-    this.numbers = new Map();
+    this.numbers = new Map(numbers);
+    this.size = this.cursor.left;
   }
 
   rowsOf() {
@@ -78,9 +80,23 @@ class FrameReader {
   }
 
   toldPart(part) {
-    const value = BigInt(this.told[part.name] ?? part.default ?? 0);
+    const value = BigInt(this.told[part.name] ?? this.assumed(part));
+    const found = this.cursor.take(0, part.name, part.type.label);
+    if (part.isLength) {
+      const own = this.number(part, value, found);
+      this.rows.push({ ...own, meaning: `${own.meaning}; told, not sent` });
+      return;
+    }
     this.numbers.set(part.name, value);
-    this.rows.push(reads(this.cursor.take(0, part.name, part.type.label), value, "told, not sent"));
+    this.rows.push(reads(found, value, "told, not sent"));
+  }
+
+  /** What a part is where nothing was told: a length is that of the bytes. */
+  assumed(part) {
+    if (!part.isLength) return part.default ?? 0;
+    const { base, optional } = this.sender.length;
+    const payload = Math.max(0, this.size - this.sender.around);
+    return base + (payload ? payload + optional : 0);
   }
 
   virtual(part) {
@@ -230,13 +246,14 @@ class FrameReader {
     const size = inside.left;
     const own = message.sizes[1];
     if (isCut && message.cutSize !== undefined && size > own) {
-      return dissect(message, inside.part(own), enums);
+      return dissect(message, inside.part(own), enums, this.numbers);
     }
     const missing = own - size;
-    if (missing <= 0 || !this.sender.isTrimmed) return dissect(message, inside, enums);
+    if (missing <= 0 || !this.sender.isTrimmed) return dissect(message, inside, enums, this.numbers);
     const { offset } = inside;
     const zeros = Array.from({ length: missing }, () => ({ byte: 0, wire: [] }));
-    return asSent(dissect(message, new Cursor([...inside.rest(), ...zeros], offset), enums), size);
+    const filled = new Cursor([...inside.rest(), ...zeros], offset);
+    return asSent(dissect(message, filled, enums, this.numbers), size);
   }
 
   payloadOf(value) {

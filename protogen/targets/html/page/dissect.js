@@ -28,17 +28,22 @@ class Scope {
   }
 }
 
-/** A row for each field, member and element, up to the first that has no bytes. */
-export function dissect(message, cursor, enums) {
-  const reader = new PayloadReader(cursor, enums);
+/**
+ * A row for each field, member and element, up to the first that has no bytes.
+ *
+ * `parts` has the numbers of the frame, which some fields are.
+ */
+export function dissect(message, cursor, enums, parts) {
+  const reader = new PayloadReader(cursor, enums, parts);
   reader.record(message.steps, "", new Scope());
   return reader.rows;
 }
 
 class PayloadReader {
-  constructor(cursor, enums) {
+  constructor(cursor, enums, parts) {
     this.cursor = cursor;
     this.enums = enums;
+    this.parts = parts;
     this.isShort = false;
     this.rows = [];
   }
@@ -60,7 +65,16 @@ class PayloadReader {
         this.step(inner, path, scope);
       }
     } else if (step.kind === "region") this.region(step, path, scope);
+    else if (step.kind === "part") this.part(step, path, scope);
     else this.scalar(step, path, scope);
+  }
+
+  /** A number of the frame, of which the payload has no bytes; unknown ones are 0. */
+  part(step, path, scope) {
+    const value = this.parts.get(step.part) ?? 0n;
+    scope.own.set(step.name, value);
+    const found = this.cursor.take(0, path, `part ${step.part}`);
+    this.rows.push(reads(found, value, this.meaning(step, value), this.fault(step, value)));
   }
 
   count(count, scope) {
@@ -128,11 +142,12 @@ class PayloadReader {
 
   /** A row for the bytes of packed numbers, and one for each of the numbers. */
   packed(step, path, scope) {
-    const { packing } = step;
+    const packing = step.packing.width ? filledRun(step.packing, this.cursor.left) : step.packing;
     const isRecord = step.kind === "record";
     let found = this.cursor.take(packing.size, path, `packed ${packing.order}`);
     found = { ...found, meaning: `${packing.bits} bits`, isRun: true };
-    if (!found.cut && found.bytes[found.bytes.length - 1] & (packing.padding ?? 0)) {
+    const last = found.bytes[found.bytes.length - 1] ?? 0;
+    if (!found.cut && last & (packing.padding ?? 0)) {
       found.fault = "the bits behind the last number have to be zero";
     }
     this.isShort = found.cut;
@@ -237,6 +252,18 @@ class PayloadReader {
     }
     return "";
   }
+}
+
+/** The run of as many numbers as so many bytes hold, each like the first. */
+function filledRun({ order, width, numbers: [first] }, size) {
+  const count = Math.floor((8 * size) / width);
+  const bits = count * width;
+  const own = Math.ceil(bits / 8);
+  const left = 8 * own - bits;
+  const mask = 2 ** left - 1;
+  const padding = order === "lsb_first" ? (mask << (8 - left)) & 0xff : mask;
+  const numbers = Array.from({ length: count }, (_, index) => ({ ...first, index, first: index * width }));
+  return { order, bits, size: own, padding, numbers };
 }
 
 const pythonConstant = (due) => (typeof due === "boolean" ? (due ? "True" : "False") : String(due));
