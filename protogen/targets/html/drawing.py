@@ -43,6 +43,8 @@ _LONGEST = 2 * _ROW
 """Bytes of the longest block that is drawn whole."""
 _SHORTENED = 6
 """Bytes that are drawn of what varies, or is longer."""
+_LITERAL, _PART, _FIELD, _UNUSED = "l", "p", "f", "u"
+"""Classes of boxes, of which a page has hundreds."""
 _CHARACTER = 6.7
 """Width of a character of a label."""
 
@@ -113,7 +115,7 @@ def _message_blocks(slot: Slot, message: Message) -> Iterator[Block]:
             yield Block(
                 name=field.name,
                 sizes=SizeSet.exactly(size),
-                kind="field",
+                kind=_FIELD,
                 start=start,
                 note=field.type.label,
                 runs=tuple(_field_runs(field)) if slot.scale == 1 else (),
@@ -135,8 +137,8 @@ def _part(slot: Slot) -> Block:
 
 def _kind(part: Part) -> str:
     if isinstance(part, LiteralPart):
-        return "literal"
-    return "field" if isinstance(part, PayloadPart) else "part"
+        return _LITERAL
+    return _FIELD if isinstance(part, PayloadPart) else _PART
 
 
 def _note(part: Part) -> str:
@@ -187,7 +189,7 @@ def _drawing(blocks: Iterable[Block], title: str) -> Markup:
     return Markup(
         '<figure class="frame"><div class="wide" tabindex="0">'
         '<svg role="img" width="{w}" height="{h}" viewBox="-1 0 {w} {h}" aria-label="{title}">'
-        "{shapes}</svg></div><figcaption>{title}, to scale</figcaption></figure>\n"
+        "{shapes}</svg></div></figure>\n"
     ).format(
         w=width,
         h=len(rows) * (_HEIGHT + _GAP) + 4,
@@ -229,7 +231,7 @@ def _bits(block: Block) -> Iterator[Markup]:
         x = (bits - run.low - run.size) * width
         last = run.low + run.size - 1
         place = f"bit {last}" if run.size == 1 else f"bits {run.low}..{last}"
-        kind = "field" if run.name else "unused"
+        kind = _FIELD if run.name else _UNUSED
         label = f"{run.name or 'no name'}: {place} of {block.name}"
         yield _box(label, kind, x, run.size * width, run.name, is_whole=True)
 
