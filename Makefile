@@ -7,6 +7,7 @@ INSTALLED := $(VENV)/.installed
 CACHE := .cache
 EXTRAS ?= dev
 LOG := $(CACHE)/test.log
+TARGETS := python c markdown typescript html
 tested = mkdir -p $(CACHE) && { $(BIN)/python -m pytest -n auto --dist worksteal $(1) >$(LOG) 2>&1 \
 	|| { cat $(LOG); exit 1; }; } && tail -n 1 $(LOG)
 
@@ -17,7 +18,7 @@ generate: $(INSTALLED)
 	@$(BIN)/python -m protogen.problems.docs docs/problems.md
 	@$(BIN)/python -m protogen.library.page docs/reference/library.md README.md
 	@$(BIN)/protogen schema-json --output schemas/protogen.schema.json
-	@$(BIN)/protogen generate --quiet
+	@$(BIN)/protogen generate --quiet $(TARGETS:%=--target %)
 
 # Style and types, without running anything.
 check: $(INSTALLED)

@@ -13,7 +13,7 @@ from protogen.compiler import compile_file
 from protogen.model.protocol import Protocol
 from protogen.problems import Problem, SourceMap, render_text
 from protogen.schema.files import schema_files, schema_path
-from protogen.targets import TARGETS
+from protogen.targets import DEFAULT_TARGETS, TARGETS
 from protogen.targets.output import Report, write_files
 
 
@@ -47,11 +47,12 @@ def generate(
 ) -> dict[str, Report]:
     """Write the files of each target for these schema files, and for those in these folders.
 
+    Without `targets`, these are Python, C and Markdown.
     Returns what was done, by target. Other files in the output stay. Raises SchemaError or
     NoSchemaError before anything is written, and KeyError for a target that there is not.
     """
     protocols = [load(file) for file in schema_files(map(schema_path, schemas))]
-    chosen = [TARGETS[name] for name in (TARGETS if targets is None else targets)]
+    chosen = [TARGETS[name] for name in (DEFAULT_TARGETS if targets is None else targets)]
     return {
         target.name: write_files(target.emit(protocols), Path(output) / target.folder, prune=False)
         for target in chosen

@@ -28,6 +28,7 @@ from doc_runner import Runner
 from tooling import require_module
 
 from protogen.compiler import compile_file
+from protogen.targets import TARGETS
 
 LANGUAGES = {
     "yaml",
@@ -59,7 +60,8 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m protogen "$@"\n')
     program.chmod(0o755)
     schemas = ("schemas", "rover.yaml", "rover_hello.yaml", "sensor.yaml")
-    made = start("generate", *schemas, "--quiet", cwd=folder)
+    targets = [word for target in TARGETS for word in ("--target", target)]
+    made = start("generate", *schemas, "--quiet", *targets, cwd=folder)
     assert made.returncode == 0, made.stderr.decode()
     return folder
 

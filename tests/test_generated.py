@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from protogen.compiler import compile_file
+from protogen.targets import TARGETS
 
 ROOT = Path(__file__).parent.parent
 SCHEMAS = sorted((ROOT / "schemas").rglob("*.yaml"))
@@ -25,7 +26,8 @@ def protogen(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_generated_files_are_current():
-    result = protogen("generate", "--check")
+    targets = [word for target in TARGETS for word in ("--target", target)]
+    result = protogen("generate", "--check", *targets)
     assert result.returncode == 0, result.stdout + result.stderr
 
 

@@ -60,5 +60,8 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
 )
 """Every target by its name."""
 
+DEFAULT_TARGETS = ("python", "c", "markdown")
+"""Those that are printed where none is named: what both ends of the wire need, and its reference."""
+
 STANDALONE: Target = LazyTarget("python", "python", "protogen.targets.python.standalone")
 """The Python target, with the runtime copied beside each module."""

@@ -36,7 +36,11 @@ def generate(  # noqa: PLR0913 - each option is one argument
     ] = None,
     target: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="Only this target; may be repeated. Default: all."),
+        typer.Option(
+            metavar="NAME",
+            help="Only this target: python, c, markdown, typescript or html; may be repeated. "
+            "Default: the first three.",
+        ),
     ] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Write nothing; exit with 1 if a file is not current.")

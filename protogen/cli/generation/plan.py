@@ -101,13 +101,13 @@ def plan(given: Given, project: Project | None, problems: Problems) -> Plan:
 
 def _targets(given: Given, configured: Sequence[str] | None) -> tuple[str, ...]:
     from protogen.problems import hint_for
-    from protogen.targets import TARGETS
+    from protogen.targets import DEFAULT_TARGETS, TARGETS
 
     for name in given.targets or ():
         if name not in TARGETS:
             message = f"there is no target `{name}`; there are {', '.join(TARGETS)}"
             raise UsageError(message, hint_for(name, TARGETS))
-    names = tuple(given.targets or (TARGETS if configured is None else configured))
+    names = tuple(given.targets or (DEFAULT_TARGETS if configured is None else configured))
     if given.standalone and _PYTHON not in names:
         raise UsageError(f"--standalone is for the target {_PYTHON}")
     if not given.c.is_default and c_options.NAME not in names:
