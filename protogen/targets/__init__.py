@@ -61,7 +61,7 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
 """Every target by its name."""
 
 DEFAULT_TARGETS = ("python", "c", "markdown")
-"""Those that are printed where none is named: what both ends of the wire need, and its reference."""
+"""Those that are printed where none is named: both ends of the wire, and the reference."""
 
 STANDALONE: Target = LazyTarget("python", "python", "protogen.targets.python.standalone")
 """The Python target, with the runtime copied beside each module."""

@@ -53,6 +53,9 @@ def _parser() -> MarkdownIt:
     rules["fence"] = _show_fence
     rules["table_open"] = lambda *_: '<div class="wide" tabindex="0"><table>\n'
     rules["table_close"] = lambda *_: "</table></div>\n"
+    rules["thead_open"] = lambda *_: "<thead>"
+    rules["tbody_open"] = lambda *_: "<tbody>"
+    rules["tr_open"] = lambda *_: "<tr>"
     rules["th_open"] = lambda *_: "<th>"
     rules["td_open"] = lambda *_: "<td>"
     for name in ("td", "th", "tr", "thead", "tbody", "list_item"):

@@ -1,5 +1,6 @@
 /** Frames from their parts. */
-import type { MessagePlan, ValueNumber } from "./plan.js";
+import type { MessagePlan } from "./plan.js";
+import type { ValueNumber } from "./plan.js";
 import { type Sender } from "./sender.js";
 /** Values of parts by their names, as callers give them. */
 export type GivenParts = Readonly<Record<string, unknown>>;

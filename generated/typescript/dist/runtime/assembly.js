@@ -4,13 +4,27 @@ import { Cut, dueOf, verdictOn } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { EncodeError } from "./errors.js";
 import { areAmong, at } from "./plan.js";
-import { numbersOf, writePayload } from "./sender.js";
+import { numbersOf, payloadOf } from "./sender.js";
 /** The frame of a message. Throws an EncodeError. */
 export function frameOf(sender, message, value, given, strict) {
-    const payload = sender.trimmed(writePayload(message, value, strict));
+    const made = payloadOf(message, value, strict);
+    const payload = sender.trimmed(made.payload);
+    const parts = withHeld(given, made.held);
     const values = new Array(sender.frame.slots).fill(undefined);
-    const names = identityOf(sender, message, given, values);
-    return encodeFrame(sender, payload, given, names, values, strict);
+    const names = identityOf(sender, message, parts, values);
+    return encodeFrame(sender, payload, parts, names, values, strict);
+}
+/** The parts that callers give, and those that are fields. Throws an EncodeError if they differ. */
+function withHeld(given, held) {
+    for (const [name, value] of Object.entries(held)) {
+        const own = given[name] ?? null;
+        // A number may be given for a bigint, and a bigint for a number.
+        const isSame = (typeof own === "number" || typeof own === "bigint") && own == value;
+        if (own !== null && !isSame) {
+            throw new EncodeError(name, `is ${value}, as the message says, and not ${String(own)}`);
+        }
+    }
+    return { ...given, ...held };
 }
 /** Set the identity of a message: what callers give, or the first one. */
 function identityOf(sender, message, given, values) {

@@ -1,7 +1,7 @@
 /** A frame's content, read as the frame's parts while it comes in. */
 import { Fault } from "./errors.js";
 import type { Value } from "./numbers.js";
-import { type NumberPart } from "./plan.js";
+import type { NumberPart } from "./plan.js";
 import { type Sender } from "./sender.js";
 /** Takes content byte by byte and says what is known of the frame. */
 export declare class Content {

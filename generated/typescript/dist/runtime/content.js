@@ -253,7 +253,9 @@ export class Content {
         const { frame } = this.sender;
         const start = this.bytes.subarray(frame.headSize, this.size);
         try {
-            this.setPayload(prefixSize(this.group.messages[0], start));
+            const [message] = this.group.messages;
+            const held = this.sender.held(message, this.values);
+            this.setPayload(prefixSize(message, start, held));
         }
         catch (error) {
             if (!(error instanceof Fault))

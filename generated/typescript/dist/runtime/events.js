@@ -54,7 +54,7 @@ export class Invalid extends Span {
 export function framed(codec, cut, offset, data, start, size) {
     const { values, payload } = cut;
     const group = codec.group(values);
-    const [plan, message] = group ? codec.read(group, payload) : [null, null];
+    const [plan, message] = group ? codec.read(group, payload, values) : [null, null];
     const kind = plan ? "message" : "unknown";
     return new Framed(kind, offset, size, data, start, codec, values, payload, message, plan);
 }

@@ -1,4 +1,6 @@
 /** What a generated module says of a sender: its frame, as the compiler worked it out. */
+/** None of them. */
+export const NO_PARTS = {};
 /** The place in the content of a frame with such a payload. */
 export function at(place, headSize, payload) {
     if (!place.isTail)

@@ -1,5 +1,6 @@
 /** Reads the values of a payload, one after another. Generated functions call it. */
 import { Fault } from "./errors.js";
+import { type HeldParts } from "./plan.js";
 /** Name of a field, or index of an element. */
 export type Step = string | number;
 /** What ends an array that takes what is left, in bytes or in fields. */
@@ -25,15 +26,17 @@ export declare const PLAIN_TEXT: TextForm;
  */
 export declare class Reader {
     bytes: Uint8Array;
+    private held;
     /** The place of the next byte. */
     at: number;
     /** The place behind the last byte of the payload, or of the region. */
     end: number;
     private readonly path;
     private regions;
-    constructor(bytes: Uint8Array);
+    /** `held` has the parts of the frame that are fields. */
+    constructor(bytes: Uint8Array, held?: HeldParts);
     /** Begin at another payload. */
-    restart(bytes: Uint8Array, at: number, end: number): this;
+    restart(bytes: Uint8Array, at: number, end: number, held: HeldParts): this;
     /** The Fault of a field. */
     fault(step: Step, reason: "size" | "value" | "encoding", problem: string, missing?: number): Fault;
     /** Begin what lies inside of a field or an element. */
@@ -45,6 +48,11 @@ export declare class Reader {
     /** The place of so many bytes, which are taken. */
     take(size: number, step: Step): number;
     private short;
+    /** A number of up to 53 bits that the frame has. */
+    part(name: string, step: Step): number;
+    /** A number of more bits that the frame has. */
+    bigPart(name: string, step: Step): bigint;
+    private heldPart;
     u8(step: Step): number;
     i8(step: Step): number;
     u16(step: Step): number;

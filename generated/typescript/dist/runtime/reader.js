@@ -1,6 +1,7 @@
 /** Reads the values of a payload, one after another. Generated functions call it. */
 import { equal } from "./bytes.js";
 import { Fault, joined, spelled } from "./errors.js";
+import { NO_PARTS } from "./plan.js";
 /** Form of a text whose bytes are its characters, with NUL as padding. */
 export const PLAIN_TEXT = { padding: 0, bits: 8, shift: 0, add: 0 };
 const WORD = new DataView(new ArrayBuffer(8));
@@ -10,8 +11,10 @@ const WORD = new DataView(new ArrayBuffer(8));
  * The last argument of most methods is the name of the field or the index of the element.
  */
 export class Reader {
-    constructor(bytes) {
+    /** `held` has the parts of the frame that are fields. */
+    constructor(bytes, held = NO_PARTS) {
         this.bytes = bytes;
+        this.held = held;
         /** The place of the next byte. */
         this.at = 0;
         this.path = [];
@@ -19,8 +22,9 @@ export class Reader {
         this.end = bytes.length;
     }
     /** Begin at another payload. */
-    restart(bytes, at, end) {
+    restart(bytes, at, end, held) {
         this.bytes = bytes;
+        this.held = held;
         this.at = at;
         this.end = end;
         this.regions = 0;
@@ -57,6 +61,21 @@ export class Reader {
     short(size, step) {
         const problem = `needs ${size} bytes, but only ${this.left} are left`;
         return this.fault(step, "size", problem, size - this.left);
+    }
+    // --- parts of the frame --------------------------------------------------------------------
+    /** A number of up to 53 bits that the frame has. */
+    part(name, step) {
+        return this.heldPart(name, step);
+    }
+    /** A number of more bits that the frame has. */
+    bigPart(name, step) {
+        return this.heldPart(name, step);
+    }
+    heldPart(name, step) {
+        const value = this.held[name];
+        if (value === undefined)
+            throw this.fault(step, "value", `is ${name} of the frame: give it`);
+        return value;
     }
     // --- integers ------------------------------------------------------------------------------
     u8(step) {

@@ -80,7 +80,7 @@ class FormsCandidate {
             try {
                 const group = candidate.sender.group(verdict.values);
                 if (group)
-                    candidate.sender.read(group, verdict.payload);
+                    candidate.sender.read(group, verdict.payload, verdict.values);
                 this.isKnown[index] = group !== undefined;
             }
             catch (error) {

@@ -1,7 +1,7 @@
 /** A sender: its frame, with what is looked up of it. */
 import { NO_BYTES } from "./bytes.js";
 import { EncodeError, Fault } from "./errors.js";
-import { areAmong, holds } from "./plan.js";
+import { areAmong, holds, NO_PARTS } from "./plan.js";
 import { Reader } from "./reader.js";
 import { Writer } from "./writer.js";
 function only(runs) {
@@ -27,6 +27,7 @@ export class Sender {
         this.frame = frame;
         this.listed = new Map();
         this.wide = [];
+        this.slots = new Map();
         /** Bytes that complete a start. None where the same literal ends frames. */
         this.completesStart = new Uint8Array(256);
         for (const group of frame.groups) {
@@ -35,6 +36,9 @@ export class Sender {
                 this.listed.set(keyOf(values), group);
             else
                 this.wide.push(group);
+        }
+        for (const part of [...frame.told, ...numbersOf(frame.parts)]) {
+            this.slots.set(part.name, part.slot);
         }
         this.startSize = frame.startWords[0]?.length ?? 0;
         const own = frame.sharesDelimiter ? [] : frame.startWords;
@@ -102,9 +106,15 @@ export class Sender {
     get isFitted() {
         return this.frame.kept !== null || this.frame.isCut;
     }
+    /** The parts of a frame that are fields of the message, among the values of the frame. */
+    held(message, values) {
+        if (!message.held.length)
+            return NO_PARTS;
+        return Object.fromEntries(message.held.map((name) => [name, values[this.slots.get(name)]]));
+    }
     /** Bytes that are known of a payload; null where its fields take all of it. */
-    knownOf(message, payload) {
-        return message.tellsItsEnd ? prefixSize(message, payload) : message.known;
+    knownOf(message, payload, held) {
+        return message.tellsItsEnd ? prefixSize(message, payload, held) : message.known;
     }
     /** What a frame has of a payload, cut or filled up to its size; null: that varies. */
     fitted(payload, size) {
@@ -120,19 +130,19 @@ export class Sender {
     leaves(message, size) {
         return this.frame.isCut && message.tellsItsEnd && size > message.sizes.least;
     }
-    /** The message of a payload, and its plan. Throws a Fault. */
-    read(group, payload) {
+    /** The message of a frame's payload and values, and its plan. Throws a Fault. */
+    read(group, payload, values) {
         const [first] = group.messages;
         let known = payload;
         if (this.leaves(first, payload.length)) {
-            known = this.fitted(payload, this.knownOf(first, payload));
+            known = this.fitted(payload, this.knownOf(first, payload, this.held(first, values)));
         }
         else if (this.isFitted) {
             const sizes = new Set(group.messages.map((message) => message.known));
             known = this.fitted(payload, sizes.size === 1 ? first.known : null);
         }
         const fitting = group.messages.find((message) => holds(message.sizes, known.length)) ?? first;
-        return [fitting, readPayload(fitting, known)];
+        return [fitting, readPayload(fitting, known, this.held(fitting, values))];
     }
     /** The bytes of a message's payload that an encoder puts into a frame. */
     trimmed(payload) {
@@ -154,20 +164,24 @@ export class Sender {
         return this.frame.encodeOnly.find((message) => message.name === name);
     }
 }
-/** The message of a payload's bytes. Throws a Fault. */
-export function readPayload(message, payload) {
+/** The message of a payload's bytes; `held` has the parts that are fields. Throws a Fault. */
+export function readPayload(message, payload, held = NO_PARTS) {
     const size = payload.length;
     if (!holds(message.sizes, size)) {
         const problem = `${message.name} does not have ${size} bytes of payload`;
         throw new Fault("size", problem, "", Math.min(size, message.sizes.greatest));
     }
-    const reader = new Reader(payload);
+    const reader = new Reader(payload, held);
     const found = message.read(reader);
     reader.finish();
     return found;
 }
 /** The payload of a message. Throws an EncodeError. */
 export function writePayload(message, value, strict) {
+    return payloadOf(message, value, strict).payload;
+}
+/** The payload of a message, and its fields that are parts. Throws an EncodeError. */
+export function payloadOf(message, value, strict) {
     const writer = new Writer(strict);
     message.write(writer, value);
     const payload = writer.finish();
@@ -175,11 +189,11 @@ export function writePayload(message, value, strict) {
         const problem = `makes ${payload.length} bytes of payload, which ${message.name} can't have`;
         throw new EncodeError("", problem);
     }
-    return payload;
+    return { payload, held: writer.held };
 }
 /** Bytes at the start of `data` that the message takes. Throws a Fault. */
-export function prefixSize(message, data) {
-    const reader = new Reader(data);
+export function prefixSize(message, data, held) {
+    const reader = new Reader(data, held);
     message.read(reader);
     return reader.at;
 }

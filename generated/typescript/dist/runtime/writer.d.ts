@@ -1,5 +1,6 @@
 /** Writes the values of a payload, one after another. Generated functions call it. */
 import { EncodeError } from "./errors.js";
+import type { Value } from "./numbers.js";
 import { type Step, type TextForm } from "./reader.js";
 /** Bytes of a payload so far. Each method appends a value, or throws an EncodeError. */
 export declare class Writer {
@@ -7,6 +8,8 @@ export declare class Writer {
     bytes: Uint8Array;
     /** Bytes so far. */
     size: number;
+    /** Values of the fields that are parts of the frame, by the names of the parts. */
+    readonly held: Record<string, Value>;
     private readonly path;
     /** With `strict`, values that the schema forbids are refused, even where they fit the wire. */
     constructor(strict: boolean);
@@ -18,6 +21,8 @@ export declare class Writer {
     finish(): Uint8Array;
     /** The place of so many more bytes. */
     room(size: number): number;
+    /** Leave a number to the frame, whose part it is. */
+    part(name: string, value: Value): void;
     /** An integer that the wire can hold. */
     int(value: unknown, low: number, high: number, step: Step): number;
     /** An integer of more than 53 bits that the wire can hold. */

@@ -11,6 +11,8 @@ export class Writer {
         this.bytes = new Uint8Array(64);
         /** Bytes so far. */
         this.size = 0;
+        /** Values of the fields that are parts of the frame, by the names of the parts. */
+        this.held = {};
         this.path = [];
     }
     /** The error of a field. */
@@ -37,6 +39,10 @@ export class Writer {
         }
         this.size = at + size;
         return at;
+    }
+    /** Leave a number to the frame, whose part it is. */
+    part(name, value) {
+        this.held[name] = value;
     }
     // --- checks --------------------------------------------------------------------------------
     /** An integer that the wire can hold. */

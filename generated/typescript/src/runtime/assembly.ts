@@ -6,8 +6,9 @@ import { mayBe } from "./content.js";
 import { EncodeError } from "./errors.js";
 import type { PartNumber, Value } from "./numbers.js";
 import { areAmong, at } from "./plan.js";
-import type { Bits, Covered, LengthNumber, MessagePlan, Part, ValueNumber } from "./plan.js";
-import { numbersOf, writePayload, type Sender } from "./sender.js";
+import type { Bits, Covered, HeldParts, LengthNumber, MessagePlan } from "./plan.js";
+import type { Part, ValueNumber } from "./plan.js";
+import { numbersOf, payloadOf, type Sender } from "./sender.js";
 
 /** Values of parts by their names, as callers give them. */
 export type GivenParts = Readonly<Record<string, unknown>>;
@@ -22,10 +23,25 @@ export function frameOf(
   given: GivenParts,
   strict: boolean,
 ): Uint8Array {
-  const payload = sender.trimmed(writePayload(message, value, strict));
+  const made = payloadOf(message, value, strict);
+  const payload = sender.trimmed(made.payload);
+  const parts = withHeld(given, made.held);
   const values: Values = new Array<Value | undefined>(sender.frame.slots).fill(undefined);
-  const names = identityOf(sender, message, given, values);
-  return encodeFrame(sender, payload, given, names, values, strict);
+  const names = identityOf(sender, message, parts, values);
+  return encodeFrame(sender, payload, parts, names, values, strict);
+}
+
+/** The parts that callers give, and those that are fields. Throws an EncodeError if they differ. */
+function withHeld(given: GivenParts, held: HeldParts): GivenParts {
+  for (const [name, value] of Object.entries(held)) {
+    const own = given[name] ?? null;
+    // A number may be given for a bigint, and a bigint for a number.
+    const isSame = (typeof own === "number" || typeof own === "bigint") && own == value;
+    if (own !== null && !isSame) {
+      throw new EncodeError(name, `is ${value}, as the message says, and not ${String(own)}`);
+    }
+  }
+  return { ...given, ...held };
 }
 
 /** Set the identity of a message: what callers give, or the first one. */

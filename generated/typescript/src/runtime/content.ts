@@ -3,7 +3,8 @@
 import { equal, NO_BYTES } from "./bytes.js";
 import { Fault, spelled, type Reason } from "./errors.js";
 import type { Value } from "./numbers.js";
-import { holds, type Group, type LengthNumber, type NumberPart, type Part } from "./plan.js";
+import { holds } from "./plan.js";
+import type { Group, LengthNumber, MessagePlan, NumberPart, Part } from "./plan.js";
 import { prefixSize, type Sender } from "./sender.js";
 
 /** Takes content byte by byte and says what is known of the frame. */
@@ -266,7 +267,9 @@ export class Content {
     const { frame } = this.sender;
     const start = this.bytes.subarray(frame.headSize, this.size);
     try {
-      this.setPayload(prefixSize(this.group!.messages[0]!, start));
+      const [message] = this.group!.messages as readonly [MessagePlan];
+      const held = this.sender.held(message, this.values);
+      this.setPayload(prefixSize(message, start, held));
     } catch (error) {
       if (!(error instanceof Fault)) throw error;
       const room = frame.greatest - frame.headSize - frame.tailSize;

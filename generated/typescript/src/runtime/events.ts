@@ -133,7 +133,7 @@ export function framed(
 ): Framed {
   const { values, payload } = cut;
   const group = codec.group(values);
-  const [plan, message] = group ? codec.read(group, payload) : [null, null];
+  const [plan, message] = group ? codec.read(group, payload, values) : [null, null];
   const kind = plan ? "message" : "unknown";
   return new Framed(kind, offset, size, data, start, codec, values, payload, message, plan);
 }

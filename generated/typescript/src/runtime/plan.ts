@@ -173,6 +173,12 @@ export interface Sizes {
   readonly step: number;
 }
 
+/** Values of parts of the frame that are fields of a message, by the names of the parts. */
+export type HeldParts = Readonly<Record<string, Value>>;
+
+/** None of them. */
+export const NO_PARTS: HeldParts = {};
+
 /** A message: how its payload is read and written. */
 export interface MessagePlan<M = unknown> {
   readonly name: string;
@@ -182,6 +188,8 @@ export interface MessagePlan<M = unknown> {
   readonly known: number | null;
   /** True if its size varies, and its fields say where they end. */
   readonly tellsItsEnd: boolean;
+  /** Parts of the frame that are fields; payloads have no bytes of them. */
+  readonly held: readonly string[];
   readonly read: (reader: Reader) => M;
   readonly write: (writer: Writer, message: never) => void;
 }

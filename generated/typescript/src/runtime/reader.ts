@@ -2,6 +2,8 @@
 
 import { equal } from "./bytes.js";
 import { Fault, joined, spelled } from "./errors.js";
+import type { Value } from "./numbers.js";
+import { NO_PARTS, type HeldParts } from "./plan.js";
 
 /** Name of a field, or index of an element. */
 export type Step = string | number;
@@ -40,13 +42,18 @@ export class Reader {
   private readonly path: Step[] = [];
   private regions = 0;
 
-  constructor(public bytes: Uint8Array) {
+  /** `held` has the parts of the frame that are fields. */
+  constructor(
+    public bytes: Uint8Array,
+    private held: HeldParts = NO_PARTS,
+  ) {
     this.end = bytes.length;
   }
 
   /** Begin at another payload. */
-  restart(bytes: Uint8Array, at: number, end: number): this {
+  restart(bytes: Uint8Array, at: number, end: number, held: HeldParts): this {
     this.bytes = bytes;
+    this.held = held;
     this.at = at;
     this.end = end;
     this.regions = 0;
@@ -87,6 +94,24 @@ export class Reader {
   private short(size: number, step: Step): Fault {
     const problem = `needs ${size} bytes, but only ${this.left} are left`;
     return this.fault(step, "size", problem, size - this.left);
+  }
+
+  // --- parts of the frame --------------------------------------------------------------------
+
+  /** A number of up to 53 bits that the frame has. */
+  part(name: string, step: Step): number {
+    return this.heldPart(name, step) as number;
+  }
+
+  /** A number of more bits that the frame has. */
+  bigPart(name: string, step: Step): bigint {
+    return this.heldPart(name, step) as bigint;
+  }
+
+  private heldPart(name: string, step: Step): Value {
+    const value = this.held[name];
+    if (value === undefined) throw this.fault(step, "value", `is ${name} of the frame: give it`);
+    return value;
   }
 
   // --- integers ------------------------------------------------------------------------------

@@ -114,7 +114,7 @@ class FormsCandidate implements Judge {
     if (verdict instanceof Cut) {
       try {
         const group = candidate.sender.group(verdict.values);
-        if (group) candidate.sender.read(group, verdict.payload);
+        if (group) candidate.sender.read(group, verdict.payload, verdict.values);
         this.isKnown[index] = group !== undefined;
       } catch (error) {
         if (!(error instanceof Fault)) throw error;

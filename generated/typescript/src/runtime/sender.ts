@@ -3,8 +3,9 @@
 import { NO_BYTES } from "./bytes.js";
 import { EncodeError, Fault } from "./errors.js";
 import type { Value } from "./numbers.js";
-import { areAmong, holds } from "./plan.js";
-import type { Frame, Group, LengthNumber, MessagePlan, NumberPart, Part, Runs } from "./plan.js";
+import { areAmong, holds, NO_PARTS } from "./plan.js";
+import type { Frame, Group, HeldParts, LengthNumber, MessagePlan } from "./plan.js";
+import type { NumberPart, Part, Runs } from "./plan.js";
 import { Reader } from "./reader.js";
 import { Writer } from "./writer.js";
 
@@ -32,6 +33,7 @@ export function numbersOf(parts: readonly Part[]): readonly NumberPart[] {
 export class Sender {
   private readonly listed = new Map<Value, Group>();
   private readonly wide: Group[] = [];
+  private readonly slots = new Map<string, number>();
   /** Bytes that complete a start. None where the same literal ends frames. */
   readonly completesStart = new Uint8Array(256);
   /** A start and an end with nothing between them, which is never a frame. */
@@ -48,6 +50,9 @@ export class Sender {
       const values = only(group.identities);
       if (values) this.listed.set(keyOf(values), group);
       else this.wide.push(group);
+    }
+    for (const part of [...frame.told, ...numbersOf(frame.parts)]) {
+      this.slots.set(part.name, part.slot);
     }
     this.startSize = frame.startWords[0]?.length ?? 0;
     const own = frame.sharesDelimiter ? [] : frame.startWords;
@@ -118,9 +123,17 @@ export class Sender {
     return this.frame.kept !== null || this.frame.isCut;
   }
 
+  /** The parts of a frame that are fields of the message, among the values of the frame. */
+  held(message: MessagePlan, values: readonly (Value | undefined)[]): HeldParts {
+    if (!message.held.length) return NO_PARTS;
+    return Object.fromEntries(
+      message.held.map((name) => [name, values[this.slots.get(name)!]!] as const),
+    );
+  }
+
   /** Bytes that are known of a payload; null where its fields take all of it. */
-  knownOf(message: MessagePlan, payload: Uint8Array): number | null {
-    return message.tellsItsEnd ? prefixSize(message, payload) : message.known;
+  private knownOf(message: MessagePlan, payload: Uint8Array, held: HeldParts): number | null {
+    return message.tellsItsEnd ? prefixSize(message, payload, held) : message.known;
   }
 
   /** What a frame has of a payload, cut or filled up to its size; null: that varies. */
@@ -137,18 +150,22 @@ export class Sender {
     return this.frame.isCut && message.tellsItsEnd && size > message.sizes.least;
   }
 
-  /** The message of a payload, and its plan. Throws a Fault. */
-  read(group: Group, payload: Uint8Array): readonly [MessagePlan, unknown] {
+  /** The message of a frame's payload and values, and its plan. Throws a Fault. */
+  read(
+    group: Group,
+    payload: Uint8Array,
+    values: readonly (Value | undefined)[],
+  ): readonly [MessagePlan, unknown] {
     const [first] = group.messages as readonly [MessagePlan];
     let known = payload;
     if (this.leaves(first, payload.length)) {
-      known = this.fitted(payload, this.knownOf(first, payload));
+      known = this.fitted(payload, this.knownOf(first, payload, this.held(first, values)));
     } else if (this.isFitted) {
       const sizes = new Set(group.messages.map((message) => message.known));
       known = this.fitted(payload, sizes.size === 1 ? first.known : null);
     }
     const fitting = group.messages.find((message) => holds(message.sizes, known.length)) ?? first;
-    return [fitting, readPayload(fitting, known)];
+    return [fitting, readPayload(fitting, known, this.held(fitting, values))];
   }
 
   /** The bytes of a message's payload that an encoder puts into a frame. */
@@ -169,14 +186,18 @@ export class Sender {
   }
 }
 
-/** The message of a payload's bytes. Throws a Fault. */
-export function readPayload(message: MessagePlan, payload: Uint8Array): unknown {
+/** The message of a payload's bytes; `held` has the parts that are fields. Throws a Fault. */
+export function readPayload(
+  message: MessagePlan,
+  payload: Uint8Array,
+  held: HeldParts = NO_PARTS,
+): unknown {
   const size = payload.length;
   if (!holds(message.sizes, size)) {
     const problem = `${message.name} does not have ${size} bytes of payload`;
     throw new Fault("size", problem, "", Math.min(size, message.sizes.greatest));
   }
-  const reader = new Reader(payload);
+  const reader = new Reader(payload, held);
   const found = message.read(reader);
   reader.finish();
   return found;
@@ -184,6 +205,15 @@ export function readPayload(message: MessagePlan, payload: Uint8Array): unknown 
 
 /** The payload of a message. Throws an EncodeError. */
 export function writePayload(message: MessagePlan, value: unknown, strict: boolean): Uint8Array {
+  return payloadOf(message, value, strict).payload;
+}
+
+/** The payload of a message, and its fields that are parts. Throws an EncodeError. */
+export function payloadOf(
+  message: MessagePlan,
+  value: unknown,
+  strict: boolean,
+): { readonly payload: Uint8Array; readonly held: HeldParts } {
   const writer = new Writer(strict);
   message.write(writer, value as never);
   const payload = writer.finish();
@@ -191,12 +221,12 @@ export function writePayload(message: MessagePlan, value: unknown, strict: boole
     const problem = `makes ${payload.length} bytes of payload, which ${message.name} can't have`;
     throw new EncodeError("", problem);
   }
-  return payload;
+  return { payload, held: writer.held };
 }
 
 /** Bytes at the start of `data` that the message takes. Throws a Fault. */
-export function prefixSize(message: MessagePlan, data: Uint8Array): number {
-  const reader = new Reader(data);
+export function prefixSize(message: MessagePlan, data: Uint8Array, held: HeldParts): number {
+  const reader = new Reader(data, held);
   message.read(reader);
   return reader.at;
 }

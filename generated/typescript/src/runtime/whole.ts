@@ -93,7 +93,12 @@ export class WholeFrames {
       const payload = found.bytes.slice(start, start + found.payload);
       return framed(sender, new Cut(size, values, payload), offset, data, at, size);
     }
-    const reader = this.reader.restart(found.bytes, start, start + found.payload);
+    const reader = this.reader.restart(
+      found.bytes,
+      start,
+      start + found.payload,
+      sender.held(only, values),
+    );
     const message = only.read(reader);
     reader.finish();
     return new Framed("message", offset, size, data, at, sender, values, NO_BYTES, message, only);

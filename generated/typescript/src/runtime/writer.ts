@@ -1,6 +1,7 @@
 /** Writes the values of a payload, one after another. Generated functions call it. */
 
 import { EncodeError, joined, spelled } from "./errors.js";
+import type { Value } from "./numbers.js";
 import { same, shown, type Step, type TextForm } from "./reader.js";
 
 const WORD = new DataView(new ArrayBuffer(8));
@@ -11,6 +12,8 @@ export class Writer {
   bytes: Uint8Array = new Uint8Array(64);
   /** Bytes so far. */
   size = 0;
+  /** Values of the fields that are parts of the frame, by the names of the parts. */
+  readonly held: Record<string, Value> = {};
   private readonly path: Step[] = [];
 
   /** With `strict`, values that the schema forbids are refused, even where they fit the wire. */
@@ -44,6 +47,11 @@ export class Writer {
     }
     this.size = at + size;
     return at;
+  }
+
+  /** Leave a number to the frame, whose part it is. */
+  part(name: string, value: Value): void {
+    this.held[name] = value;
   }
 
   // --- checks --------------------------------------------------------------------------------
