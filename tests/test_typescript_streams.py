@@ -52,6 +52,14 @@ def test_frames_of_the_vectors_are_made_and_read(file: VectorFile) -> None:
         check_events(file.schema, item.sender, [item.frame, None])
 
 
+def test_a_part_that_differs_from_the_field_is_an_error_with_its_name() -> None:
+    path = ROOT / "tests" / "framings" / "part_fields.yaml"
+    message = {"message": "answer", "code": 0x82, "text": ""}
+    assert made(path, "host", message, {"id": 0x82}) == made(path, "host", message, {})
+    answer = made(path, "host", message, {"id": 0x81})
+    assert answer == {"path": "id", "problem": "is 130, as the message says, and not 129"}
+
+
 @of_schema
 def test_samples_of_all_messages_are_encoded_alike(path: Path) -> None:
     check_samples(path, most=6)
