@@ -5,7 +5,7 @@ from __future__ import annotations
 from protogen.model.frame import Frame
 from protogen.model.messages import Message, given_parts
 from protogen.model.parts import CounterPart, NumberPart
-from protogen.model.types import Field, is_integer
+from protogen.model.types import Field, is_integer, total
 from protogen.passes.context import Context, Loc
 from protogen.passes.draft import Draft
 from protogen.passes.framing.capacity import is_delimited
@@ -81,7 +81,7 @@ def _comes_in_time(
     """True unless the fields tell by the part where they end, and it stands behind them."""
     if (
         is_delimited(frame)
-        or message.plan.sizes.fixed is not None
+        or total(message.fields).fixed is not None
         or frame.is_known_early(part.name)
     ):
         return True
