@@ -76,7 +76,7 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         """The steps that read, check and write the payload."""
         return plan_of(self.fields)
 
-    @property
+    @cached_property
     def held(self) -> tuple[Field, ...]:
         """The fields that are parts of the frame; they come first."""
         return tuple(field for field in self.fields if field.part)

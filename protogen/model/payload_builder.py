@@ -143,18 +143,9 @@ class _Builder:
         self, field: Field, type_: Type, name: str, is_last: bool, member: str = ""
     ) -> AnyStep:
         match type_:
-            case Integer() if field.part:
-                return PartStep(
-                    name=name,
-                    field=field,
-                    sizes=type_.sizes,
-                    checks=_number_checks(type_),
-                    is_refusable=_is_number_refusable(field, type_),
-                    type=type_,
-                    part=field.part,
-                )
             case Integer():
-                return IntegerStep(
+                kind = PartStep if field.part else IntegerStep
+                return kind(
                     name=name,
                     field=field,
                     sizes=type_.sizes,

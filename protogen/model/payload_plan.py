@@ -249,8 +249,10 @@ class IntegerStep(NumberStep, frozen=True, kw_only=True, eq=False, dict=True):
 class PartStep(IntegerStep, frozen=True, kw_only=True, eq=False, dict=True):
     """An integer that is a part of the frame: the payload has no bytes of it."""
 
-    part: str
-    """The part."""
+    @property
+    def part(self) -> str:
+        """The part."""
+        return self.field.part
 
 
 class BytesStep(Step, frozen=True, kw_only=True, eq=False, dict=True):

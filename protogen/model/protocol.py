@@ -101,6 +101,15 @@ class Sender(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         """The parts whose values callers give, of some message at least."""
         return (*self.given_identity, *self.frame.caller_parts)
 
+    @property
+    def looks_ahead(self) -> bool:
+        """True if what stands in front in a frame may need what stands behind it.
+
+        What is not sent follows from the identity, and a field may be a part behind the payload.
+        """
+        held = (field.part for message in self.messages for field in message.held)
+        return bool(self.frame.virtual) or not all(map(self.frame.is_known_early, held))
+
     @cached_property
     def _sent(self) -> frozenset[str]:
         return frozenset(message.name for message in self.messages)

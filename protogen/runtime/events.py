@@ -73,10 +73,11 @@ class MessageEvent(Value, Generic[MessageT_co, PartsT_co]):
     def payload(self) -> bytes:
         """The message's bytes: with zeros that a frame leaves out, without what is not known."""
         told = self.codec.told_among(self.numbers)
-        payload = payload_of(self.codec, self.raw, told)
+        payload, part = payload_of(self.codec, self.raw, told), self.codec.layout.payload
+        if not part.is_fitted:
+            return payload
         numbers = dict(zip(self.codec.layout.shown, self.numbers, strict=True))
-        known = self.message.__known_of__(payload, numbers)
-        return self.codec.layout.payload.fitted(payload, known)
+        return part.fitted(payload, self.message.__known_of__(payload, numbers))
 
     def __repr__(self) -> str:
         shown = ("offset", "raw", "sender", "parts", "message")

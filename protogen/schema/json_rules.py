@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from protogen.schema.syntax.base import INTEGER_PATTERN
+from protogen.schema.syntax.fields import OF_PAYLOADS
 
 JsonObject = dict[str, Any]
 
@@ -24,11 +25,6 @@ _NO_TEXT = f"^({INTEGER_PATTERN}|byte|char|bool|float32|float64|decimal|hexadeci
 
 _FORMS = ("fields", "switch")
 _NUMERIC = ("scale", "offset", "unit", "special", "range")
-_NOT_IN_THE_FRAME = (
-    *("count", "size", "until", "without", "packed", "digits", "fraction", "case", "empty"),
-    *("chars", "code", "padding", "when", "optional", "const", "byte_order"),
-)
-"""Keys about bytes of a payload, or about what the frame says itself."""
 _NAMED = ("values", "flags", "bits")
 _LENGTHS = ("size", "until")
 _LAST_ELEMENT: JsonObject = {"type": "object", "required": ["element"]}
@@ -123,7 +119,7 @@ _FIELD_RULES = (
     _where(
         _with("part"),
         "A field that is a part of the frame has no bytes in the payload.",
-        {**_with("type"), **_none_of((*_FORMS, *_NOT_IN_THE_FRAME))},
+        {**_with("type"), **_none_of((*_FORMS, *OF_PAYLOADS))},
     ),
     _together("A switch has cases.", {"cases": ["switch"], "switch": ["cases"]}),
     _at_most_one_of("An integer has only one of these.", _NAMED),

@@ -9,6 +9,7 @@ from functools import lru_cache
 
 from protogen.model.messages import Message
 from protogen.model.origin import About, Source
+from protogen.model.presence import Conditional, Trailing
 from protogen.model.protocol import Link, Protocol
 from protogen.model.types import Array, Field, Marked, Text
 from protogen.targets.escape import paragraphs
@@ -44,6 +45,26 @@ def of_field(item: Field, facts: list[str]) -> list[str]:
     part = f"the part {item.part} of the frame" if item.part else ""
     lead = ", ".join(fact for fact in (sentence(first).rstrip("."), *facts, part) if fact)
     return [sentence(lead + _place(item.about.source)), *rest]
+
+
+def facts_of(item: Field, nothing: str, *, is_computed: bool) -> list[str]:
+    """What a program has to know of a field's value; `nothing` is that of one that is not there."""
+    facts = [step_of(item)]
+    if item.integer is not None and not names_values(item):
+        facts.append(range_of(item))
+    facts += extent_of(item) + specials_of(item)
+    if item.const is not None:
+        facts.append("constant")
+    match item.presence:
+        case Conditional(condition=condition):
+            facts.append(f"{nothing} unless {condition.text}")
+        case Trailing():
+            facts.append(f"{nothing} if it is left out")
+        case None:
+            pass
+    if is_computed:
+        facts.append("computed where it is left out")
+    return facts
 
 
 def of_protocol(protocol: Protocol) -> list[str]:

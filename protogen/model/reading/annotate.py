@@ -69,7 +69,7 @@ def annotate(
         parts, wire = known.frame.declared, unstuff(known.plan, data)
         first = _Frame(known, parts, wire, message, told=told)
         rows = first.rows()
-        if not first.looks_ahead:
+        if not known.looks_ahead:
             return rows
         return _Frame(known, parts, wire, message, first.identity, told, first.numbers).rows()
     held = [part for part in known.frame.parts if part.name in covers]
@@ -115,16 +115,6 @@ class _Frame:
     def numbers(self) -> Mapping[str, int]:
         """The numbers that were read, by the names of their parts."""
         return self._numbers
-
-    @property
-    def looks_ahead(self) -> bool:
-        """True if something in front may have needed what stands behind it.
-
-        What is not sent follows from the identity, and a field may be a part behind the payload.
-        """
-        frame = self._sender.frame
-        held = (field.part for message in self._sender.messages for field in message.held)
-        return bool(frame.virtual) or not all(map(frame.is_known_early, held))
 
     def rows(self) -> tuple[Row, ...]:
         """Read all parts."""

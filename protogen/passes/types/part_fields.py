@@ -8,12 +8,7 @@ from protogen.model.types import Field
 from protogen.passes.context import Context, Loc
 from protogen.passes.types.declared import Effective
 from protogen.passes.types.type_names import Layout
-
-_NOT_BESIDE = (
-    "count", "size", "until", "without", "packed", "digits", "fraction", "case", "empty", "chars",
-    "code", "padding", "when", "optional", "const", "byte_order",
-)  # fmt: skip
-"""Keys about bytes of the payload, or about values that the frame has itself."""
+from protogen.schema.syntax.fields import OF_PAYLOADS
 
 BITS = Layout(8, None, packed="lsb_first")
 """The layout of a number that has no bytes of its own."""
@@ -33,7 +28,7 @@ def check_part_field(
         text = f"`{name}` is a number of the frame, which is an unsigned integer"
         context.error_at_key("PG291", loc, text, "give it the `type` that the part has")
         return False
-    for key in _NOT_BESIDE:
+    for key in OF_PAYLOADS:
         if key in item.syntax.model_fields_set and getattr(item.syntax, key) is not None:
             text = f"`{name}` is a part of the frame, of which the payload has no bytes"
             context.error_at_key("PG291", item.at(key), text, f"leave `{key}` out")

@@ -335,6 +335,12 @@ class FieldSyntax(Syntax):
     source: SourceRef | None = Field(None, description="Where the field is written down.")
 
 
+OF_PAYLOADS = (
+    "count", "size", "until", "without", "packed", "digits", "fraction", "case", "empty", "chars",
+    "code", "padding", "when", "optional", "const", "byte_order",
+)  # fmt: skip
+"""Keys about bytes of a payload, or about what the frame says of its parts: none beside `part`."""
+
 FieldRef = Annotated[
     FieldSyntax,
     BeforeValidator(ShortForm("type"), json_schema_input_type=TypeForm | FieldSyntax),

@@ -105,22 +105,18 @@ def drawings(protocol: Protocol) -> Iterator[Markup]:
 
 
 def _message_blocks(slot: Slot, message: Message) -> Iterator[Block]:
-    start = slot.start
-    if not isinstance(slot.part, PayloadPart) or start is None:
+    if not isinstance(slot.part, PayloadPart) or slot.start is None:
         yield _part(slot)
         return
-    for field in message.fields:
-        size = (field.size or 0) * slot.scale
-        if size:
-            yield Block(
-                name=field.name,
-                sizes=SizeSet.exactly(size),
-                kind=_FIELD,
-                start=start,
-                note=field.type.label,
-                runs=tuple(_field_runs(field)) if slot.scale == 1 else (),
-            )
-        start += size
+    for field, start, size in slot.field_places(message.fields):
+        yield Block(
+            name=field.name,
+            sizes=SizeSet.exactly(size),
+            kind=_FIELD,
+            start=start,
+            note=field.type.label,
+            runs=tuple(_field_runs(field)) if slot.scale == 1 else (),
+        )
 
 
 def _part(slot: Slot) -> Block:

@@ -140,7 +140,7 @@ class _Plans:
                 "length": None if plan.length is None else _length(plan.length),
                 "lengthOverWire": plan.length is not None and plan.length.over_wire,
                 "around": plan.head_size + plan.tail_size + len(plan.end_bytes),
-                "looksAhead": _looks_ahead(sender),
+                "looksAhead": sender.looks_ahead,
                 "further": {item.part.name: _length(item) for item in plan.further_lengths},
                 "isTrimmed": plan.is_trimmed,
                 "isCut": plan.is_cut,
@@ -485,12 +485,6 @@ def _bytes_of(type_: Integer | Float) -> Json:
             "sevenBit": type_.byte_bits == 7,
         }
     )
-
-
-def _looks_ahead(sender: Sender) -> bool:
-    """True if something in front may have needed what stands behind it."""
-    held = (field.part for message in sender.messages for field in message.held)
-    return bool(sender.frame.virtual) or not all(map(sender.frame.is_known_early, held))
 
 
 def _length(item: CountedLength) -> Json:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from protogen.model.messages import Message
 from protogen.model.origin import About
-from protogen.model.presence import Conditional, Trailing
 from protogen.model.protocol import Link, Protocol
 from protogen.model.types import Field
 from protogen.targets import descriptions
@@ -28,21 +27,7 @@ def named(name: str, item: About) -> list[str]:
 
 def field(item: Field, *, is_computed: bool = False) -> list[str]:
     """Docstring of a field, with its unit and bounds."""
-    facts = [descriptions.step_of(item)]
-    if item.integer is not None and not descriptions.names_values(item):
-        facts.append(descriptions.range_of(item))
-    facts += descriptions.extent_of(item) + descriptions.specials_of(item)
-    if item.const is not None:
-        facts.append("constant")
-    match item.presence:
-        case Conditional(condition=condition):
-            facts.append(f"None unless {condition.text}")
-        case Trailing():
-            facts.append("None if it is left out")
-        case None:
-            pass
-    if is_computed:
-        facts.append("computed where it is left out")
+    facts = descriptions.facts_of(item, "None", is_computed=is_computed)
     return escaped(descriptions.of_field(item, facts))
 
 

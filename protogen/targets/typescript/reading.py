@@ -23,6 +23,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.model.payload_walks import PackedNumber, packed_numbers
 from protogen.model.types import Float, Integer, Octets, Switch, Tail, Text
+from protogen.targets.typescript.choosing import choose
 from protogen.targets.typescript.formulas import condition, number
 from protogen.targets.typescript.literals import (
     boolean,
@@ -212,26 +213,7 @@ class ReadFunction:
         return value
 
     def _choose(self, step: ChooseStep, name: str, at: str, level: int) -> None:
-        scope = self._scope
-        if isinstance(step.selector, int) and (chosen := step.case(step.selector)) is not None:
-            self._set_case(chosen, name, at, level)
-            return
-        selector = scope.variable("selector")
-        scope.line(f"const {selector} = {number(step.selector, scope.look)};")
-        head = "if"
-        for case in step.cases:
-            if case.value is None:
-                continue
-            with scope.block(f"{head} ({selector} === {case.value})"):
-                self._set_case(case.step, name, at, level)
-            head = "else if"
-        with scope.block("else" if head != "if" else "if (true)"):
-            if step.otherwise is not None:
-                self._set_case(step.otherwise.step, name, at, level)
-            elif step.rest is not None:
-                self._set_case(step.rest, name, at, level)
-            else:
-                scope.line(f"throw r.noCase({selector}, {text(step.expression.text)}, {at});")
+        choose(self._scope, step, lambda case: self._set_case(case, name, at, level), "r", at)
 
     def _set_case(self, step: AnyStep | RestStep, name: str, at: str, level: int) -> None:
         if isinstance(step, RestStep):

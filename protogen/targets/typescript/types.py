@@ -8,7 +8,6 @@ from protogen.model.computed import computed
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.messages import Message
 from protogen.model.physical import line_of
-from protogen.model.presence import Conditional, Trailing
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type
 from protogen.targets import descriptions
 from protogen.targets.escape import paragraphs
@@ -120,27 +119,10 @@ def _member(field: Field, record: str, names: Names, kind: str, is_computed: boo
         member = f"{_IN}readonly {own}?: {type_} | undefined;"
     else:
         member = f"{_IN}{'readonly ' if kind or field.const is not None else ''}{own}: {type_};"
-    doc = "" if kind else comment(_facts(field, is_computed=is_computed), _IN)
-    return doc + member
-
-
-def _facts(item: Field, *, is_computed: bool) -> list[str]:
-    facts = [descriptions.step_of(item)]
-    if item.integer is not None and not descriptions.names_values(item):
-        facts.append(descriptions.range_of(item))
-    facts += descriptions.extent_of(item) + descriptions.specials_of(item)
-    if item.const is not None:
-        facts.append("constant")
-    match item.presence:
-        case Conditional(condition=condition):
-            facts.append(f"null unless {condition.text}")
-        case Trailing():
-            facts.append("null if it is left out")
-        case None:
-            pass
-    if is_computed:
-        facts.append("computed where it is left out")
-    return descriptions.of_field(item, facts)
+    if kind:
+        return member
+    facts = descriptions.facts_of(field, "null", is_computed=is_computed)
+    return comment(descriptions.of_field(field, facts), _IN) + member
 
 
 def field_type(field: Field, names: Names, kind: str = "") -> str:

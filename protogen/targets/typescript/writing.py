@@ -23,6 +23,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.model.payload_walks import PackedNumber, held_step, packed_numbers, without_constant
 from protogen.model.types import Field, Integer, Switch, Text
+from protogen.targets.typescript.choosing import choose
 from protogen.targets.typescript.formulas import condition, number
 from protogen.targets.typescript.literals import boolean, call, characters, key, text
 from protogen.targets.typescript.numbers import check_number, is_bigint, write_number
@@ -167,25 +168,7 @@ class WriteFunction:
         scope = self._scope
         value = scope.variable("value")
         scope.line(f"const {value} = {given};")
-        if isinstance(step.selector, int) and (chosen := step.case(step.selector)) is not None:
-            self._case(chosen, value, at, level)
-            return
-        selector = scope.variable("selector")
-        scope.line(f"const {selector} = {number(step.selector, scope.look)};")
-        head = "if"
-        for case in step.cases:
-            if case.value is None:
-                continue
-            with scope.block(f"{head} ({selector} === {case.value})"):
-                self._case(case.step, value, at, level)
-            head = "else if"
-        with scope.block("else" if head != "if" else "if (true)"):
-            if step.otherwise is not None:
-                self._case(step.otherwise.step, value, at, level)
-            elif step.rest is not None:
-                self._case(step.rest, value, at, level)
-            else:
-                scope.line(f"throw w.noCase({selector}, {text(step.expression.text)}, {at});")
+        choose(scope, step, lambda case: self._case(case, value, at, level), "w", at)
 
     def _case(self, step: AnyStep | RestStep, value: str, at: str, level: int) -> None:
         if isinstance(step, RestStep):

@@ -12,6 +12,7 @@ from protogen.model.identities import Identities, Identity
 from protogen.model.messages import Message
 from protogen.model.parts import PartType
 from protogen.model.sizes import SizeSet
+from protogen.targets.c.payload.held import HeldNumber, from_parts
 from protogen.targets.c.payload.messages import MessageView
 
 
@@ -33,12 +34,12 @@ class ReceivedMessage(msgspec.Struct, frozen=True):
     """True if payloads that are cut may also be shorter."""
     tells_its_end: bool = False
     """True if the check of a longer payload tells what it is cut to."""
-    parts: tuple[str, ...] = ()
-    """The members of an event's parts that the check takes, too."""
+    numbers: tuple[HeldNumber, ...] = ()
+    """The numbers of the frame that the check takes, too."""
 
     def held(self, parts: str) -> str:
-        """These as arguments behind others; `parts` leads to them."""
-        return "".join(f", {parts}{member}" for member in self.parts)
+        """These as arguments behind others; `parts` leads to an event's."""
+        return from_parts(self.numbers, parts)
 
     @property
     def fixed(self) -> bool:
@@ -111,7 +112,7 @@ class GroupView(msgspec.Struct, frozen=True):
     @property
     def is_measured_by_parts(self) -> bool:
         """True if numbers of the frame may say how long the payload is."""
-        return self.fixed is None and bool(self.messages[0].parts)
+        return self.fixed is None and bool(self.messages[0].numbers)
 
 
 def groups_of(plan: FramePlan, views: Mapping[str, MessageView]) -> tuple[GroupView, ...]:
@@ -207,7 +208,7 @@ def _message(
         cuts=own if is_cut else None,
         varies=is_cut and varies,
         tells_its_end=plan.is_cut and message.tells_its_end,
-        parts=tuple(number.shown for number in view.held),
+        numbers=view.held,
     )
 
 

@@ -284,7 +284,7 @@ class ReceivedFrame(NamedDecoder, frozen=True, dict=True):
     def held_in_content(self, item: ReceivedMessage) -> str:
         """The numbers of the frame that a check takes, out of `content`, as further arguments."""
         values = {part.member: part.value("0") for part in self.parts}
-        return "".join(f", {values[member]}" for member in item.parts)
+        return "".join(f", {values[number.shown]}" for number in item.numbers)
 
     @cached_property
     def checksums(self) -> tuple[ChecksumView, ...]:

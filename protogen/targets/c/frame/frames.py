@@ -7,7 +7,6 @@ second buffer is needed.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from functools import cached_property
 
@@ -23,13 +22,11 @@ from protogen.model.parts import (
     BitsPart,
     ChecksumPart,
     ChoicePart,
-    CounterPart,
     IdentityPart,
     LengthPart,
     LiteralPart,
     NumberPart,
     PayloadPart,
-    ValuePart,
     VirtualPart,
 )
 from protogen.targets.c.decoders.decoder import DecoderView
@@ -64,11 +61,6 @@ class Argument(msgspec.Struct, frozen=True):
     doc: str
     refused: str
     """The condition of a value out of range; empty where all of the type's are in it."""
-
-    def called(self, name: str) -> Argument:
-        """The same where it has another name."""
-        refused = re.sub(rf"\b{re.escape(self.name)}\b", lambda _: name, self.refused)
-        return replace(self, name=name, refused=refused)
 
 
 class ByteStore(msgspec.Struct, frozen=True):
@@ -125,15 +117,18 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
 
     # --- arguments --------------------------------------------------------------------------------
 
+    def _argument(self, part: NumberPart) -> Argument:
+        return argument_of(part, argument_name(part.name, self._names))
+
     @cached_property
     def identity(self) -> tuple[Argument, ...]:
         """The identity parts that are sent."""
-        return tuple(_argument(part, self._names) for part in self.plan.sent_identity)
+        return tuple(self._argument(part) for part in self.plan.sent_identity)
 
     @cached_property
     def arguments(self) -> tuple[Argument, ...]:
         """The parts that the caller gives."""
-        return tuple(_argument(part, self._names) for part in self.plan.frame.caller_parts)
+        return tuple(self._argument(part) for part in self.plan.frame.caller_parts)
 
     @cached_property
     def virtual(self) -> dict[str, Argument]:
@@ -428,9 +423,9 @@ def one_of(argument: Argument, part: IdentityPart, runs: Runs) -> Argument:
     return replace(argument, refused=f"!({is_one})" if all(conditions) else "")
 
 
-def _argument(part: IdentityPart | CounterPart | ValuePart, names: Names) -> Argument:
+def argument_of(part: NumberPart, name: str) -> Argument:
+    """The argument of a part, which C knows by this name, or as a member of the message."""
     bits = part.type.width
-    name = argument_name(part.name, names)
     conditions = []
     if part.least > 0:
         conditions.append(f"{name} < {part.least}U")

@@ -16,7 +16,7 @@ from protogen.model.parts import ChoicePart, IdentityPart, NumberPart
 from protogen.model.protocol import Sender
 from protogen.model.types import Field
 from protogen.targets.c.decoders.decoder import DecoderView
-from protogen.targets.c.frame.frames import Argument, FrameView, one_of
+from protogen.targets.c.frame.frames import Argument, FrameView, argument_of, one_of
 from protogen.targets.c.frame.virtual import value_of
 from protogen.targets.c.payload.message_names import FrameNames
 from protogen.targets.c.payload.messages import MessageView
@@ -94,9 +94,10 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
         member = self._members.get(argument.part)
         if member is None:
             return argument
-        own = argument.called(member)
+        part = self._part(argument.part)
+        own = argument_of(part, member)
         if self._field(argument.part).is_bool:
-            return replace(own, refused=_refused_bit(self._part(argument.part), member))
+            return replace(own, refused=_refused_bit(part, member))
         return replace(own, refused="") if self._is_validated(argument.part) else own
 
     def _part(self, name: str) -> NumberPart:

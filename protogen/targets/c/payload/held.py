@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import msgspec
 
 from protogen.c_language.numbers import integer_type
@@ -41,3 +43,8 @@ def held_numbers(message: Message, names: Names) -> tuple[HeldNumber, ...]:
         for step in message.plan.steps
         if isinstance(step, PartStep)
     )
+
+
+def from_parts(held: Iterable[HeldNumber], parts: str) -> str:
+    """The numbers as arguments behind others; `parts` leads to the members of an event's parts."""
+    return "".join(f", {parts}{number.shown}" for number in held)

@@ -18,7 +18,7 @@ from protogen.targets import descriptions
 from protogen.targets.c.lines import Lines, function, mentions, prototype
 from protogen.targets.c.payload.accessors import accessor
 from protogen.targets.c.payload.checking import Checker
-from protogen.targets.c.payload.held import HeldNumber, held_numbers
+from protogen.targets.c.payload.held import HeldNumber, from_parts, held_numbers
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.measuring import Measure
@@ -82,7 +82,7 @@ class MessageView(msgspec.Struct, frozen=True):
 
     def given(self, parts: str) -> str:
         """The numbers of the frame as arguments behind others; `parts` leads to an event's."""
-        return "".join(f", {parts}{number.shown}" for number in self.held)
+        return from_parts(self.held, parts)
 
 
 class MessagePrinter(msgspec.Struct, frozen=True):

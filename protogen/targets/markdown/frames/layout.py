@@ -7,7 +7,7 @@ insert bytes, positions are those of the unstuffed frame.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import accumulate
 
@@ -18,6 +18,7 @@ from protogen.model.frame import Frame
 from protogen.model.parts import LengthPart, Part, PayloadPart, UnsentPart, varying_bits
 from protogen.model.sizes import SizeSet
 from protogen.model.transparency import FULL_GROUP, Base16, Cobs
+from protogen.model.types import Field
 from protogen.targets.markdown.text.words import code, size_text, span
 
 INDICES = "ijkl"
@@ -108,6 +109,15 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
             if part.name == self.part.name:
                 continue  # All bits of a part that follows from another, which is there already.
             yield ", ".join(filter(None, (self.place, part.type.label))), "", part
+
+    def field_places(self, fields: Sequence[Field]) -> Iterator[tuple[Field, int, int]]:
+        """Each of a payload's fields that has bytes, with the first of them and their number."""
+        start = self.start or 0
+        for field in fields:
+            size = (field.size or 0) * self.scale
+            if size:
+                yield field, start, size
+            start += size
 
     @property
     def place(self) -> str:

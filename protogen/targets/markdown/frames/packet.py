@@ -67,15 +67,11 @@ def message_diagram(frame: Frame, message: Message) -> str | None:
 
 
 def _blocks(slot: Slot, message: Message) -> Iterator[Block]:
-    start = slot.start
-    if not isinstance(slot.part, PayloadPart) or start is None:
+    if not isinstance(slot.part, PayloadPart) or slot.start is None:
         yield _part_block(slot)
         return
-    for field in message.fields:
-        size = (field.size or 0) * slot.scale
-        if size:
-            yield Block(span(start, size), field.name, size)
-        start += size
+    for field, start, size in slot.field_places(message.fields):
+        yield Block(span(start, size), field.name, size)
 
 
 def _part_block(slot: Slot) -> Block:
