@@ -102,7 +102,7 @@ class FilledRun(msgspec.Struct, frozen=True):
             yield f"    if (bits >= {width}) {{"
             yield f"        bits = (uint8_t)(bits - {width});"
             yield from (f"        {line}" for line in each)
-            yield f"        value = ({kind})(at[i] >> (8U - bits));"
+            yield f"        value = ({kind})(({wide})at[i] >> (8U - bits));"
         else:
             yield "    bits = (uint8_t)(bits + 8U);"
             yield f"    if (bits < {width}) {{"
