@@ -214,14 +214,18 @@ def rename_message(data: Data, dice: Random) -> None:
     data["messages"] = dict(items)
 
 
+def _frames(data: Data) -> Any:
+    return data.get("frame", data.get("forms"))
+
+
 def change_literal(data: Data, dice: Random) -> None:
-    found = _some(mappings_with(data.get("frame"), "literal"), dice)
+    found = _some(mappings_with(_frames(data), "literal"), dice)
     if found is not None:
         found["literal"] = [dice.randrange(256)]
 
 
 def change_checksum(data: Data, dice: Random) -> None:
-    found = _some(mappings_with(data.get("frame"), "algorithm"), dice)
+    found = _some(mappings_with(_frames(data), "algorithm"), dice)
     if found is None:
         return
     if dice.random() < 0.5:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
@@ -78,9 +78,16 @@ def check_protocol(protocol: Protocol, dice: Random) -> None:
     options = COptions(events=dice.choice(["all", "all", "messages"]))
     process = Process(protocol, options)
     with imported(protocol) as module:
+        frames: dict[str, list[bytes]] = {}
         for sender in protocol.senders:
             found = [f for m in sender.messages for f in frames_of(process, module, sender, m)]
-            check_streams(process, module, sender, found, dice)
+            check_streams(process, module, sender.name, [sender], found, dice)
+            frames[sender.name] = found
+        for endpoint in protocol.sending:
+            forms = protocol.forms(endpoint)
+            if len(forms) > 1:
+                found = [frame for form in forms for frame in frames[form.name]]
+                check_streams(process, module, endpoint, forms, found, dice)
     process.close()
 
 
@@ -158,18 +165,23 @@ def check_frame(
 
 
 def check_streams(
-    process: Process, module: ModuleType, sender: Sender, frames: list[bytes], dice: Random
+    process: Process,
+    module: ModuleType,
+    name: str,
+    forms: Sequence[Sender],
+    frames: list[bytes],
+    dice: Random,
 ) -> None:
-    """Frames, damaged frames and noise give the same events."""
-    spec = module.PROTOCOL.sender(sender.name)
-    literals = b"".join(p.value for p in spec.frame.parts if isinstance(p, LiteralPart))
+    """Frames, damaged frames and noise give the same events; `name` sends in these forms."""
+    parts = [part for form in forms for part in module.PROTOCOL.sender(form.name).frame.parts]
+    literals = b"".join(part.value for part in parts if isinstance(part, LiteralPart))
     marks = bytes(sorted({0, 1, 0xFF, 0x1B, *literals, *(frame[0] for frame in frames)}))
     material = Material(tuple(frame for frame in frames if len(frame) > 1), marks)
     for _ in range(STREAMS):
         data = bytes(dice.choice(marks) for _ in range(40))
         if material.frames:
             data = stream_of(material, dice, PIECES).data
-        check_events(process, module, sender.name, steps_of(data, dice))
+        check_events(process, module, name, steps_of(data, dice))
 
 
 # --- schemas that were drawn once, and are easily missed ------------------------------------------
@@ -231,6 +243,57 @@ frame:
       low: {bits: 0..3, algorithm: xor-8, covers: length..sum, takes: 0..3}
 messages:
   text: {from: station, fields: {text: {type: ascii, size: {fill: true, max: 40}}}}
+"""
+
+NOTHING_BUT_WHETHER_CONSTANTS_ARE_THERE = """
+frame:
+  length: {type: uint8, counts: payload}
+  payload: {}
+  sum: {type: uint8, algorithm: sum-8, covers: payload}
+messages:
+  mark: {from: station, fields: {tail: {optional: true, fields: {one: {type: uint8, const: 27}}}}}
+"""
+THE_SAME_IN_A_CASE = """
+frame:
+  length: {type: uint8, counts: payload}
+  payload: {}
+  sum: {type: uint8, algorithm: sum-8, covers: payload}
+types:
+  one: {fields: {one: {type: uint8, const: 27}}}
+messages:
+  mark:
+    from: station
+    fields:
+      kind: {type: uint8, range: [0, 1]}
+      value:
+        switch: kind
+        cases: {0: {fields: {tail: {type: one, optional: true}}}, 1: {fields: {}}}
+"""
+CHARACTERS_OF_ONE_SIZE_BETWEEN_SEPARATORS = """
+frame:
+  length: {type: uint8, counts: payload}
+  payload: {}
+  sum: {type: uint8, algorithm: sum-8, covers: payload}
+messages:
+  sides:
+    from: station
+    separator: ","
+    fields:
+      name: {type: ascii, size: {max: 3}}
+      sides: {type: char, values: {left: L, right: R}, closed: true, count: 2}
+      digits: {type: hexadecimal, count: {fill: true, max: 3}}
+"""
+VIRTUAL_AND_NOTHING_STUFFED_OVER_WIRE = """
+frame:
+  start: {literal: 0x55, unprotected: accepted}
+  sum: {type: uint8, algorithm: sum-8, covers: [extra, end], over: wire}
+  id: {type: uint8, id: true}
+  extra: {type: uint8, virtual: true}
+  payload: {}
+  end: {literal: 0xC0}
+transparency: slip
+messages:
+  ping: {id: 1, from: station, parts: {extra: 50}, fields: {text: {type: ascii, size: 2}}}
 """
 
 
@@ -295,6 +358,46 @@ def test_bits_are_checked_behind_a_checksum_that_may_be_absent(tmp_path: Path) -
     process.close()
     # Nothing but the length; 1 ^ 41 ^ 41.
     assert made == [bytes.fromhex("00 A0"), bytes.fromhex("01 41 41 A1")]
+
+
+@pytest.mark.parametrize(
+    ("text", "values", "wire"),
+    [
+        (NOTHING_BUT_WHETHER_CONSTANTS_ARE_THERE, {"tail": None}, b"\0\0"),
+        (NOTHING_BUT_WHETHER_CONSTANTS_ARE_THERE, {"tail": {"one": 27}}, b"\x01\x1b\x1b"),
+        (THE_SAME_IN_A_CASE, {"kind": 0, "value": {"tail": None}}, b"\x01\0\0"),
+        (THE_SAME_IN_A_CASE, {"kind": 0, "value": {"tail": {"one": 27}}}, b"\x02\0\x1b\x1b"),
+        (
+            CHARACTERS_OF_ONE_SIZE_BETWEEN_SEPARATORS,
+            {"name": "a", "sides": [82, 76], "digits": [1, 10]},
+            b"\x09a,R,L,1,A\x21",  # 61 + 52 + 4C + 31 + 41 + 4 * 2C = 221
+        ),
+    ],
+)
+def test_a_value_is_read_as_it_was_written(
+    text: str, values: Values, wire: bytes, tmp_path: Path
+) -> None:
+    """By the reader of payloads as well as by that of frames, and in C."""
+    protocol = protocol_of(text, tmp_path)
+    process = Process(protocol, COptions())
+    sender = protocol.sender("station")
+    (message,) = sender.messages
+    with imported(protocol) as module:
+        payload = wire[1:-1]
+        assert module.MESSAGES[message.name].from_payload(payload).to_dict() == values
+        check_payload(process, module, message, payload, {})
+        assert check_frame(process, module, sender, message, values, {}) == wire
+    process.close()
+
+
+def test_a_sum_over_the_wire_may_cover_what_is_not_sent_and_an_end_alone(tmp_path: Path) -> None:
+    protocol = protocol_of(VIRTUAL_AND_NOTHING_STUFFED_OVER_WIRE, tmp_path)
+    process = Process(protocol, COptions())
+    sender = protocol.sender("station")
+    with imported(protocol) as module:
+        frame = check_frame(process, module, sender, sender.messages[0], {"text": "ab"}, {})
+    process.close()
+    assert frame == bytes.fromhex("55 F2 01 61 62 C0")  # 32 + C0 = F2
 
 
 @pytest.mark.parametrize("portion", [1, 3, 40])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from types import ModuleType
 from typing import Any
@@ -14,7 +14,10 @@ import pytest
 from hypothesis import HealthCheck, Phase, event, given, seed, settings
 from hypothesis import strategies as st
 from schema_fuzzing import Schema, codec, schemas
+from schema_fuzzing.account import Account
 from schema_fuzzing.edits import edited, mangled
+from schema_fuzzing.examples import MORE, Sent, with_examples
+from schema_fuzzing.held import held_parts
 from schema_fuzzing.shapes import COMMON, PAIRS
 from schema_fuzzing.streams import lost, portions, streams
 from schema_fuzzing.text import to_styled_yaml, to_yaml
@@ -22,12 +25,15 @@ from schema_fuzzing.values import parts_of, values_of
 
 from protogen.compiler import Compilation, compile_file
 from protogen.copying import replace
+from protogen.examples import verify_examples
 from protogen.live.codec import module_of
 from protogen.model.frame_plan import FramePlan
 from protogen.model.messages import Message
+from protogen.model.payload_plan import ChooseStep, every_step
 from protogen.model.protocol import Protocol, Sender
 from protogen.problems import Problems, Span, render_text, to_github, to_json
 from protogen.runtime.api import DecodeError
+from protogen.runtime.attributes import arguments
 from protogen.schema.text.document import parse_document
 from protogen.schema.text.nodes import to_data
 
@@ -41,6 +47,7 @@ SCHEMAS = 300
 EDITED = 50
 """Schemas that are spoilt, each of them several times."""
 STYLED = 25
+EXAMPLED = 25
 EDITS_OF_EACH = 3
 FIXED_SEEDS = 100 if THOROUGH else 24
 DRAWS_OF_A_SEED = 30
@@ -57,6 +64,9 @@ def examples(count: int) -> settings:
         phases=[phase for phase in Phase if phase is not Phase.explain],
     )
 
+
+ALONGSIDE = 0.4
+"""Share of all keys that stand in the same schema as one of them, in some draw."""
 
 MEANT_OTHERWISE = {"PG124", "PG126"}
 """Codes of warnings about valid schemas: leading zeros, and short names of checksums."""
@@ -145,15 +155,27 @@ def drawn_from(number: int) -> list[Schema]:
 
 
 @pytest.mark.usefixtures("fixed_draws")
-def test_every_shape_is_drawn() -> None:
-    """Whether drawn schemas are valid is asked where they are tried, of each."""
-    drawn = [schema for number in range(FIXED_SEEDS) for schema in drawn_from(number)]
-    assert len(drawn) >= 0.8 * FIXED_SEEDS * DRAWS_OF_A_SEED
-    found = Counter(shape for schema in drawn for shape in set(schema.shapes))
-    for shape, count in sorted(found.items()):
-        sys.stdout.write(f"{count:6} {shape}\n")
+def test_every_shape_and_every_key_of_the_language_is_drawn() -> None:
+    """Whether drawn schemas are valid is asked where they are tried, of each.
+
+    The keys, the forms of their values and the words that may stand there are those of the JSON
+    Schema. What is rare is drawn from a few seeds more.
+    """
+    shapes, account = Counter[str](), Account()
     expected = {*COMMON, *PAIRS} if THOROUGH else set(COMMON)
-    assert not sorted(expected - set(found))
+    for number in range(4 * FIXED_SEEDS):
+        drawn = drawn_from(number)
+        assert len(drawn) >= DRAWS_OF_A_SEED // 2
+        shapes.update(shape for schema in drawn for shape in set(schema.shapes))
+        for schema in drawn:
+            account.add(schema.data)
+        if number + 1 >= FIXED_SEEDS and expected <= shapes.keys() and not account.missing:
+            break
+    for name, count in sorted((shapes + account.counted).items()):
+        sys.stdout.write(f"{count:6} {name}\n")
+    assert not sorted(expected - shapes.keys())
+    assert not account.missing, "draw them in tests/schema_fuzzing"
+    assert not account.lonely(ALONGSIDE), "draw them together with other keys"
 
 
 # --- (b) their codecs ---------------------------------------------------------------------------
@@ -183,6 +205,11 @@ def test_schema_compiles_and_its_codec_works(
             if frames[sender.name]:
                 _check_stream(data, module, sender, frames[sender.name])
             _check_any_bytes(data, module, sender)
+        for endpoint in protocol.sending:
+            if len(protocol.forms(endpoint)) > 1:
+                _check_mixture(data, module, endpoint, protocol.forms(endpoint), frames)
+        if len(protocol.sending) > 1 and _are_found_alike(module):
+            _check_mixture(data, module, None, protocol.senders, frames)
 
 
 def _check_values(
@@ -232,7 +259,7 @@ def _check_stream(
     sent = data.draw(st.lists(st.sampled_from(frames), min_size=1, max_size=4))
     stream = data.draw(streams(sent))
     events = codec.events_of(module, sender, [stream.data])
-    codec.check_lossless(module, sender, stream.data, events)
+    codec.check_lossless(module, [sender], stream.data, events)
     reference = codec.events_of(module, sender, [stream.data], "construct")
     assert _shown(reference) == _shown(events)
     single = [bytes((byte,)) for byte in stream.data]
@@ -244,6 +271,39 @@ def _check_stream(
     assert not lost(sender.framing, stream, events, is_idle=is_idle), events
 
 
+def _are_found_alike(module: ModuleType) -> bool:
+    """True if one decoder finds the frames of all endpoints."""
+    try:
+        module.Decoder()
+    except ValueError:
+        return False
+    return True
+
+
+def _check_mixture(
+    data: st.DataObject,
+    module: ModuleType,
+    name: str | None,
+    senders: Sequence[Sender],
+    frames: dict[str, list[bytes]],
+) -> None:
+    """Frames of several forms, or of several endpoints, for one decoder of them all."""
+    event("frames of several forms" if name else "frames of several endpoints")
+    found = [frame for sender in senders for frame in frames[sender.name]]
+    if not found:
+        return
+    sent = data.draw(st.lists(st.sampled_from(found), min_size=1, max_size=6))
+    stream = data.draw(streams(sent)).data
+    most = codec.most_kept(senders)
+    events = codec.events_of_several(module, name, [stream], most)
+    codec.check_lossless(module, senders, stream, events)
+    reference = codec.events_of_several(module, name, [stream], most, "construct")
+    assert _shown(reference) == _shown(events)
+    single = [bytes((byte,)) for byte in stream]
+    for cut in (data.draw(portions(stream)), single):
+        assert _shown(codec.events_of_several(module, name, cut, most)) == _shown(events)
+
+
 def _shown(events: list[Any]) -> list[str]:
     """The events as texts, in which one NaN is like another."""
     return [repr(event) for event in events]
@@ -252,11 +312,62 @@ def _shown(events: list[Any]) -> list[str]:
 def _check_any_bytes(data: st.DataObject, module: ModuleType, sender: Sender) -> None:
     junk = data.draw(st.binary(max_size=50))
     events = codec.events_of(module, sender, [junk])
-    codec.check_lossless(module, sender, junk, events)
+    codec.check_lossless(module, [sender], junk, events)
     assert _shown(codec.events_of(module, sender, [junk], "construct")) == _shown(events)
     cut = data.draw(portions(junk))
     assert _shown(codec.events_of(module, sender, cut)) == _shown(events)
     _check_exact(module, sender, junk)
+
+
+@examples(EXAMPLED)
+@given(schemas(), st.data())
+def test_examples_that_the_reference_makes_hold(
+    compile_text: Compile, schema: Schema, data: st.DataObject
+) -> None:
+    protocol = valid(compile_text, schema)
+    sent: list[Sent] = []
+    with imported(protocol) as module:
+        for message in protocol.messages:
+            frames_of = [sender.frame for sender in protocol.senders_of(message)]
+            values = data.draw(values_of(message, frames_of))
+            made = codec.check_payload(module, message, values)
+            for sender in codec.senders_of(protocol, message) if made is not None else ():
+                parts = data.draw(parts_of(sender.frame, message))
+                frame = codec.encode(module, sender, message, made, parts)
+                if frame is not None and not _keeps_rest(message):
+                    shown = codec.shown_parts(sender, message, made, parts)
+                    told = sender.plan.told_before(message, shown, len(frame))
+                    found = _events_of_endpoint(module, sender, told, frame)
+                    # Of a form above it, which wins, the bytes may be other frames.
+                    if len(found) != 1 or found[0].form != sender.form:
+                        continue
+                    events = _events_of_endpoint(module, sender, told, frame + MORE)
+                    wrong = next((item.reason for item in events if item.kind == "invalid"), "")
+                    if sender.frame.told_length is not None:
+                        wrong = ""  # It would be told another one for other bytes.
+                    payload = made.to_payload()
+                    stated = parts | held_parts(message, values)
+                    sent.append(Sent(sender, message, values, stated, frame, payload, wrong))
+    exampled = data.draw(with_examples(schema.data, sent))
+    again = valid(compile_text, Schema(exampled, schema.shapes))
+    problems = Problems()
+    verify_examples(again, problems)
+    assert not [f"{item.code} {item.message}" for item in problems], to_yaml(exampled)
+
+
+def _keeps_rest(message: Message) -> bool:
+    """True if there may be bytes of a value without a case, which examples write otherwise."""
+    steps = every_step(message.plan.steps)
+    return any(isinstance(step, ChooseStep) and step.rest is not None for step in steps)
+
+
+def _events_of_endpoint(
+    module: ModuleType, sender: Sender, told: dict[str, Any], data: bytes
+) -> list[Any]:
+    """The events of a decoder of all forms of an endpoint's frames."""
+    decoder = module.Decoder(sender.endpoint)
+    decoder.tell(**arguments(told))
+    return [*decoder.feed(data), *decoder.flush()]
 
 
 # --- (c) what is wrong --------------------------------------------------------------------------

@@ -32,7 +32,8 @@ def payload_alphabet(messages: Iterable[Any], types: Types, *, delimited: bool) 
     if not is_text:
         return EVERY
     between = {_code(item["byte"] if isinstance(item, dict) else item) for item in separators}
-    return frozenset(between).union(*(_of_fields(item, types, last=delimited) for item in fields))
+    found = (_of_fields(item, types, last=delimited) for item in fields)
+    return frozenset(between).union(*found) or EVERY
 
 
 def _of_payload(fields: Mapping[str, Any]) -> dict[str, Any]:
@@ -77,6 +78,8 @@ def _of_fields(fields: Mapping[str, Any], types: Types, *, last: bool) -> frozen
 
 
 def _of_field(item: dict[str, Any], types: Types, *, last: bool) -> frozenset[int]:
+    if "size" in item and "count" not in item and ("switch" in item or "fields" in item):
+        last = True  # Of a region, whose end is known.
     if "switch" in item:
         if last and ELSE not in item["cases"]:
             return EVERY  # The bytes of a value without a case.
@@ -104,7 +107,7 @@ def _of_value(item: dict[str, Any]) -> frozenset[int]:
         shift, add = form.get("shift", 0), form.get("add", 0)
         return frozenset((code << shift) + add for code in range(least, 2 ** form["bits"]))
     if "code" in item and item["type"] != "ascii":
-        first = item["code"]["add"]
+        first = _code(item["code"]["add"])
         return frozenset(range(first, first + 2 ** item["code"]["bits"]))
     if "digits" in item:
         return _DIGITS[item["digits"]]

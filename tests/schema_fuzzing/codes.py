@@ -17,7 +17,7 @@ from schema_fuzzing import forms
 BYTE = st.integers(0, 255)
 KINDS = (
     "none", "none", "none", "substitute", "substitute", "insertion", "insertion", "escape-invert",
-    "escape-none", "escape-xor", "base16", "cobs", "slip", "hdlc",
+    "escape-none", "escape-xor", "base16", "cobs", "slip", "slip", "hdlc", "hdlc",
 )  # fmt: skip
 
 
@@ -59,7 +59,7 @@ def codes(draw: st.DrawFn) -> Code | None:
             return Code(kind, {"encoding": "base16-upper"}, words, tuple(b"\nbeGZ:"))
         case "cobs":
             return Code(kind, {"encoding": "cobs"}, None, (0,))
-    return _preset(kind, draw(st.sampled_from([kind, {"preset": kind}])))
+    return _preset(kind, draw(st.sampled_from([kind, kind, {"preset": kind}])))
 
 
 def _preset(kind: str, data: Any) -> Code:
@@ -81,7 +81,7 @@ def _escape(draw: st.DrawFn, transform: str) -> Code:
         "escape": {
             "byte": draw(forms.raw_number(byte)),
             "of": [draw(forms.raw_number(member)) for member in of],
-            "transform": {"xor": mask} if transform == "xor" else transform,
+            "transform": {"xor": draw(forms.raw_number(mask))} if transform == "xor" else transform,
         }
     }
     clean = tuple(member for member in of if member != byte) or (byte,)

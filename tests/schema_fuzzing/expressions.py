@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from hypothesis import strategies as st
 
-from schema_fuzzing.setting import Selector, Setting, Size
+from schema_fuzzing.setting import Named, Selector, Setting, Size
 
 _WIDEST = 1 << 40
 """Greater numbers are left alone: what is worked out of them could have more than 62 bits."""
@@ -50,23 +50,38 @@ def _listed(draw: st.DrawFn, name: str, size: Size) -> str:
     values = st.integers(size.least, size.greatest)
     few = draw(st.lists(values, min_size=1, max_size=3, unique=True))
     word = draw(st.sampled_from(["in", "not in"]))
-    return f"{name} {word} [{', '.join(map(str, few))}]"
+    texts = [draw(_number(value)) for value in few]
+    if isinstance(size, Named) and size.names and word == "in" and draw(st.booleans()):
+        texts.append(draw(st.sampled_from(size.names)))
+    return f"{name} {word} [{', '.join(dict.fromkeys(texts))}]"
+
+
+def _number(value: int) -> st.SearchStrategy[str]:
+    """A number as it may be written: as a character, too."""
+    if value < 0:
+        return st.just(str(value))
+    character = [f"'{chr(value)}'"] if 0x30 <= value <= 0x7A and value != 0x5C else []
+    return st.sampled_from([str(value), str(value), f"0x{value:X}", *character])
 
 
 @st.composite
 def _compared(draw: st.DrawFn, name: str, size: Size, numbers: Mapping[str, Size]) -> str:
     """A comparison with a number that it may come to, or of what is worked out of it."""
-    kind = draw(st.sampled_from(["number", "number", "remainder", "sum"]))
+    if isinstance(size, Named) and size.names and draw(st.booleans()):
+        return f"{name} {draw(st.sampled_from(['==', '!=']))} {draw(st.sampled_from(size.names))}"
+    kind = draw(st.sampled_from(["number", "number", "remainder", "sum", "product"]))
     if kind == "remainder" and size.greatest - size.least > 2:
         return f"{name} % 3 {draw(st.sampled_from(['==', '!=', '<']))} 1"
     if kind == "sum":
         other = draw(st.sampled_from(sorted(numbers)))
         whole = size + numbers[other]
         return f"{name} + {other} > {draw(st.integers(whole.least, whole.greatest - 1))}"
+    if kind == "product" and size.least >= 0 and size.greatest < 1 << 20:
+        return f"{name} * 3 - 1 >= {draw(st.integers(size.least, size.greatest - 1)) * 3}"
     operator = draw(st.sampled_from(["==", "!=", "<", "<=", ">", ">="]))
     low = size.least + (operator in ("<", ">="))
     high = size.greatest - (operator in (">", "<="))
-    return f"{name} {operator} {draw(st.integers(low, high))}"
+    return f"{name} {operator} {draw(_number(draw(st.integers(low, high))))}"
 
 
 # --- numbers ------------------------------------------------------------------------------------

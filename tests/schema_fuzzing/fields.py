@@ -65,6 +65,12 @@ class _Scope:
             self._add_switch(here)
         elif kind == "region":
             self._add_region(here)
+        elif kind == "fill in front":
+            self._add_fill_in_front(here)
+            return False
+        elif kind == "optional":
+            self._add_optional(here, here.budget)
+            return False
         else:
             self._put(self._draw(_ITEMS[kind](here)))
         return not self._last
@@ -75,11 +81,15 @@ class _Scope:
         setting = self._setting
         return replace(setting, last=setting.last and self._last, budget=setting.budget - kept)
 
-    def _put(self, built: Built) -> str:
+    def _put(self, built: Built, *, always: bool = False) -> str:
         """Add a field that was drawn, and note what it can count or choose."""
-        built = self._sometimes(built)
+        built = built if always else self._sometimes(built)
         name = self._draw(fresh(FIELDS, self._fields))
-        self._fields[name] = built.data
+        data = built.data
+        if self._draw(forms.one_in(30)):
+            data = {**({"type": data} if isinstance(data, str) else data)}
+            data["renamed_from"] = f"former_{name}"
+        self._fields[name] = data
         self._size += built.size
         self._fills = built.fills
         behind = _hiding(self._setting.behind(built.size), name)
@@ -155,9 +165,83 @@ class _Scope:
         most = min((1 << bits) - 1, room // max(1, element.size.least))
         self._put(self._draw(_extended(element, name, Size(0, most))))
 
+    # -- what fills, and is not the last -----------------------------------------------------
+
+    def _add_fill_in_front(self, here: Setting) -> None:
+        """An array of all that is left but for the fields behind, which have one size each."""
+        element = self._draw(_elements(replace(here, last=False, budget=here.budget - 2)))
+        size = element.size
+        if not size.fixed or size.least == 0 or element.data.get("type") in ("ascii", "bytes"):
+            element = Built({"type": f"uint{2 * here.byte_bits}", "byte_order": "big"}, Size(2, 2))
+            size = element.size
+        left = here.budget - size.least
+        tail = [self._draw(number(replace(here, last=False, budget=min(left, 8))))]
+        left -= tail[0].size.greatest
+        if left > 0 and self._draw(st.booleans()):
+            tail.append(self._draw(number(replace(here, last=False, budget=left))))
+        behind = sum((built.size for built in tail), NOTHING)
+        most = (here.budget - behind.greatest) // size.least
+        most = self._draw(st.integers(1, min(_USUAL_BYTES, most)))
+        extent = {"fill": True, "max": most}
+        built = self._draw(_extended(element, extent, Size(0, most)))
+        self._put(built, always=True)
+        # Nothing would tell as many optional bytes from one more element.
+        is_optional = behind.greatest < size.least and self._draw(st.booleans())
+        for field in tail:
+            if is_optional:
+                data = {**_without_constants(field.data), "optional": True}
+                self._put(Built(data, field.size | NOTHING), always=True)
+            else:
+                self._put(field, always=True)
+        self._fills = True
+
+    def _add_optional(self, here: Setting, budget: int) -> None:
+        """Fields at the end that may be left out."""
+        for _ in range(self._draw(st.integers(1, 3))):
+            built = self._draw(optional(replace(here, budget=min(budget, 4))))
+            self._put(built, always=True)
+            budget -= built.size.greatest
+            if budget < 1 or built.fills:
+                break
+        self._fills = True
+
     # -- regions -----------------------------------------------------------------------------
 
     def _add_region(self, here: Setting) -> None:
+        """Something in a region of so many bytes."""
+        kind = self._draw(st.sampled_from(["closed", "struct", "switch", "array"]))
+        if kind == "closed":
+            self._add_closed_region(here)
+            return
+        # What tells the size is there first: it may hide a name of a struct around.
+        told = self._put(Built({"type": "uint7"}, Size(1, 1)), always=True)
+        here = self._here()
+        inner = replace(
+            here.inside(last=False),
+            budget=min(here.budget - 1, _USUAL_BYTES),
+            last=True,
+            delimited=True,
+            room=None,
+            exact=False,
+        )
+        if kind == "switch" and inner.selectors:
+            built = self._draw(_switch(inner, self._draw(st.sampled_from(inner.selectors))))
+        elif kind == "array" and inner.budget > 4:
+            built = self._draw(_varying(inner))
+        else:
+            built = self._draw(structs(inner, greatest=3))
+            built = replace(built, data={"fields": built.data})
+        if built.size.greatest:
+            self._put(self._in_region(built, told))
+
+    def _in_region(self, built: Built, told: str) -> Built:
+        """Something in a region whose size an earlier number tells, or is worked out of that."""
+        size, more = built.size, self._draw(st.sampled_from([0, 0, 1, 3]))
+        bounds = [size.least + more, size.greatest + more]
+        self._fields[told] = {"type": "uint7", "range": bounds}
+        return Built({**built.data, "size": f"{told} - {more}" if more else told}, size)
+
+    def _add_closed_region(self, here: Setting) -> None:
         """A struct in a region of so many bytes, told by a number that tells nothing else."""
         inner = replace(here.inside(last=False), budget=min(here.budget - 2, _USUAL_BYTES))
         built = self._draw(structs(inner, greatest=3))
@@ -215,12 +299,14 @@ def _kinds(setting: Setting) -> list[str]:
     if setting.depth < GREATEST_DEPTH:
         kinds += ["struct", "struct", "region"] if setting.budget > 2 else ["struct", "struct"]
     if setting.budget > 1:
-        kinds += ["until", "until"]
+        kinds += ["until"] * (6 if setting.may_fill and setting.exact and setting.room else 2)
     if can_pack(setting):
         kinds += ["packed array", "packed struct"]
     if setting.may_fill:
         kinds += ["fill"] * 8
         kinds += ["packed fill"] * 4 if can_pack(setting) else []
+        if setting.budget > 4:
+            kinds += ["fill in front"] * 2 + ["optional"] * 2
         if setting.byte_bits == 8:
             kinds += ["written"] * 3
     if any(_fits(declared, setting) for declared in setting.types):
@@ -256,6 +342,19 @@ def _elements(draw: st.DrawFn, setting: Setting) -> Built:
     built = draw(number(setting))
     data = _without_constants(built.data)
     return replace(built, data=data, counts=None, keys=(), operands={})
+
+
+@st.composite
+def _varying(draw: st.DrawFn, setting: Setting) -> Built:
+    """Structs of different sizes, as many as a region holds."""
+    inner = setting.inside(last=False)
+    inner = replace(inner, last=False, budget=min(setting.budget - 3, setting.budget // 2))
+    built = draw(structs(inner, greatest=2))
+    fields = {**built.data, "varying": {"type": "bytes", "until": {"byte": 0, "max": 2}}}
+    each = built.size + Size(1, 3)
+    most = setting.budget // each.greatest
+    count = draw(st.sampled_from(["fill", {"fill": True, "max": most}]))
+    return Built({"fields": fields, "count": count}, Size(0, each.greatest * most))
 
 
 @st.composite
@@ -337,7 +436,7 @@ _NUMBERS = {
 # --- items --------------------------------------------------------------------------------------
 
 
-_PADDED: list[dict[str, Any]] = [{"padding": 0x20}, {"padding": 0x5A}]
+_PADDED: list[dict[str, Any]] = [{"padding": " "}, {"padding": 0x5A}]
 _CODED: list[dict[str, Any]] = [
     {"code": {"bits": 7, "shift": 1}, "padding": 0x20},
     {"code": {"bits": 7, "shift": 1, "add": 1}},
@@ -359,7 +458,7 @@ def _string(draw: st.DrawFn, setting: Setting) -> Built:
     kind, form = draw(st.sampled_from(_STRINGS[setting.byte_bits]))
     data: dict[str, Any] = {"type": kind, "size": size, **form, **draw(forms.about())}
     key = draw(st.sampled_from(["", "", "", "const", "default"]))
-    padding = chr(form["padding"]) if "padding" in form else ""
+    padding = forms.character(form["padding"]) if "padding" in form else ""
     if key and kind == "ascii":
         data[key] = draw(st.text("aZ09 _-\"'\\{}", max_size=size)).rstrip(padding)
     elif key:
@@ -378,11 +477,13 @@ def _until(draw: st.DrawFn, setting: Setting) -> Built:
     data: dict[str, Any] = {"type": kind, **draw(forms.about())}
     if setting.may_fill and setting.exact and (setting.room or 0) > 2 and draw(st.booleans()):
         least, most = 0, (setting.room or 0) - 1
-        data["until"] = draw(st.sampled_from([end, {"byte": end}]))
+        byte = draw(forms.raw_number(end))
+        data["until"] = draw(st.sampled_from([byte, {"byte": byte}]))
     else:
         most = draw(st.integers(1, min(_USUAL_BYTES, setting.budget - 1)))
         least = draw(st.integers(0, most - 1)) if draw(forms.one_in(3)) else 0
-        data["until"] = {"byte": end, "max": most, **({"min": least} if least else {})}
+        byte = draw(forms.raw_number(end))
+        data["until"] = {"byte": byte, "max": most, **({"min": least} if least else {})}
     if draw(forms.one_in(5)):
         byte = next(byte for byte in b"aB" if byte != end)
         content = bytes([byte]) * draw(st.integers(least, min(most, least + 4)))
@@ -521,13 +622,18 @@ def _switch(draw: st.DrawFn, setting: Setting, selector: Selector) -> Built:
 @st.composite
 def _case(draw: st.DrawFn, setting: Setting) -> Built:
     """Case of the switch for one value: fields, none at all, or one plain field."""
-    shape = draw(st.sampled_from(["fields", "none", "plain", "declared"]))
+    shape = draw(st.sampled_from(["fields", "none", "plain", "declared", "any", "any"]))
     fitting = [item for item in setting.types if _fits(item, setting)]
     if shape == "declared" and fitting:
         return draw(_use(setting, draw(st.sampled_from(fitting))))
     if shape == "plain" and setting.budget >= 1:
         built = draw(number(setting))
         return Built(built.data, built.size)
+    if shape == "any" and setting.budget >= 1:
+        kinds = [kind for kind in _kinds(setting) if kind in _ITEMS]
+        built = draw(_ITEMS[draw(st.sampled_from(kinds))](setting))
+        data = built.data if isinstance(built.data, str) else dict(built.data)
+        return Built(data, built.size, fills=built.fills)
     if shape == "fields" and setting.depth <= GREATEST_DEPTH:
         built = draw(structs(setting, greatest=3))
         return replace(built, data={"fields": built.data})

@@ -34,15 +34,34 @@ def one_in(many: int) -> st.SearchStrategy[bool]:
     return st.sampled_from((False,) * (many - 1) + (True,))
 
 
+_SOURCES: tuple[Any, ...] = (
+    "61-65",
+    63,
+    {"lines": "7", "note": "a note"},
+    {"document": "Manual", "revision": 1.10, "section": "4.2", "license": "MIT"},
+    {"url": "https://example.org/manual?page=7#top"},
+)
+
+
+@st.composite
+def some_about(draw: st.DrawFn) -> dict[str, Any]:
+    """Texts that people read, one at least."""
+    found: dict[str, Any] = {"doc": draw(a_text)}
+    if draw(st.booleans()):
+        found["source"] = draw(st.sampled_from(_SOURCES))
+    return found
+
+
+@st.composite
+def a_source(draw: st.DrawFn) -> dict[str, Any]:
+    """Where it is written down, sometimes."""
+    return {"source": draw(st.sampled_from(_SOURCES))} if draw(one_in(4)) else {}
+
+
 @st.composite
 def about(draw: st.DrawFn) -> dict[str, Any]:
     """Texts that people read, mostly none."""
-    if not draw(one_in(6)):
-        return {}
-    found: dict[str, Any] = {"doc": draw(a_text)}
-    if draw(st.booleans()):
-        found["source"] = draw(st.sampled_from(["61-65", 63, {"lines": "7", "note": "a note"}]))
-    return found
+    return draw(some_about()) if draw(one_in(6)) else {}
 
 
 def octets(data: bytes) -> st.SearchStrategy[Any]:
@@ -54,11 +73,24 @@ def octets(data: bytes) -> st.SearchStrategy[Any]:
     return st.sampled_from(forms)
 
 
+def bytes_of_octets(written: Any) -> bytes:
+    """The byte string of one of its written forms."""
+    if isinstance(written, dict):
+        text = written.get("hex")
+        return bytes.fromhex(text) if text is not None else str(written["text"]).encode("latin-1")
+    return bytes([written] if isinstance(written, int) else written)
+
+
 def raw_number(value: int, *, character: bool = False) -> st.SearchStrategy[Any]:
     """A raw value as a number, or as the character that has this code."""
     if not (character or 0x30 <= value <= 0x7A) or not 0 <= value < 256:
         return st.just(value)
     return st.sampled_from([value, chr(value)])
+
+
+def character(value: int | str) -> str:
+    """The character of a byte, however it is written."""
+    return value if isinstance(value, str) else chr(value)
 
 
 def run(names: Sequence[str], every: Sequence[str]) -> st.SearchStrategy[Any]:

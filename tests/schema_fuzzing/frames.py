@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from hypothesis import strategies as st
@@ -47,6 +47,8 @@ class FramePlan:
     """A payload that surely fits that, however it is stuffed."""
     silence: PartPlan | None = None
     """What ends the frame, where only a silence does."""
+    stuffing: Mapping[str, Any] = field(default_factory=dict)
+    """What is said of the transparency: what it covers, and texts."""
 
     @property
     def surely(self) -> int | None:
@@ -174,15 +176,13 @@ class FramePlan:
         """The transparency in the schema language, or None."""
         if self.code is None or self.region is None:
             return None
-        if not self.region.written and not self.lenient:
+        if not (self.lenient or self.stuffing):
             return self.code.data
         data = self.code.data
         full = {"preset": data} if isinstance(data, str) else dict(data)
         if self.lenient:
             full["lenient"] = True
-        if self.region.written:
-            first, last = self.parts[self.region.first], self.parts[self.region.last]
-            full["covers"] = f"{first.name}..{last.name}"
+        full.update(self.stuffing)
         return full
 
 
@@ -231,12 +231,13 @@ def frames(
     order: str | None,
     identity: Sequence[PartPlan],
     payload: frozenset[int],
+    beside: FramePlan | None = None,
 ) -> FramePlan:
-    """A frame for such payload bytes.
+    """A frame for such payload bytes, sometimes one that goes together with another form.
 
     What its length can say at least and its `unprotected` keys are still missing.
     """
-    return _Drawing(draw, byte_bits, order, identity, payload).frame()
+    return _Drawing(draw, byte_bits, order, identity, payload, beside).frame()
 
 
 class _Drawing:
@@ -249,8 +250,10 @@ class _Drawing:
         order: str | None,
         identity: Sequence[PartPlan],
         payload: frozenset[int],
+        beside: FramePlan | None,
     ) -> None:
         self._draw = draw
+        self._beside = beside
         self._payload = payload
         self._maker = Maker(draw, byte_bits, order)
         for part in identity:
@@ -258,13 +261,26 @@ class _Drawing:
         self._code = draw(codes())
         self._start = draw(st.sampled_from(STARTS))
         self._end = draw(st.sampled_from(ENDS))
-        self._is_idle = self._code is None and self._end == "none" and draw(forms.one_in(4))
+        self._is_idle = self._code is None and self._end == "none" and draw(forms.one_in(3))
+        if beside is not None:
+            self._go_with(beside)
         self._has_length = draw(st.booleans())
         self._anywhere = self._start == self._end == "none"
         self._by_position = self._anywhere and not draw(forms.one_in(4))
         """True if a checksum is not needed."""
         self._head, self._tail = self._around_payload(list(identity))
         self._make_findable()
+
+    def _go_with(self, beside: FramePlan) -> None:
+        """Begin and end as the frames of another form do, so that one search finds both."""
+        self._is_idle = beside.silence is not None
+        if self._is_idle:
+            self._code = None
+        if beside.opening or beside.starts_with_set:
+            self._start = self._draw(st.sampled_from(["literal", "two literals", "choice"]))
+            self._end = "none" if self._is_idle else self._end
+        else:
+            self._start, self._end = "none", "literal" if beside.closing else "none"
 
     def frame(self) -> FramePlan:
         opening, closing = self._delimiters()
@@ -275,11 +291,21 @@ class _Drawing:
         lenient = self._may_be_lenient(parts) and self._draw(forms.one_in(6))
         spare = self._spare(parts, region, room)
         plan = FramePlan(tuple(parts), self._code, region, lenient, room, spare=spare)
+        plan = replace(plan, stuffing=self._stuffing(parts, region))
         if self._is_idle:
             idle = {"idle": self._draw(st.sampled_from(["4 ms", "500us", "1.75 ms", "2 s"]))}
             plan = replace(plan, silence=PartPlan(self._maker.name(), "silence", idle))
             return self._limited(plan)
         return self._limited(plan) if self._draw(forms.one_in(4)) else plan
+
+    def _stuffing(self, parts: Sequence[PartPlan], region: Region | None) -> dict[str, Any]:
+        if region is None:
+            return {}
+        keys: dict[str, Any] = dict(self._draw(forms.about()))
+        if region.written:
+            names = [part.name for part in parts]
+            keys["covers"] = self._draw(forms.run(names[region.first : region.last + 1], names))
+        return keys
 
     def _may_be_lenient(self, parts: list[PartPlan]) -> bool:
         counts_wire = any(part.role == "length" and "over" in part.data for part in parts)
@@ -292,6 +318,10 @@ class _Drawing:
         if self._start == "choice":
             opening = [self._choice(self._delimiter_byte)]
         closing = [self._literal() for _ in range(_literals(self._end))]
+        if self._start == "none" and closing and self._beside is not None:
+            places = self._beside.closing
+            end = b"".join(self._beside.parts[place].literal for place in places)
+            closing = [self._maker.literal(end)]
         sizes = (len(opening), len(closing))
         alike = sizes == (1, 1) and not opening[0].words and self._draw(forms.one_in(3))
         if alike:

@@ -31,8 +31,8 @@ class Plan:
     whole_bytes: bool
     orders: Mapping[str, str]
     """Byte order by sender, as far as the protocol states one."""
-    frames: Mapping[str, FramePlan]
-    """By sender."""
+    frames: Mapping[str, Sequence[FramePlan]]
+    """By sender, each in all of its forms."""
     identity: Mapping[str, Sequence[PartPlan]]
     """The identity parts by sender."""
     shared: bool
@@ -53,11 +53,13 @@ class MessagePlan:
     senders: tuple[str, ...]
     data: dict[str, Any]
     size: Size
+    is_overload: bool = False
+    """True if another message has its identity."""
 
 
 @st.composite
-def messages(draw: st.DrawFn, plan: Plan) -> list[MessagePlan]:
-    """Messages that differ in identity, at least one for each sender."""
+def messages(draw: st.DrawFn, plan: Plan) -> tuple[list[MessagePlan], list[dict[str, Any]]]:
+    """Messages that differ in identity, at least one for each sender; identities of none."""
     found: list[MessagePlan] = []
     for senders in _sendings(draw, plan):
         taken = {message.name for message in found}
@@ -80,26 +82,38 @@ def _sendings(draw: st.DrawFn, plan: Plan) -> list[tuple[str, ...]]:
     return draw(st.permutations(found))
 
 
-def _identified(draw: st.DrawFn, plan: Plan, found: list[MessagePlan]) -> list[MessagePlan]:
-    """The messages with an identity each: no two of one sender have the same."""
+def _identified(
+    draw: st.DrawFn, plan: Plan, found: list[MessagePlan]
+) -> tuple[list[MessagePlan], list[dict[str, Any]]]:
+    """The messages with an identity each: no two of one sender have the same.
+
+    Also identities that no message has, as they are reserved.
+    """
     result = list(found)
+    reserved: list[dict[str, Any]] = []
     groups: dict[str, list[int]] = {}
     for index, message in enumerate(found):
         groups.setdefault("" if plan.shared else message.senders[0], []).append(index)
     for members in groups.values():
         scheme = plan.identity[found[members[0]].senders[0]]
         values = st.tuples(*map(identity_values, scheme))
-        count = len(members) if scheme else 0
+        count = len(members) + draw(forms.one_in(6)) if scheme else 0
         drawn = draw(st.lists(values, min_size=count, max_size=count, unique=True))
         several = _Several(draw, scheme, drawn)
         for index, identity in zip(members, drawn, strict=False):
             runs = several.beside(identity)
-            written = {"id": draw(_written_identity(scheme, identity, runs))}
+            written = {"id": draw(_written_identity(scheme, runs))}
             data = {**written, **result[index].data}
-            frames = [plan.frames[sender] for sender in result[index].senders]
-            data = draw(with_identity(data, frames, scheme, [len(run) > 1 for run in runs]))
+            frames = [frame for sender in result[index].senders for frame in plan.frames[sender]]
+            varies = [len(run) > 1 or run[0][0] < run[0][1] for run in runs]
+            data = draw(with_identity(data, frames, scheme, varies))
             result[index] = replace(result[index], data=data)
-    return result
+        for identity in drawn[len(members) :]:
+            written = {"id": draw(_written_identity(scheme, several.beside(identity)))}
+            sender = found[members[0]].senders[0]
+            reserved.append({"from": sender, **written, **draw(forms.about())})
+            reserved[-1].pop("source", None)
+    return result, reserved
 
 
 class _Several:
@@ -121,9 +135,14 @@ class _Several:
             return tuple(runs)
         own = tuple(runs)
         for index, part in enumerate(self._scheme):
+            if not is_text(part) and self._draw(forms.one_in(3)):
+                first = identity[index]
+                found = [*runs]
+                found[index] = ((first, min(part.bounds[1], first + self._draw(_WIDTHS))),)
+                runs = found if self._is_free(tuple(found), own) else runs
             for _ in range(self._draw(st.sampled_from([0, 1, 1, 2]))):
                 first = self._draw(identity_values(part))
-                more = 0 if is_text(part) else self._draw(st.sampled_from([0, 0, 1, 5, 3000]))
+                more = 0 if is_text(part) else self._draw(_WIDTHS)
                 run = (first, min(part.bounds[1], first + more) if more else first)
                 found = [*runs]
                 found[index] = (*runs[index], run)
@@ -137,6 +156,9 @@ class _Several:
         return not any(all(map(_meets, runs, taken)) for taken in others)
 
 
+_WIDTHS = st.sampled_from([0, 0, 1, 5, 3000])
+"""Further values of a range."""
+
 Runs = tuple[tuple[int, int], ...]
 
 
@@ -145,17 +167,16 @@ def _meets(one: Runs, other: Runs) -> bool:
 
 
 @st.composite
-def _written_identity(
-    draw: st.DrawFn, scheme: Sequence[PartPlan], identity: Sequence[int], several: Sequence[Runs]
-) -> Any:
+def _written_identity(draw: st.DrawFn, scheme: Sequence[PartPlan], several: Sequence[Runs]) -> Any:
     written: dict[str, Any] = {}
-    for part, value, runs in zip(scheme, identity, several, strict=True):
+    for part, runs in zip(scheme, several, strict=True):
         assert part.type is not None
         character = part.type.type == "char"
-        found: list[Any] = [draw(forms.raw_number(value, character=character))]
-        for first, last in runs[1:]:
-            is_one = first == last and draw(st.booleans())
-            found.append(first if is_one else {"range": [first, last]})
+        found: list[Any] = []
+        for first, last in runs:
+            is_one = first == last and (not found or draw(st.booleans()))
+            ends = [draw(forms.raw_number(end, character=character)) for end in (first, last)]
+            found.append(ends[0] if is_one else {"range": ends})
         if is_text(part):
             found = [text_of(first, part.type) for first, _ in runs]
         written[part.identity or part.name] = (
@@ -176,7 +197,7 @@ class _Message:
         self._plan = plan
         self._senders = senders
         self._whole = whole
-        self._frames = [plan.frames[sender] for sender in senders]
+        self._frames = [frame for sender in senders for frame in plan.frames[sender]]
 
     def message(self, name: str) -> MessagePlan:
         data: dict[str, Any] = {"from": self._written_senders()}
@@ -277,6 +298,8 @@ class _Message:
         for key in ("title", "summary"):
             if self._draw(forms.one_in(6)):
                 found[key] = self._draw(forms.a_text)
+        if self._draw(forms.one_in(12)):
+            found["renamed_from"] = "older"
         return found
 
 
@@ -293,10 +316,10 @@ class Overload:
 
 @st.composite
 def overload(
-    draw: st.DrawFn, plan: Plan, first: MessagePlan, taken: Sequence[str]
+    draw: st.DrawFn, plan: Plan, first: MessagePlan, taken: Sequence[str], decision: str
 ) -> Overload | None:
     """A partner for a message, where one can be made."""
-    frames = [plan.frames[sender] for sender in first.senders]
+    frames = [frame for sender in first.senders for frame in plan.frames[sender]]
     rooms = [frame.surely for frame in frames if frame.surely is not None]
     delimited = all(frame.delimited for frame in frames)
     size = first.size.greatest + 1
@@ -311,7 +334,10 @@ def overload(
     shared = ("id", "from", "byte_order")
     kept = {key: value for key, value in first.data.items() if key in shared}
     data: dict[str, Any] = {**kept, "fields": {"filling": {"type": "bytes", "size": size}}}
-    written: dict[str, Any] = {"messages": [first.name, name], "by": "size"}
+    written: dict[str, Any] = {"messages": [first.name, name], "by": "size", **draw(forms.about())}
+    if draw(forms.one_in(3)):
+        written["decision"] = decision
     if not by_size:
         written = {**written, "by": "undecidable", "yields": first.name}
-    return Overload(MessagePlan(name, first.senders, data, Size(size, size)), written)
+    partner = MessagePlan(name, first.senders, data, Size(size, size), is_overload=True)
+    return Overload(partner, written)

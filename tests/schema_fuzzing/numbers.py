@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from protogen.copying import replace
 from schema_fuzzing import forms
 from schema_fuzzing.names import SPECIAL, VALUES, several
-from schema_fuzzing.setting import ELSE, Built, Setting, Size
+from schema_fuzzing.setting import ELSE, Built, Named, Setting, Size
 
 ORDERS = st.sampled_from(["little", "big"])
 SCALES = st.sampled_from(["1/16", "0.01", 2, "-1/3", 0.5, "1.5e-3", 1])
@@ -109,14 +109,18 @@ def _operands(data: dict[str, Any], kind: Kind) -> dict[str, Size]:
     """What an expression may be worked out of: the number, and bits of it that have a name."""
     if "const" in data:
         return {}
-    found = {"": Size(kind.least, kind.greatest)}
+    names = tuple(data.get("values", ()))
+    alone = data.get("closed") and len(names) == 1  # Which it always is.
+    found: dict[str, Size] = {"": Named(kind.least, kind.greatest, () if alone else names)}
     found.update({f".{name}": Size(0, 1) for name in data.get("flags", {})})
     for name, entry in data.get("bits", {}).items():
         written = entry["bits"] if isinstance(entry, dict) else entry
         if isinstance(written, list):
             continue  # Nothing can be worked out of several runs.
         low, _, high = str(written).partition("..")
-        found[f".{name}"] = Size(0, (1 << (int(high or low) - int(low) + 1)) - 1)
+        widest = (1 << (int(high or low) - int(low) + 1)) - 1
+        known = tuple(entry.get("values", ())) if isinstance(entry, dict) else ()
+        found[f".{name}"] = Named(0, widest, known)
     return found
 
 
@@ -137,7 +141,7 @@ def _written(draw: st.DrawFn, setting: Setting, kind: Kind, data: dict[str, Any]
     form = draw(st.sampled_from(["base10", "base16-upper", "base16-lower", "code"]))
     base = 10 if form == "base10" else 16
     if form == "code":
-        bits, add = draw(st.integers(1, 7)), draw(st.integers(0, 0x80))
+        bits, add = draw(st.integers(1, 7)), draw(forms.raw_number(draw(st.integers(0, 0x80))))
         data["code"] = {"bits": bits, "add": add}
         base = 1 << bits
     needed = next(count for count in range(1, 65) if base**count > (1 << kind.bits) - 1)
@@ -195,7 +199,7 @@ def _named(draw: st.DrawFn, key: str, value: Any) -> Any:
     """The short form, or a mapping with a text."""
     if not draw(forms.one_in(4)):
         return value
-    return {key: value, "doc": draw(forms.a_text)}
+    return {key: value, **draw(forms.some_about())}
 
 
 @st.composite
@@ -247,7 +251,11 @@ def _one_run(draw: st.DrawFn, low: int, high: int) -> Any:
     if high - low >= 2 and raw[0] & 1:  # Two runs, without the bit that is next to the lowest one.
         runs = [low, f"{low + 2}..{high}"]
         raw = list(dict.fromkeys(value & ~2 for value in raw))
-    return {"bits": runs, "values": dict(zip(names, raw, strict=False))}
+    values = {
+        name: _named(draw, "value", draw(forms.raw_number(value)))
+        for name, value in zip(names, raw, strict=False)
+    }
+    return {"bits": runs, "values": values, **draw(forms.about())}
 
 
 def _keys(data: dict[str, Any], kind: Kind, least: int, greatest: int) -> st.SearchStrategy[Any]:
@@ -273,6 +281,16 @@ def _keys(data: dict[str, Any], kind: Kind, least: int, greatest: int) -> st.Sea
     return st.tuples(few, others).map(
         lambda drawn: (*drawn[0], *([ELSE] if drawn[1] and len(drawn[0]) < allowed else ()))
     )
+
+
+def unnamed_values(data: Any) -> list[int]:
+    """Some values of a declared enum that have no name."""
+    if isinstance(data, str) or "values" not in data:
+        return []
+    named = {_raw_of(entry) for entry in data["values"].values()}
+    width = {"byte": 8, "char": 7}.get(data["type"]) or int(data["type"][4:])
+    greatest = min(100, (1 << (width - (data["type"][0] == "s"))) - 1)
+    return [value for value in range(greatest + 1) if value not in named]
 
 
 def _raw_of(entry: Any) -> int:
@@ -307,7 +325,11 @@ def _constants(
     if draw(forms.one_in(6)):
         names = draw(several(SPECIAL, 1, 2))
         raw = draw(st.lists(kind.value(), min_size=1, max_size=len(names), unique=True))
-        data["special"] = dict(zip(names, raw, strict=False))
+        character = kind.role == "char"
+        data["special"] = {
+            name: _named(draw, "value", draw(forms.raw_number(value, character=character)))
+            for name, value in zip(names, raw, strict=False)
+        }
     key = draw(st.sampled_from(["", "", "", "const", "default"]))
     if key:
         data[key] = draw(_constant(data, kind, least, greatest))

@@ -137,7 +137,7 @@ def _member(draw: st.DrawFn, low: int, bits: int, kind: str) -> tuple[Data, Run]
     if draw(forms.one_in(3)):
         least = draw(st.integers(0, greatest))
         greatest = draw(st.integers(least, greatest))
-        keys["range"] = [least, greatest]
+        keys["range"] = [draw(forms.raw_number(end)) for end in (least, greatest)]
     if draw(st.booleans()):
-        keys["default"] = draw(st.integers(least, greatest))
+        keys["default"] = draw(forms.raw_number(draw(st.integers(least, greatest))))
     return {**keys, **draw(forms.about())}, Run(low, bits, least, greatest)

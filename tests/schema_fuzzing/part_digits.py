@@ -51,7 +51,7 @@ def digits_of(draw: st.DrawFn, bits: int, *, whole: bool) -> tuple[Digits, dict[
         fits = [each for each in range(1, 8) if -(-bits // each) * each <= _MOST_BITS]
         each = draw(st.sampled_from([item for item in fits if item >= min(4, bits)] or fits))
         first = draw(st.integers(0, 256 - 2**each))
-        keys["code"] = {"bits": each, "add": first}
+        keys["code"] = {"bits": each, "add": draw(forms.raw_number(first))}
         alphabet = bytes(range(first, first + 2**each))
     else:
         alphabet = _ALPHABETS[kind]

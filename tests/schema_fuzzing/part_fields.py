@@ -62,7 +62,8 @@ def _numbers(part: PartPlan) -> Iterator[tuple[str, int, tuple[range, ...]]]:
             yield name, *_all_of(_width(item))
         elif _SET_BY_OTHERS.isdisjoint(item):
             bits = _width(item["bits"])
-            least, greatest = item.get("range", (0, (1 << bits) - 1))
+            ends = item.get("range", (0, (1 << bits) - 1))
+            least, greatest = (ord(end) if isinstance(end, str) else end for end in ends)
             yield name, bits, (range(least, greatest + 1),)
     if part.role == "value" and part.type is not None and part.type.type != "ascii":
         least, greatest = part.bounds

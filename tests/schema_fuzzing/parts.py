@@ -210,6 +210,7 @@ class Maker:
         values = type_.bytes_between(0, type_.greatest)
         if type_.size == 1:
             least, greatest = of.bounds
+            least = 0 if of.role == "length" else least  # It may say less than it counts.
             flips = type_.greatest if inverts else 0
             values = (frozenset(value ^ flips for value in range(least, greatest + 1)),)
         return PartPlan(self.name(), "mirror", keys, values)
@@ -328,7 +329,7 @@ class Maker:
     def checksum(self, *, optional: bool) -> PartPlan:
         """A checksum; what it covers is said later."""
         algorithm, width = self._draw(st.sampled_from(ALGORITHMS))
-        if self._draw(forms.one_in(6)):
+        if self._draw(forms.one_in(3)):
             algorithm, width = self._parameters()
         if not optional and self._draw(forms.one_in(4)):
             return self._checksum_in_bits(algorithm, width)
@@ -381,7 +382,7 @@ class Maker:
         return found, width
 
     def _parameters(self) -> tuple[Any, int]:
-        if self._draw(forms.one_in(3)):
+        if self._draw(st.booleans()):
             return self._folded()
         width = self._draw(st.integers(1, 64))
         register = st.integers(0, (1 << width) - 1)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
+from operator import or_
 from typing import Any
 
 from hypothesis import strategies as st
@@ -10,7 +12,7 @@ from hypothesis import strategies as st
 from protogen.copying import replace
 from schema_fuzzing import forms
 from schema_fuzzing.names import FIELDS, fresh
-from schema_fuzzing.setting import NOTHING, Built, Size
+from schema_fuzzing.setting import ELSE, NOTHING, Built, Size
 
 _SEPARATORS = (",", ";", " ", "|", 0x09, 0xFF)
 _CHARACTERS = {"left": "L", "right": "R", "comma": ",", "bar": "|", "high": 0xFF, "low": 1}
@@ -41,6 +43,8 @@ def written_numbers(draw: st.DrawFn, budget: int, *, may_be_empty: bool = False)
         data["range"] = [0, draw(ends)]
     elif is_signed and draw(forms.one_in(3)):
         data["range"] = [-1, draw(st.integers(0, greatest))]
+    if data.get("range") == [0, greatest]:  # Which needs as many digits.
+        data["digits"] = draw(st.sampled_from([data["digits"], data["digits"].get("min", 1)]))
     if draw(forms.one_in(4)):
         data["unit"] = draw(forms.a_unit)
     if draw(forms.one_in(6)):
@@ -79,6 +83,8 @@ class _Scope:
     def __post_init__(self) -> None:
         self._fields: dict[str, Any] = {}
         self._size = NOTHING
+        self._least: dict[str, int] = {}
+        """The fewest bytes of each field."""
         self._element_fields = 0
         """Fields of an element of the array in front, where that ends where these begin."""
 
@@ -93,10 +99,10 @@ class _Scope:
         for name in reversed(known[0 if first else 1 :][-most:] if most else []):
             written = self._fields[name]
             data = {"type": written} if isinstance(written, str) else written
-            if "count" in data or "fields" in data:
+            if "count" in data or "fields" in data or "switch" in data:
                 return
             self._fields[name] = {**data, "optional": True}
-            self._size = Size(0, self._size.greatest)
+            self._size = Size(self._size.least - self._least[name], self._size.greatest)
 
     def add(self, *, last: bool) -> None:
         """Add a field, with what counts it, if there is room."""
@@ -107,7 +113,8 @@ class _Scope:
             kinds.append("rest")
         if self.leads and not self._element_fields:
             kinds += ["tail"] * 2 * (not last and not self.depth and self.budget > 4)
-            kinds += ["array", "struct"] * (self.depth < 2) + ["fill"] * (last and not self.depth)
+            kinds += ["array", "struct", "switch"] * (self.depth < 2)
+            kinds += ["fill"] * (last and not self.depth)
         kind = self.draw(st.sampled_from(kinds))
         if kind == "array":
             self._array()
@@ -115,6 +122,8 @@ class _Scope:
             self._put(self._struct(self.budget))
         elif kind == "rest" and not self._element_fields:
             self._put(self._text(self.budget, only=kind))
+        elif kind == "switch":
+            self._switch()
         elif kind == "tail":
             self._in_front_of_tail()
         elif kind == "fill":
@@ -144,6 +153,7 @@ class _Scope:
         name: str = self.draw(fresh(FIELDS, self._fields))
         self._fields[name] = forms.short(built.data, "type")
         self._size += built.size
+        self._least[name] = built.size.least
         self.budget -= built.size.greatest
         self.leads = True
         return name
@@ -166,6 +176,7 @@ class _Scope:
         least = self.draw(st.integers(0, most - fills))
         size = {**({"fill": True} if fills else {}), "min": least, "max": most}
         without = self.draw(st.lists(st.sampled_from("$*aZ~ "), unique=True))
+        without = [self.draw(st.sampled_from([each, ord(each)])) for each in without]
         return Built({"type": "ascii", "size": size, "without": without}, Size(least, most))
 
     def _character(self) -> Built:
@@ -189,6 +200,18 @@ class _Scope:
         built = inner.built()
         return replace(built, data={"fields": built.data})
 
+    def _switch(self) -> None:
+        """One of several, for each value of a number in front; the others have a case, too."""
+        if self.budget < 5:
+            return
+        values = range(self.draw(st.integers(1, 3)))
+        chosen = {"type": "decimal", "range": [0, 4], "digits": {"max": 1}}
+        name = self._put(Built(chosen, Size(2, 2)))
+        built = {key: self._element(self.budget) for key in (*values, ELSE)}
+        size = reduce(or_, (case.size for case in built.values()))
+        cases = {key: case.data for key, case in built.items()}
+        self._put(Built({"switch": name, "cases": cases}, size))
+
     def _element(self, budget: int) -> Built:
         return self._struct(budget) if self.draw(st.booleans()) else self._text(budget)
 
@@ -200,6 +223,8 @@ class _Scope:
             most = max(1, bounds[1])
             count = self._put(Built({"type": "decimal", "range": [bounds[0], most]}, Size(2, 2)))
             size = Size(bounds[0], most)
+            if self.draw(st.booleans()):
+                count, size = f"{count} + 1", Size(bounds[0] + 1, most + 1)
         budget = self.budget // max(1, size.greatest)
         if budget >= 2:
             self._put(_extended(self._element(budget), count, size))

@@ -38,6 +38,13 @@ NOTHING = Size(0, 0)
 
 
 @dataclass(frozen=True, slots=True)
+class Named(Size):
+    """Bounds of a number of which some values have names."""
+
+    names: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Selector:
     """An integer that a switch may be chosen by: how its values are written as keys of cases.
 

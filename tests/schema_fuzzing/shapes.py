@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from schema_fuzzing.frames import FramePlan
@@ -46,7 +46,7 @@ COMMON = (
     "number: worked out", "ascii: worked out", "switch by an expression",
     "case of all others",
     "number in bytes", "region", "last element", "trailing zeros left out",
-    "greatest frame", *(f"field with {key}" for key in _FIELD_KEYS),
+    "greatest frame", "several forms", *(f"field with {key}" for key in _FIELD_KEYS),
     *(f"identity parts: {count}" for count in range(4)),
     *(f"checksums: {count}" for count in range(3)),
     *(f"transparency: {code}" for code in _CODES), *(f"start: {start}" for start in _STARTS),
@@ -66,21 +66,22 @@ PAIRS = (
 """Shapes that some thousand schemas hold."""
 
 
-def shapes_of(
-    data: dict[str, Any], frames: Mapping[str, FramePlan], byte_bits: int
-) -> Iterator[str]:
+def shapes_of(data: dict[str, Any], frames: Sequence[FramePlan], byte_bits: int) -> Iterator[str]:
     """Shapes that occur, each at least once."""
     yield f"{byte_bits} bits a byte"
-    yield "one frame for all" if "" in frames else f"frames of {len(frames)} senders"
-    written = data["frame"]
-    for parts in [written] if "payload" in written else written.values():
+    if "forms" in data:
+        yield "several forms"
+    else:
+        is_shared = "payload" in data["frame"]
+        yield "one frame for all" if is_shared else f"frames of {len(frames)} senders"
+    for parts in frames_of(data):
         if any("told" in part and "counts" not in part for part in parts.values()):
             yield "told part"
         if any("told" in part and "counts" in part for part in parts.values()):
             yield "told length"
     order = data.get("byte_order")
     yield f"byte order: {'each sender' if isinstance(order, dict) else order}"
-    for frame in frames.values():
+    for frame in frames:
         yield from _frame(frame)
     for message in data["messages"].values():
         yield from _message(message)
@@ -89,6 +90,14 @@ def shapes_of(
         yield from _field(declared)
     for entry in data.get("overloads", {}).values():
         yield f"overload by {entry['by']}"
+
+
+def frames_of(data: dict[str, Any]) -> list[dict[str, Any]]:
+    """The parts of each frame of a schema."""
+    if "forms" in data:
+        return [form["frame"] for form in data["forms"].values()]
+    written: dict[str, Any] = data["frame"]
+    return [written] if "payload" in written else list(written.values())
 
 
 def _frame(frame: FramePlan) -> Iterator[str]:

@@ -3,65 +3,80 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import Any
 
 from hypothesis import strategies as st
 
 from schema_fuzzing import forms
 from schema_fuzzing.names import PARTS, fresh
-
-Data = dict[str, Any]
+from schema_fuzzing.placed import Data, Placed, names_of_parts, placed_frames, senders_of
 
 _ROOM = 64
 """Bits that all identity parts have at most."""
 
 
 def add_told(draw: st.DrawFn, data: Data) -> None:
-    """Put a told part into the frame of all senders, or of one that shares no message."""
-    if not draw(forms.one_in(6)):
+    """Put a told part into some frame whose senders share no message with others."""
+    if not draw(forms.one_in(4)):
         return
-    frame = data["frame"]
-    keys = [""] if "payload" in frame else [key for key in frame if _is_alone(data, key)]
-    fitting = [key for key in keys if _can_be_told(frame[key] if key else frame)]
+    fitting = [
+        placed
+        for placed in placed_frames(data)
+        if _is_alone(data, placed) and _can_be_told(placed.parts)
+    ]
     if not fitting:
         return
-    key = draw(st.sampled_from(fitting))
-    parts = frame[key] if key else frame
-    written = [frame] if not key else list(frame.values())
-    taken = {name for item in written for name in item}
-    taken |= {name for item in written for part in item.values() for name in part.get("bits", ())}
-    name = draw(fresh(PARTS, taken))
-    _identify(draw, data, key, parts, name)
+    placed = draw(st.sampled_from(fitting))
+    name = draw(fresh(PARTS, names_of_parts(data)))
+    _identify(draw, data, placed, name)
+    data.get("reserved", {}).pop("identities", None)  # These would have a value of it, too.
     part = _telling(draw, draw(st.sampled_from(["uint8", "uint16", "uint32"])), 255)
-    items = list(parts.items())
-    last = len(items) - ("idle" in items[-1][1])  # Nothing stands behind a silence.
-    items.insert(draw(st.integers(0, last)), (name, part))
-    if key:
-        frame[key] = dict(items)
-    else:
-        data["frame"] = dict(items)
+    tellers = list(_tellers(data, placed, int(part["type"].removeprefix("uint"))))
+    if tellers and draw(st.booleans()):
+        chosen = draw(st.lists(st.sampled_from(tellers), min_size=1, max_size=2, unique=True))
+        part["set_by"] = chosen[0] if len(chosen) == 1 and draw(st.booleans()) else chosen
+    place = draw(st.integers(0, len(placed.parts)))
+    placed.put(placed.with_part(place, name, part))
+
+
+def _tellers(data: Data, placed: Placed, bits: int) -> Iterator[str]:
+    """Numbers of such a width in what others send, who thereby tell the part."""
+    own = set(placed.parts)
+    for other in placed_frames(data):
+        if other.senders.isdisjoint(placed.senders):
+            for name, part in other.parts.items():
+                if name not in own and _is_number(part, bits) and _ROLES & part.keys():
+                    yield name
+    for name, message in data["messages"].items():
+        if (
+            placed.senders.isdisjoint(senders_of(message))
+            and message.get("fields", "unspecified") != "unspecified"
+        ):
+            for key, field in message["fields"].items():
+                if _is_number({"type": field} if isinstance(field, str) else field, bits):
+                    yield f"{name}.{key}"
+
+
+_ROLES = {"id", "counter", "default"}
+
+
+def _is_number(written: Data, bits: int) -> bool:
+    width = re.fullmatch(r"uint(\d+)", written.get("type", ""))
+    plain = not {"bits", "flags", "values", "packed", "algorithm", "virtual"} & written.keys()
+    return plain and width is not None and int(width[1]) <= bits
 
 
 def add_told_length(draw: st.DrawFn, data: Data) -> None:
     """Put a told length into some frames that have none, and that nothing is stuffed in."""
-    frame = data["frame"]
-    is_shared = "payload" in frame
-    written = [frame] if is_shared else list(frame.values())
-    taken = {name for parts in written for name in parts}
-    taken |= {name for parts in written for part in parts.values() for name in part.get("bits", ())}
-    for sender, parts in ({"": frame} if is_shared else dict(frame)).items():
-        stuffed = data.get("transparency", {})
-        if (stuffed and is_shared) or sender in stuffed or not _takes_a_length(parts):
+    for placed in placed_frames(data):
+        stuffed = placed.holder.get("transparency") or data.get("transparency", {})
+        is_stuffed = placed.senders & set(stuffed) or (stuffed and placed.key == "frame")
+        if is_stuffed or not _takes_a_length(placed.parts) or draw(forms.one_in(2)):
             continue
-        if draw(forms.one_in(2)):
-            continue
-        part = {**_telling(draw, "uint16", 3000), **draw(_counted(parts))}
-        items = list(parts.items())
-        items.insert(draw(st.integers(0, len(items))), (draw(fresh(PARTS, taken)), part))
-        if is_shared:
-            data["frame"] = dict(items)
-        else:
-            frame[sender] = dict(items)
+        part = {**_telling(draw, "uint16", 3000), **draw(_counted(placed.parts))}
+        name = draw(fresh(PARTS, names_of_parts(data)))
+        placed.put(placed.with_part(draw(st.integers(0, len(placed.parts))), name, part))
 
 
 def _takes_a_length(parts: Data) -> bool:
@@ -70,10 +85,16 @@ def _takes_a_length(parts: Data) -> bool:
     if any("counts" in part or "idle" in part for part in every):
         return False
     first, *_, last = parts.values()
-    if "literal" in first and "literal" in last and first["literal"] == last["literal"]:
+    ends = [part["literal"] for part in (first, last) if "literal" in part]
+    plain = [forms.bytes_of_octets(end) for end in ends if not _is_choice(end)]
+    if len(plain) == 2 and plain[0] == plain[1]:
         return False
     is_marked = "literal" in first or not any(key in first for key in ("range", "bits"))
     return is_marked and any(_is_always_there(part) for part in parts.values())
+
+
+def _is_choice(literal: Any) -> bool:
+    return isinstance(literal, dict) and "any_of" in literal
 
 
 def _is_always_there(part: Data) -> bool:
@@ -101,10 +122,13 @@ def _telling(draw: st.DrawFn, type_: str, greatest: int) -> Data:
     return part
 
 
-def _is_alone(data: Data, sender: str) -> bool:
-    """True if nobody else sends what this one does."""
-    senders = [message["from"] for message in data["messages"].values()]
-    return all(item in (sender, [sender]) or sender not in item for item in senders)
+def _is_alone(data: Data, placed: Placed) -> bool:
+    """True if nobody else sends what these do, and no other form carries it."""
+    messages = [item for item in data["messages"].values() if placed.carries(item)]
+    others = [item for item in placed_frames(data) if item.holder is not placed.holder]
+    return not any(
+        other.carries(message) for other in others for message in messages if other.form
+    ) and all(set(senders_of(message)) <= placed.senders for message in messages)
 
 
 def _can_be_told(parts: Data) -> bool:
@@ -127,8 +151,9 @@ def _bits(part: Data) -> int:
     return int(width[0]) if width else 8 * part.get("size", 1)
 
 
-def _identify(draw: st.DrawFn, data: Data, sender: str, parts: Data, name: str) -> None:
+def _identify(draw: st.DrawFn, data: Data, placed: Placed, name: str) -> None:
     """Give the messages their values; those of one identity have the same."""
+    parts = placed.parts
     own = [key for key, part in parts.items() if part.get("id")]
     own += [
         key
@@ -138,11 +163,12 @@ def _identify(draw: st.DrawFn, data: Data, sender: str, parts: Data, name: str) 
     ]
     values: dict[str, Any] = {}
     for message in data["messages"].values():
-        if sender and message["from"] not in (sender, [sender]):
+        if not placed.carries(message):
             continue
         known = message.get("id")
         value = values.setdefault(repr(known), draw(st.integers(0, 255)))
         if not own:
             message["id"] = value
         else:
-            message["id"] = {**(known if isinstance(known, dict) else {own[0]: known}), name: value}
+            by_part = isinstance(known, dict) and known.keys() <= set(own)
+            message["id"] = {**(known if by_part else {own[0]: known}), name: value}

@@ -7,8 +7,8 @@ from typing import Any
 from hypothesis import strategies as st
 
 from protogen.copying import replace
+from schema_fuzzing import forms
 from schema_fuzzing.fields import structs
-from schema_fuzzing.forms import one_in
 from schema_fuzzing.names import TYPES, several
 from schema_fuzzing.numbers import ORDERS, integer
 from schema_fuzzing.packed import can_pack, packed_structs
@@ -41,11 +41,12 @@ def declared_types(draw: st.DrawFn, byte_bits: int, *, whole_bytes: bool) -> tup
 def _number(draw: st.DrawFn, name: str, setting: Setting) -> Declared:
     built = draw(integer(setting))
     data = {key: value for key, value in built.data.items() if key not in ("const", "default")}
-    return Declared(name, Built(data, built.size), is_struct=False, chooses=False)
+    written = forms.short(data, "type") if draw(st.booleans()) else data
+    return Declared(name, Built(written, built.size), is_struct=False, chooses=False)
 
 
 def _struct(draw: st.DrawFn, name: str, setting: Setting) -> Declared:
-    if can_pack(setting) and draw(one_in(6)):
+    if can_pack(setting) and draw(forms.one_in(6)):
         return Declared(name, draw(packed_structs(setting)), is_struct=True, chooses=False)
     order = {"byte_order": draw(ORDERS)} if draw(st.booleans()) else {}
     built = draw(structs(replace(setting, ordered=bool(order))))

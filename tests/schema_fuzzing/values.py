@@ -124,15 +124,30 @@ def _struct(
         if field.part:
             drawn = _of_frames(field, uses, held[field.part])
         found[field.name] = draw(drawn) if is_there else None
-        if field.region is not None and found[field.name] is not None:
-            told = plain_name(field.region.by) if isinstance(field.region, Counted) else None
-            if told is not None:
-                size = len(value_bytes(field.type, found[field.name], scope))
-                found[told] = scope[told] = size
+        if field.region is not None and is_there:
+            size = len(value_bytes(field.type, found[field.name], scope))
+            if isinstance(field.region, Counted):
+                told = _told_by(field.region.by)
+                number = _telling(field.region.by, told, size, scope)
+                teller = next(item for item in fields if item.name == told)
+                assert isinstance(teller.type, Integer)
+                least, greatest = _bounds(teller.type, teller)
+                assume(least <= number <= greatest)  # What fills could have been more.
+                found[told] = scope[told] = number
         scope.pop(field.name, None)
         if isinstance(field.type, Integer | Struct):
             scope[field.name] = found[field.name]
     return found
+
+
+def _told_by(by: Expression) -> str:
+    """Name of the number in front that says how many bytes a region has."""
+    return plain_name(by) or str(by).partition(" ")[0]
+
+
+def _telling(by: Expression, told: str, size: int, scope: Scope) -> int:
+    """What that is for a region of this size."""
+    return next(n for n in range(1000) if worked_out(by, {**scope, told: n}) == size)
 
 
 def _uses(name: str, fields: Sequence[Field]) -> Iterator[Counted | Switch]:

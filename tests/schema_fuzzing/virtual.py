@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from schema_fuzzing import forms
 from schema_fuzzing.names import PARTS, fresh
 from schema_fuzzing.parts import Maker, PartType, characters
-
-Data = dict[str, Any]
+from schema_fuzzing.placed import Data, Placed, names_of_parts, placed_frames
 
 
 def add_virtual(draw: st.DrawFn, data: Data, byte_bits: int, orders: dict[str, str]) -> None:
@@ -18,31 +17,21 @@ def add_virtual(draw: st.DrawFn, data: Data, byte_bits: int, orders: dict[str, s
 
     `orders` has the byte order of each sender.
     """
-    frame = data["frame"]
-    shared = "payload" in frame
-    taken = {
-        name
-        for parts in ([frame] if shared else frame.values())
-        for key, part in parts.items()
-        for name in (key, *part.get("bits", ()))
-    }
-    for sender, written in ({"": frame} if shared else dict(frame)).items():
-        parts = written
-        sums = [name for name, part in parts.items() if "algorithm" in part]
+    taken = names_of_parts(data)
+    for placed in placed_frames(data):
+        sums = [name for name, part in placed.parts.items() if "algorithm" in part]
         if not sums or not draw(forms.one_in(4)):
             continue
-        found = set(orders.values()) if shared else {orders.get(sender)}
+        found = {orders.get(sender) for sender in placed.senders if sender in orders or not orders}
         order = found.pop() if len(found) == 1 else None
         for _ in range(draw(st.sampled_from([1, 1, 2]))):
             name = draw(fresh(PARTS, taken))
             taken.add(name)
             part, type_ = _part(draw, byte_bits, order)
-            parts = _with(draw, parts, name, part, draw(st.sampled_from(sums)))
-            _give(draw, data, "" if shared else sender, name, (part, type_))
-        if shared:
-            data["frame"] = parts
-        else:
-            frame[sender] = parts
+            place = draw(st.integers(0, len(placed.parts)))
+            parts = placed.with_part(place, name, part)
+            placed.put(_covered(parts, draw(st.sampled_from(sums)), name))
+            _give(draw, data, placed, name, (part, type_))
 
 
 def _part(draw: st.DrawFn, byte_bits: int, order: str | None) -> tuple[Data, PartType]:
@@ -60,25 +49,21 @@ def _value(type_: PartType) -> st.SearchStrategy[Any]:
     return st.integers(0, type_.greatest)
 
 
-def _with(draw: st.DrawFn, parts: Data, name: str, part: Data, checksum: str) -> Data:
-    """The parts with a virtual one among them, which this checksum covers."""
-    items = list(parts.items())
-    last = len(items) - ("idle" in items[-1][1])  # Nothing stands behind a silence.
-    items.insert(draw(st.integers(0, last)), (name, part))
+def _covered(parts: Data, checksum: str, name: str) -> Data:
+    """The parts, of which this checksum covers one more."""
     covers = parts[checksum]["covers"]
     listed = [covers] if isinstance(covers, str) else list(covers)
-    return {**dict(items), checksum: {**parts[checksum], "covers": [*listed, name]}}
+    return {**parts, checksum: {**parts[checksum], "covers": [*listed, name]}}
 
 
 def _give(
-    draw: st.DrawFn, data: Data, sender: str, name: str, drawn: tuple[Data, PartType]
+    draw: st.DrawFn, data: Data, placed: Placed, name: str, drawn: tuple[Data, PartType]
 ) -> None:
-    """Values for the messages of a sender, or of all; those of one identity have the same."""
+    """Values for the messages in such frames; those of one identity have the same."""
     part, type_ = drawn
     values: dict[str, Any] = {}
     for message in data["messages"].values():
-        senders = [message["from"]] if isinstance(message["from"], str) else message["from"]
-        if sender and sender not in senders:
+        if not placed.carries(message):
             continue
         key = repr(message.get("id"))
         if key not in values:
