@@ -269,6 +269,22 @@ messages:
         switch: kind
         cases: {0: {fields: {tail: {type: one, optional: true}}}, 1: {fields: {}}}
 """
+A_SIGNED_NUMBER_THAT_IS_NEVER_READ = """
+frame:
+  length: {type: uint8, counts: payload}
+  payload: {}
+  sum: {type: uint8, algorithm: sum-8, covers: payload}
+messages:
+  sized:
+    from: station
+    fields:
+      size: uint8
+      text: {fields: {text: {type: ascii, size: {fill: true, max: 3}}}, size: size}
+      packed:
+        fields: {speed: sint10, mark: {type: uint6, const: 5}}
+        packed: msb_first
+        count: {fill: true, max: 0}
+"""
 CHARACTERS_OF_ONE_SIZE_BETWEEN_SEPARATORS = """
 frame:
   length: {type: uint8, counts: payload}
@@ -365,6 +381,11 @@ def test_bits_are_checked_behind_a_checksum_that_may_be_absent(tmp_path: Path) -
     [
         (NOTHING_BUT_WHETHER_CONSTANTS_ARE_THERE, {"tail": None}, b"\0\0"),
         (NOTHING_BUT_WHETHER_CONSTANTS_ARE_THERE, {"tail": {"one": 27}}, b"\x01\x1b\x1b"),
+        (
+            A_SIGNED_NUMBER_THAT_IS_NEVER_READ,
+            {"size": 1, "text": {"text": "a"}, "packed": []},
+            b"\x02\x01a\x62",
+        ),
         (THE_SAME_IN_A_CASE, {"kind": 0, "value": {"tail": None}}, b"\x01\0\0"),
         (THE_SAME_IN_A_CASE, {"kind": 0, "value": {"tail": {"one": 27}}}, b"\x02\0\x1b\x1b"),
         (
