@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from protogen.cli.wire import codec
 from protogen.cli.wire.tagged import Piece, tagged_pieces
+from protogen.recording import Recorder
 
 MATTY = str(ROOT / "schemas" / "matty.yaml")
 RFLEX = str(ROOT / "schemas" / "rflex.yaml")
@@ -358,6 +359,19 @@ def test_frames_without_the_silences_between_them_are_told_of_with_a_hint(tmp_pa
     assert run("decode", str(path), "--input", "log", "--timed", input=log).stderr == ""
 
 
+def test_a_recording_is_known_by_its_first_bytes(meter: str, tmp_path: Path) -> None:
+    with Recorder(tmp_path / "run.pgrec") as recorder:
+        recorder.write(bytes.fromhex("02 01"), t_ns=100 * 10**9, source="meter")
+        recorder.write(b"", t_ns=1, source="nobody")
+        recorder.write(bytes.fromhex("00 07 0A"), t_ns=100_019_999_999, source="meter")
+    for options in ((), ("--timed",), ("--input", "record")):
+        assert kinds(meter, *options, str(tmp_path / "run.pgrec"), input="") == ["level"]
+    early, late = ((100 * 10**9 + ns).to_bytes(8, "little") for ns in (19_999_999, 23_125_000))
+    late_file = tmp_path / "late.pgrec"
+    late_file.write_bytes((tmp_path / "run.pgrec").read_bytes().replace(early, late))
+    assert set(kinds(meter, "--timed", str(late_file), input="")) == {"invalid"}
+
+
 def test_bytes_of_a_line_without_a_time_are_decoded_and_complained_of(meter: str) -> None:
     result = run("decode", meter, "--tagged", "--timed", input=f"pump meter: {LEVEL}\n")
     assert result.exit_code == 1
@@ -372,7 +386,7 @@ def test_bytes_of_a_line_without_a_time_are_decoded_and_complained_of(meter: str
         ((RFLEX, "--tagged", "--timed"), "does not say which silence ends a frame"),
         ((MATTY, "--timed"), "--timed needs to know when the bytes were sent"),
         ((MATTY, "--timed", "--hex", "55"), "--timed needs to know when the bytes were sent"),
-        ((MATTY, "--input", "log", "--hex", "55"), "--input log is for lines with times"),
+        ((MATTY, "--input", "log", "--hex", "55"), "--input log is for files with times"),
         ((MATTY, "--input", "log", "--tagged"), "--tagged and --input log exclude each other"),
     ],
 )

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import errno
 import gzip
-import io
 import json
 import os
 import sys
 import time
-from array import array
 from collections.abc import Callable
 from pathlib import Path
 from random import Random
@@ -20,11 +18,9 @@ import pytest
 from cli_support import ROOT, SINK, run, start
 
 from protogen.api import load
-from protogen.capture.record import GREATEST, HEADER, MAGIC, Recorder
 from protogen.convert.errors import ConvertError
 from protogen.convert.formats import InputKind
 from protogen.convert.inputs.chunks import Chunk, Clock, joined
-from protogen.convert.inputs.recordings import record_pieces
 from protogen.convert.inputs.sources import (
     Packing,
     Source,
@@ -36,6 +32,8 @@ from protogen.convert.inputs.sources import (
 from protogen.convert.inputs.text_lines import decoded, lines_of
 from protogen.convert.inputs.text_logs import log_pieces
 from protogen.convert.runs.table_names import names_of
+from protogen.recording import Recorder
+from protogen.recording.format import HEAD, MAGIC
 
 FRAME = bytes.fromhex("1B 02 45 00 00 45 1B 03")  # `empty` with number 0
 SECOND = bytes.fromhex("1B 02 45 01 00 44 1B 03")
@@ -73,7 +71,7 @@ class TestDetection:
             ("run.hex", FRAME.hex(" ").encode(), "hex digits"),
             ("run.hex.gz", packed(FRAME.hex(" ").encode()), "hex digits, gzip"),
             ("run.log", b"(1.5) can0 123#" + FRAME.hex().encode(), "a text log with times"),
-            ("run", MAGIC + HEADER.pack(7, len(FRAME)) + FRAME, "a recorded capture"),
+            ("run", MAGIC + HEAD.pack(7, len(FRAME), 0, 0) + FRAME, "a recording"),
         ],
         ids=lambda value: value if isinstance(value, str) else "",
     )
@@ -93,7 +91,7 @@ class TestDetection:
         assert read(tmp_path / "run.bin", InputKind.HEX)[:2] == ("hex digits", FRAME)
 
     def test_only_the_start_is_looked_at(self, tmp_path: Path) -> None:
-        (tmp_path / "run.gz").write_bytes(gzip.compress(MAGIC + HEADER.pack(0, 1) + b"x"))
+        (tmp_path / "run.gz").write_bytes(gzip.compress(MAGIC + HEAD.pack(0, 1, 0, 0) + b"x"))
         found = format_of(Source(str(tmp_path / "run.gz")), None)
         assert (found.kind, found.packing, found.is_plain) == (
             InputKind.RECORD,
@@ -119,7 +117,7 @@ class TestDetection:
     @pytest.mark.parametrize(
         ("expected", "content"),
         [
-            ("a recorded capture", MAGIC + HEADER.pack(7, len(FRAME)) + FRAME),
+            ("a recording", MAGIC + HEAD.pack(7, len(FRAME), 0, 0) + FRAME),
             ("a text log with times", b"# note\n(1.5) can0 123#" + FRAME.hex().encode()),
         ],
         ids=["record", "log"],
@@ -136,7 +134,7 @@ class TestDetection:
     @pytest.mark.parametrize(
         ("expected", "content"),
         [
-            ("a recorded capture", MAGIC + HEADER.pack(7, len(FRAME)) + FRAME),
+            ("a recording", MAGIC + HEAD.pack(7, len(FRAME), 0, 0) + FRAME),
             ("a text log with times", f"(1) {FRAME.hex()}".encode("utf-16")),
             ("raw bytes, gzip", packed(FRAME)),
             ("raw bytes", FRAME),
@@ -299,42 +297,16 @@ class TestRecorder:
             recorder.write(b"", t_ns=30)
             recorder.write(b"!", t_ns=-5)
         found = read(tmp_path / "run.rec")
-        assert found == ("a recorded capture", FRAME + b"!", [5, 8, 9], [10, 20, -5])
+        assert found == ("a recording", FRAME + b"!", [5, 8, 9], [10, 20, -5])
 
-    def test_a_stream_stays_open(self) -> None:
-        stream = io.BytesIO()
-        recorder = Recorder(stream)
-        recorder.write(b"x", t_ns=1)
-        recorder.close()
-        assert stream.getvalue() == MAGIC + b"\x01" + b"\0" * 7 + b"\x01\0\0\0x"
-
-    def test_elements_may_be_larger_than_a_byte(self) -> None:
-        stream = io.BytesIO()
-        Recorder(stream).write(memoryview(array("H", [1, 2, 3])), t_ns=1)
-        assert [len(data) for data, _ in record_pieces([stream.getvalue()], pytest.fail)] == [6]
-
-    def test_a_long_piece_is_several_records(self) -> None:
-        stream = io.BytesIO()
-        Recorder(stream).write(bytes(GREATEST + 1), t_ns=1)
-        sizes = [len(data) for data, _ in record_pieces([stream.getvalue()], pytest.fail)]
-        assert sizes == [GREATEST, 1]
-
-    @pytest.mark.parametrize(
-        ("damage", "left", "problem"),
-        [
-            (lambda data: data[:-2], b"abc", "ends inside a record, 2 bytes too early"),
-            (lambda data: data[:-8], b"", "ends inside the head of a record, at byte 17"),
-            (lambda data: data[:16] + b"\xff" * 4 + data[20:], b"", "no record of 4294967295"),
-            (lambda data: b"?" + data, b"", "this is no recorded capture"),
-        ],
-    )
-    def test_damage_ends_the_capture(self, damage: Any, left: bytes, problem: str) -> None:
-        data = MAGIC + HEADER.pack(1, 5) + b"abcde"
-        complaints: list[str] = []
-        pieces = (bytes((byte,)) for byte in damage(data))
-        found = b"".join(piece for piece, _ in record_pieces(pieces, complaints.append))
-        assert found == left
-        assert complaints[0].startswith(problem)
+    def test_what_another_endpoint_sent_is_left_out(self, tmp_path: Path) -> None:
+        with Recorder(tmp_path / "run.rec") as recorder:
+            recorder.write(FRAME, t_ns=1, source="pc")
+            recorder.note("the port was lost", t_ns=2)
+            recorder.write(b"?", t_ns=3, source="board")
+            recorder.write(b"!", t_ns=4, source="left")
+        found = read(tmp_path / "run.rec")
+        assert found == ("a recording", FRAME + b"!", [len(FRAME), len(FRAME) + 1], [1, 4])
 
 
 class TestClock:

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from io import BufferedReader
+from itertools import chain
 from pathlib import Path
 from typing import BinaryIO, Literal, cast
 
@@ -17,11 +18,12 @@ from protogen.cli.wire.tagged import Complain, Piece
 from protogen.convert.inputs.hex_digits import HexReader
 from protogen.convert.inputs.text_lines import decoded, lines_of
 from protogen.convert.inputs.text_logs import log_lines
+from protogen.recording import RecordKind, records
 
 STANDARD_INPUT = Path("-")
-InputFormat = Literal["raw", "hex", "tagged", "log"]
-"""Format of a capture: bytes, hex digits, or lines of hex digits behind the name of the sender, or
-behind a time, as `candump -l` writes them."""
+InputFormat = Literal["raw", "hex", "tagged", "log", "record"]
+"""Format of a capture: bytes, hex digits, lines of hex digits behind the name of the sender, or
+behind a time, as `candump -l` writes them, or a recording."""
 
 _PIECE = 1 << 16
 """The most bytes that are read at once."""
@@ -61,6 +63,22 @@ def _pieces(read: Callable[[int], bytes | None], advance: Callable[[int], None])
 def raw_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:
     """The pieces as they are."""
     return (Piece(sender, piece) for piece in pieces)
+
+
+def begun(pieces: Iterator[bytes]) -> tuple[bytes, Iterator[bytes]]:
+    """The first piece, and all of them."""
+    head = next(pieces, b"")
+    return head, chain([head] if head else [], pieces)
+
+
+def recorded_pieces(
+    pieces: Iterator[bytes], sender: str, senders: Collection[str], complain: Complain
+) -> Iterator[Piece]:
+    """Bytes of a recording: from the endpoint that a record names, or `sender`."""
+    for record in records(pieces, complain):
+        if record.kind is RecordKind.BYTES:
+            named = record.source if record.source in senders else sender
+            yield Piece(named, record.data, record.when)
 
 
 def hex_pieces(pieces: Iterator[bytes], sender: str) -> Iterator[Piece]:

@@ -16,9 +16,11 @@ from protogen.cli.schemas import find_senders
 from protogen.cli.wire.capture import (
     STANDARD_INPUT,
     InputFormat,
+    begun,
     hex_pieces,
     opened,
     raw_pieces,
+    recorded_pieces,
     timed_pieces,
 )
 from protogen.cli.wire.complaints import Complaints
@@ -26,6 +28,7 @@ from protogen.cli.wire.line_times import LineTimes
 from protogen.cli.wire.silences import Silences, ends_of_frames
 from protogen.cli.wire.tagged import Complain, Piece, tagged_pieces
 from protogen.convert.inputs.hex_digits import parse_hex
+from protogen.recording.reader import is_recording
 
 if TYPE_CHECKING:
     from protogen.cli.wire.codec import Codec
@@ -61,8 +64,11 @@ def decode(  # noqa: PLR0913 - each option is one argument
     sender: SenderOfBytes = None,
     hex: HexText = None,
     input: Annotated[
-        InputFormat, typer.Option("--input", help="What the file is written in.")
-    ] = "raw",
+        InputFormat | None,
+        typer.Option(
+            "--input", help="What the file is written in. Default: raw, or record where it is one."
+        ),
+    ] = None,
     tagged: Tagged = False,
     timed: Timed = False,
     format: Annotated[
@@ -123,23 +129,27 @@ def _hint_at_told(codec: Codec) -> None:
 # --- in -------------------------------------------------------------------------------------------
 
 
-def _input_format(given: InputFormat, *, tagged: bool, has_text: bool) -> InputFormat:
-    """Return what the capture is written in. Raises UsageError where two options disagree."""
-    if tagged and given not in ("raw", "tagged"):
+def _input_format(given: InputFormat | None, *, tagged: bool, has_text: bool) -> InputFormat | None:
+    """Return what the capture is written in; None if its first bytes have to tell.
+
+    Raises UsageError where two options disagree.
+    """
+    if tagged and given not in (None, "raw", "tagged"):
         problem = f"--tagged and --input {given} exclude each other"
         raise UsageError(problem, "leave one of them out")
     if has_text and (tagged or given == "tagged"):
         hint = "leave out --tagged and give --sender NAME, or give the lines in a file"
         raise UsageError("--hex is bytes of one sender, --tagged is for lines that name it", hint)
-    if has_text and given == "log":
-        raise UsageError("--hex is bytes, --input log is for lines with times", "leave one out")
+    if has_text and given in ("log", "record"):
+        problem = f"--hex is bytes, --input {given} is for files with times"
+        raise UsageError(problem, "leave one out")
     return "tagged" if tagged else given
 
 
-def _check_timed(kind: InputFormat, *, timed: bool, has_text: bool) -> None:
+def _check_timed(kind: InputFormat | None, *, timed: bool, has_text: bool) -> None:
     """Raises UsageError where --timed is given for bytes without times."""
-    if timed and (has_text or kind not in ("tagged", "log")):
-        hint = "give --tagged or --input log, with a time in front of each line"
+    if timed and (has_text or kind in ("raw", "hex")):
+        hint = "give a recording, or --tagged or --input log, with a time in front of each line"
         raise UsageError("--timed needs to know when the bytes were sent", hint)
 
 
@@ -147,7 +157,7 @@ def _check_timed(kind: InputFormat, *, timed: bool, has_text: bool) -> None:
 def _capture(
     file: Path,
     text: str | None,
-    kind: InputFormat,
+    kind: InputFormat | None,
     codec: Codec,
     sender: str | None,
     complain: Complain,
@@ -161,10 +171,14 @@ def _capture(
     if text is not None:
         yield [Piece(by, parse_hex(text))]
         return
-    with opened(file) as pieces:
-        match kind:
+    with opened(file) as stream:
+        head, pieces = begun(stream)
+        match kind or ("record" if is_recording(head) else "raw"):
             case "raw":
+                _check_timed("raw", timed=timed, has_text=False)
                 yield raw_pieces(pieces, by)
+            case "record":
+                yield recorded_pieces(pieces, by, codec.senders, complain)
             case "hex":
                 yield hex_pieces(pieces, by)
             case "tagged":

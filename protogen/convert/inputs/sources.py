@@ -3,7 +3,7 @@
     bytes in front of the rest            it is
     1F 8B, or 28 B5 2F FD                 compressed by gzip, or by zstd, maybe behind frames that
                                           it skips; then what is inside
-    50 47 52 45 43 00 01 0A (`PGREC`)     a recorded capture, see `protogen/capture/record.py`
+    50 47 52 45 43 00 (`PGREC`)           a recording, see `protogen/recording/format.py`
     `(1700000000.25) ...`                 a log of text with times, see `text_logs.py`; comments
                                           and empty lines may stand in front
 
@@ -25,17 +25,17 @@ from pathlib import Path, PurePosixPath
 
 import msgspec
 
-from protogen.capture.record import MAGIC
 from protogen.convert.errors import ConvertError, needed
 from protogen.convert.formats import InputKind
 from protogen.convert.inputs.chunks import PIECE, Chunk, joined
 from protogen.convert.inputs.compression import SUFFIXES, Packing, packing_of, unpacked
 from protogen.convert.inputs.hex_digits import HexError, HexReader
-from protogen.convert.inputs.recordings import record_pieces
+from protogen.convert.inputs.recordings import recorded_pieces
 from protogen.convert.inputs.remote_files import Stream, asked, open_stored
 from protogen.convert.inputs.text_lines import decoded, encoding_of, lines_of
 from protogen.convert.inputs.text_logs import BEGIN, Complain, log_pieces
 from protogen.convert.runs.table_names import STANDARD_INPUT, plain_name
+from protogen.recording.reader import is_recording
 
 _HEAD = 1 << 12
 """Bytes that are looked at to find out what a capture is."""
@@ -43,7 +43,7 @@ _WORDS = {
     InputKind.RAW: "raw bytes",
     InputKind.HEX: "hex digits",
     InputKind.LOG: "a text log with times",
-    InputKind.RECORD: "a recorded capture",
+    InputKind.RECORD: "a recording",
 }
 _KINDS = {".hex": InputKind.HEX}
 
@@ -264,7 +264,7 @@ def _begun(pieces: Iterator[bytes]) -> tuple[bytes, Iterator[bytes]]:
 
 
 def _kind(head: bytes, place: str) -> InputKind:
-    if head.startswith(MAGIC):
+    if is_recording(head):
         return InputKind.RECORD
     if BEGIN.match(head.decode(encoding_of(head), "replace")):
         return InputKind.LOG
@@ -289,7 +289,7 @@ def _chunks(
         case InputKind.LOG:
             return joined(log_pieces(lines_of(pieces, place), sender, senders, complain))
         case InputKind.RECORD:
-            return joined(record_pieces(pieces, complain))
+            return joined(recorded_pieces(pieces, sender, senders, complain))
 
 
 def _large(pieces: Iterable[bytes]) -> Iterator[Chunk]:

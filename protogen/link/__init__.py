@@ -1,0 +1,1 @@
+"""The live line: ports, recordings, and links that speak a protocol."""

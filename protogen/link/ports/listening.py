@@ -1,0 +1,89 @@
+"""A port that others connect to by TCP, one at a time."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+
+from protogen.link.ports.address import Address
+from protogen.link.ports.port import Arrival, Port, PortError
+
+_MOST = 1 << 16
+"""The most bytes that are read at once."""
+
+
+class ListeningPort(Port):
+    """Waits for one to connect; when that one leaves, for the next. The line outlives them."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
+        self._server: asyncio.Server | None = None
+        self._joined = asyncio.Event()
+        self._streams: tuple[asyncio.StreamReader, asyncio.StreamWriter] | None = None
+
+    async def listen(self, host: str, number: int) -> None:
+        """Begin to listen; of port 0 the system chooses one. Raises PortError."""
+        try:
+            self._server = await asyncio.start_server(self._join, host, number)
+        except OSError as error:
+            problem = f"{self.name}: can't listen: {error.strerror or error}"
+            raise PortError(problem, "choose another port number; 0 takes a free one") from None
+        address = self._server.sockets[0].getsockname()
+        shown = f"[{address[0]}]" if ":" in address[0] else address[0]
+        self.name = f"socket://{shown}:{address[1]}"
+
+    async def _join(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """Take one who connects, unless somebody is there who has not left."""
+        if self._streams is not None and not self._streams[0].at_eof():
+            writer.close()
+            return
+        self._streams = reader, writer
+        self._joined.set()
+
+    async def read(self) -> Arrival:
+        """Wait for bytes of whoever is connected."""
+        while True:
+            await self._joined.wait()
+            assert self._streams is not None
+            reader, writer = self._streams
+            try:
+                data = await reader.read(_MOST)
+            except OSError:
+                data = b""
+            if data:
+                return Arrival(data, time.time_ns())
+            self._leave(writer)
+
+    async def write(self, data: bytes) -> None:
+        """Send bytes to whoever is connected; without one, they are lost as on any line."""
+        if self._streams is None:
+            return
+        _, writer = self._streams
+        try:
+            writer.write(data)
+            await writer.drain()
+        except OSError:
+            self._leave(writer)
+
+    def _leave(self, writer: asyncio.StreamWriter) -> None:
+        """Let one go, so that the next can come."""
+        if self._streams is not None and self._streams[1] is writer:
+            self._streams = None
+            self._joined.clear()
+        writer.close()
+
+    async def close(self) -> None:
+        """Listen no more, and let go who is there."""
+        if self._server is None:
+            return
+        self._server.close()
+        if self._streams is not None:
+            self._leave(self._streams[1])
+        self._server = None
+
+
+async def listen(address: Address) -> ListeningPort:
+    """Listen at an address. Raises PortError."""
+    port = ListeningPort(address.text)
+    await port.listen(address.host, address.number)
+    return port

@@ -1,0 +1,34 @@
+"""Opens what an address is of."""
+
+from __future__ import annotations
+
+from protogen.link.ports.address import PortKind, parse_address
+from protogen.link.ports.listening import listen
+from protogen.link.ports.port import Port
+from protogen.link.ports.pseudo_terminal import make_pseudo_terminal
+from protogen.link.ports.serial_port import open_serial_port
+from protogen.link.ports.settings import LineSettings
+from protogen.link.ports.standard_input import StandardInput
+
+_ANY = LineSettings()
+
+
+async def open_port(text: str, settings: LineSettings = _ANY, speed: float = 1.0) -> Port:
+    """Open a port by its address; `speed` is that of a recording.
+
+    Raises PortError with the cause, and what to do about it.
+    """
+    address = parse_address(text)
+    match address.kind:
+        case PortKind.STANDARD_INPUT:
+            return StandardInput()
+        case PortKind.PSEUDO_TERMINAL:
+            return make_pseudo_terminal()
+        case PortKind.LISTENING:
+            return await listen(address)
+        case PortKind.RECORDING:
+            from protogen.link.ports.recording import open_recording
+
+            return open_recording(text, speed)
+        case _:
+            return await open_serial_port(address, settings)

@@ -1,0 +1,106 @@
+"""Pseudo-terminals: a serial port that this program makes, for another one to open."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import time
+from importlib import import_module
+
+from protogen.link.ports.port import Arrival, Port, PortError, PortLostError
+
+_MOST = 1 << 16
+"""The most bytes that are read at once."""
+
+
+class PseudoTerminal(Port):
+    """The end of a pseudo-terminal that this program has; `name` is the device of the other end."""
+
+    def __init__(self, name: str, own: int, other: int) -> None:
+        """`other` stays open, so that programs can open and close their end as they like."""
+        super().__init__(name)
+        self._own: int | None = own
+        self._other = other
+        os.set_blocking(own, False)
+
+    async def read(self) -> Arrival:
+        """Wait for bytes. Raises PortLostError once it is closed."""
+        while True:
+            try:
+                return Arrival(os.read(self._open(), _MOST), time.time_ns())
+            except BlockingIOError:
+                await self._ready(is_reading=True)
+            except OSError as error:
+                raise PortLostError(f"{self.name} is gone: {error.strerror}") from None
+
+    async def write(self, data: bytes) -> None:
+        """Send bytes; waits while nobody reads. Raises PortLostError once it is closed."""
+        left = memoryview(data)
+        while left:
+            try:
+                left = left[os.write(self._open(), left) :]
+            except BlockingIOError:
+                await self._ready(is_reading=False)
+            except OSError as error:
+                raise PortLostError(f"{self.name} is gone: {error.strerror}") from None
+
+    def offer(self, data: bytes) -> bool:
+        """Send bytes if there is room for some; a line without a listener loses them."""
+        try:
+            return os.write(self._open(), data) == len(data)
+        except BlockingIOError:
+            return False
+
+    async def close(self) -> None:
+        """Take the device away."""
+        if self._own is None:
+            return
+        loop = asyncio.get_running_loop()
+        loop.remove_reader(self._own)
+        loop.remove_writer(self._own)
+        os.close(self._own)
+        os.close(self._other)
+        self._own = None
+
+    def _open(self) -> int:
+        if self._own is None:
+            raise PortLostError(f"{self.name} is closed")
+        return self._own
+
+    async def _ready(self, *, is_reading: bool) -> None:
+        """Wait until there is something to read, or room to write."""
+        loop, own = asyncio.get_running_loop(), self._open()
+        add, remove = (
+            (loop.add_reader, loop.remove_reader)
+            if is_reading
+            else (loop.add_writer, loop.remove_writer)
+        )
+        ready = loop.create_future()
+        add(own, _settle, ready)
+        try:
+            await ready
+        finally:
+            if self._own is not None:
+                remove(own)
+
+
+def _settle(ready: asyncio.Future[None]) -> None:
+    if not ready.done():
+        ready.set_result(None)
+
+
+def make_pseudo_terminal() -> PseudoTerminal:
+    """Make a pseudo-terminal that passes all bytes on as they are.
+
+    Raises PortError where the system has none.
+    """
+    try:
+        tty = import_module("tty")
+        own, other = os.openpty()
+    except (ImportError, AttributeError):
+        problem = "this system has no pseudo-terminals"
+        raise PortError(problem, "listen on TCP instead: listen://127.0.0.1:9000") from None
+    except OSError as error:
+        raise PortError(f"can't make a pseudo-terminal: {error.strerror}") from None
+    tty.setraw(other)
+    return PseudoTerminal(os.ttyname(other), own, other)
