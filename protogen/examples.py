@@ -19,13 +19,13 @@ from protogen.model.frame import Frame
 from protogen.model.messages import Example, Message, given_parts
 from protogen.model.parts import LiteralPart, NumberPart
 from protogen.model.protocol import Protocol
+from protogen.passes.messages.byte_strings import with_hex_digits
 from protogen.problems import Problems
 from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.events import InvalidEvent, MessageEvent, UnknownEvent
 from protogen.runtime.framing.assembly import join_parts
 from protogen.runtime.values import as_dict
-from protogen.schema.syntax.octets import to_octets
 
 _GREATEST_SHOWN = 512
 """Bytes of the longest frame that a hint shows."""
@@ -65,6 +65,7 @@ class _Verification:
         self._sender = module.PROTOCOL.sender(example.sender)
         self._class = module.MESSAGES[message.name]
         self._received_as = protocol.sender(example.sender).received_as(message.name)
+        self._protocol = protocol
         self._module = module
         self._message = message
         self._example = example
@@ -103,9 +104,9 @@ class _Verification:
         stated = self._example.parts
         parts = {name: stated.get(name, parts[name]) for name in self._chosen}
         try:
-            message = self._class.from_dict(_hex_digits(values))
+            message = self._class.from_dict(with_hex_digits(self._message.fields, values))
             made = self._encoded(message, parts, strict=True)
-        except EncodeError:
+        except ValueError:  # EncodeError is one.
             return None
         if len(made) > _GREATEST_SHOWN or self._example.contradicts is not None:
             return None
@@ -175,7 +176,7 @@ class _Verification:
         if self._received_as != reading.message.NAME:
             self._report("PG160", f"it is a `{reading.message.NAME}`")
             return False
-        wrong = _differences(reading.message, values or {})
+        wrong = self._differences(reading, values)
         for text in wrong:
             self._report("PG160", text)
         return not wrong
@@ -217,8 +218,27 @@ class _Verification:
             self._report("PG163", text if reading.fails else f"{text}: it decodes")
         elif found == "values":
             self._values_hold(reading, stated.reads)
-            if not _differences(reading.message, self._example.values or {}):
+            if not self._differences(reading, self._example.values):
                 self._report("PG163", "its bytes mean just what the document says")
+
+    def _differences(self, reading: _Reading, stated: Mapping[str, Any] | None) -> list[str]:
+        """Statements of the example about fields that the bytes contradict."""
+        fields = self._protocol.message(reading.message.NAME).fields
+        found = reading.message.to_dict()
+        texts = []
+        for name, value in (stated or {}).items():
+            if name not in found:
+                texts.append(f"there is no field `{name}`")
+                continue
+            try:
+                whole = with_hex_digits(fields, {**found, name: value})
+                expected = type(reading.message).from_dict(whole).to_dict()[name]
+            except ValueError as error:  # EncodeError is one.
+                texts.append(f"`{name}`: {error}")
+                continue
+            if expected != found[name]:
+                texts.append(f"`{name}` is {found[name]}, not {expected}")
+        return texts
 
 
 def _pieces(frame: Frame, covers: Sequence[str], data: bytes) -> dict[str, bytes] | None:
@@ -232,45 +252,6 @@ def _pieces(frame: Frame, covers: Sequence[str], data: bytes) -> dict[str, bytes
         name: stream.read(left if name == frame.payload.name else size)
         for name, size in sizes.items()
     }
-
-
-def _differences(message: Any, stated: dict[str, Any]) -> list[str]:
-    """Statements of the example about fields that the bytes contradict."""
-    found = message.to_dict()
-    texts = []
-    for name, value in stated.items():
-        if name not in found:
-            texts.append(f"there is no field `{name}`")
-            continue
-        try:
-            expected = _expected(message, name, value)
-        except EncodeError as error:
-            texts.append(f"`{name}`: {error}")
-            continue
-        if expected != found[name]:
-            texts.append(f"`{name}` is {found[name]}, not {expected}")
-    return texts
-
-
-def _expected(message: Any, name: str, value: Any) -> Any:
-    """A stated value in the form of `to_dict`: names become raw values, bytes hex digits."""
-    written = _hex_digits(value)
-    whole = {**message.to_dict(), name: written}
-    return type(message).from_dict(whole).to_dict()[name]
-
-
-def _hex_digits(value: Any) -> Any:
-    """`{hex: ...}` and `{text: ...}` as hex digits, wherever they stand."""
-    if isinstance(value, dict) and set(value) in ({"hex"}, {"text"}):
-        try:
-            return to_octets(value).hex()
-        except ValueError as error:
-            raise EncodeError("", str(error)) from None
-    if isinstance(value, dict):
-        return {key: _hex_digits(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_hex_digits(item) for item in value]
-    return value
 
 
 def _hex(data: bytes) -> str:

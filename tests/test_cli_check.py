@@ -252,6 +252,32 @@ def test_a_wrong_last_byte_is_named(tmp_path: Path) -> None:
     assert "`etx` must be 03, and the last bytes are 04" in output
 
 
+def test_a_struct_with_a_field_called_text_is_no_byte_string(tmp_path: Path) -> None:
+    schema = tmp_path / "named.yaml"
+    schema.write_text("""\
+protocol: named
+endpoints: {board: Board}
+frame:
+  sync: {literal: 0x02}
+  type: {type: uint8, id: true}
+  payload: {}
+  end: {literal: 0x03}
+messages:
+  line:
+    id: 1
+    from: board
+    fields:
+      x: {fields: {text: {type: ascii, size: 1}}, count: 2}
+      hex: {fields: {hex: {type: bytes, size: 1}}}
+    examples:
+      one:
+        frame: {hex: 02 01 41 42 07 03}
+        values: {x: [{text: A}, {text: B}], hex: {hex: {hex: "07"}}}
+""")
+    result = run("check", str(schema))
+    assert "PG160" not in result.output, result.output
+
+
 @pytest.mark.parametrize("option", [[], ["--check"], ["--diff"]])
 def test_nothing_is_generated_where_an_example_fails(tmp_path: Path, option: list[str]) -> None:
     schema = tmp_path / "seen.yaml"

@@ -266,16 +266,31 @@ def _used(
     else:
         usual = _between(least, greatest)
     if switches:
-        own = [case.value for case in switches[0].cases if case.value is not None]
+        required = _required(switches)
+        own = _cases(switches[0]) if required is None else required
         known = [value for value in own if least <= value <= greatest]
-        open_ended = all(
-            switch.rest is not None or len(own) < len(switch.cases) for switch in switches
-        )
-        usual = usual | st.sampled_from(known) if open_ended else st.sampled_from(known)
+        assume(known)  # Two switches may have no case in common.
+        usual = usual | st.sampled_from(known) if required is None else st.sampled_from(known)
     value = draw(usual)
     # One that counts bytes may be 0.
     value -= value % lcm(*map(_each, counts))
     return bool(value) if type_.role == "bool" else value
+
+
+def _cases(switch: Switch) -> list[int]:
+    return [case.value for case in switch.cases if case.value is not None]
+
+
+def _required(switches: Sequence[Switch]) -> list[int] | None:
+    """The values that are a case of each switch which has nothing for others; None for any."""
+    closed = [
+        _cases(switch)
+        for switch in switches
+        if switch.rest is None and len(_cases(switch)) == len(switch.cases)
+    ]
+    if not closed:
+        return None
+    return [value for value in closed[0] if all(value in own for own in closed)]
 
 
 def _counting(type_: Integer, field: Field, counts: Sequence[Counted]) -> tuple[int, int]:
@@ -294,10 +309,9 @@ def _of_frames(
     switches = [use for use in uses if isinstance(use, Switch)]
     is_closed = type_.enum is not None and type_.enum.closed
     known = [entry.value for entry in type_.enum.values] if type_.enum and is_closed else None
-    for switch in switches[:1]:
-        own = [case.value for case in switch.cases if case.value is not None]
-        if switch.rest is None and len(own) == len(switch.cases):
-            known = [value for value in own if known is None or value in known]
+    required = _required(switches)
+    if required is not None:
+        known = [value for value in required if known is None or value in known]
     bounds = _counting(type_, field, counts)
     return held_value(field, known, [*map(_each, counts)], bounds, frames)
 

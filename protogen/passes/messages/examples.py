@@ -1,32 +1,23 @@
 """Examples, which must say enough to be verified, and exchanges.
 
 Whether an example decodes to its values is asked later, by the Python target's own output.
-
-A byte string is written `{hex: ...}`, `{text: ...}`, as a number or as a list of numbers. The type
-of a field tells which numbers and lists are byte strings.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Any
-
 from protogen.copying import replace
-from protogen.model.expressions import Operand, value_of
 from protogen.model.frame import Frame
 from protogen.model.messages import Contradiction, Example, Exchange, Message, Step
 from protogen.model.parts import members_of
-from protogen.model.types import Array, Field, Octets, Struct, Switch, Type, is_integer
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.bit_names import are_whole
 from protogen.passes.framing.capacity import head_literals, joined_words
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.part_values import number_of
-from protogen.passes.types.constants import named_raw_value
+from protogen.passes.messages.byte_strings import with_byte_strings
 from protogen.problems import hint_for
 from protogen.schema.syntax.messages import Example as ExampleSyntax
-from protogen.schema.syntax.octets import to_octets
 
 
 def attach_examples(context: Context, draft: Draft) -> None:
@@ -196,62 +187,3 @@ def resolve_exchanges(context: Context, draft: Draft) -> None:
         )
         for name, item in context.syntax.exchanges.items()
     )
-
-
-def with_byte_strings(fields: Iterable[Field], values: Mapping[str, Any]) -> dict[str, Any]:
-    """The values of these fields, with every byte string that can be read as `{hex: ...}`.
-
-    What does not fit its field stays as it is: the verification of the example says so.
-    """
-    types = {field.name: field.type for field in fields}
-    return {
-        name: _value(types[name], value, types, values) if name in types else value
-        for name, value in values.items()
-    }
-
-
-def _value(type_: Type, value: Any, types: Mapping[str, Type], around: Mapping[str, Any]) -> Any:
-    match type_:
-        case Octets():
-            return _byte_string(value)
-        case Struct() if isinstance(value, dict):
-            return with_byte_strings(type_.fields, value)
-        case Array() if isinstance(value, list):
-            return [_value(type_.element, item, types, around) for item in value]
-        case Switch():
-            case = _case(type_, types, around)
-            return value if case is None else _value(case, value, types, around)
-    return value
-
-
-def _byte_string(value: Any) -> Any:
-    if not isinstance(value, int | list):
-        return value
-    try:
-        return {"hex": to_octets(value).hex(" ").upper()}
-    except ValueError:
-        return value
-
-
-def _case(switch: Switch, types: Mapping[str, Type], around: Mapping[str, Any]) -> Type | None:
-    """Type of a switch for the value that its selector has in the example."""
-    try:
-        chosen = value_of(switch.selector, lambda operand: _raw_value(operand, types, around))
-    except LookupError:
-        return None
-    case = switch.case(int(chosen))
-    return None if case is None else case.type
-
-
-def _raw_value(operand: Operand, types: Mapping[str, Type], around: Mapping[str, Any]) -> int:
-    """Raw value of a field in an example. Raises LookupError where it has none."""
-    type_, value = types[operand.path[0]], around[operand.path[0]]
-    for name in operand.path[1:]:
-        if not isinstance(type_, Struct) or not isinstance(value, dict):
-            raise LookupError(name)
-        type_ = {field.name: field.type for field in type_.fields}[name]
-        value = value[name]
-    named = named_raw_value(type_, value) if is_integer(type_) else None
-    if named is None:
-        raise LookupError(operand.name)
-    return named[0]
