@@ -24,12 +24,15 @@ class Recorder:
         self,
         target: str | os.PathLike[str] | BinaryIO,
         clock: Callable[[], int] = time.time_ns,
+        *,
+        owned: bool = False,
     ) -> None:
-        """Begin a recording in a file, which is made anew, or in a stream, which stays open.
+        """Begin a recording in a file, which is made anew, or in a stream.
 
-        `clock` tells nanoseconds since 1970-01-01 UTC. Raises OSError.
+        A stream stays open, unless it is `owned`. `clock` tells nanoseconds since 1970-01-01 UTC.
+        Raises OSError.
         """
-        self._owned = isinstance(target, str | os.PathLike)
+        self._owned = owned or isinstance(target, str | os.PathLike)
         # The file lives as long as the recorder, which is the context manager.
         self._stream = (
             Path(target).open("wb", buffering=0)  # noqa: SIM115

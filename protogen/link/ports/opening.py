@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from protogen.link.ports.address import PortKind, parse_address
+from protogen.link.ports.lasting import LastingPort
 from protogen.link.ports.listening import listen
 from protogen.link.ports.port import Port
 from protogen.link.ports.pseudo_terminal import make_pseudo_terminal
@@ -32,3 +35,16 @@ async def open_port(text: str, settings: LineSettings = _ANY, speed: float = 1.0
             return open_recording(text, speed)
         case _:
             return await open_serial_port(address, settings)
+
+
+async def open_lasting_port(
+    text: str, settings: LineSettings, tell: Callable[[str], None], speed: float = 1.0
+) -> Port:
+    """Open a port that is opened again when it was lost; `tell` takes news for the user.
+
+    What this program makes itself, and what has an end, is never lost. Raises PortError.
+    """
+    port = await open_port(text, settings, speed)
+    if parse_address(text).kind not in (PortKind.SERIAL, PortKind.SOCKET, PortKind.RFC2217):
+        return port
+    return LastingPort(port, lambda: open_port(text, settings), tell)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from protogen.link.ports.port import PortError
 from protogen.link.ports.recorded import RecordedPort
-from protogen.recording import RecordKind, records
+from protogen.recording import Record, RecordKind, records
 from protogen.recording.reader import is_recording
 
 _PIECE = 1 << 16
@@ -18,6 +18,26 @@ _HEAD = 8
 
 def open_recording(name: str, speed: float, source: str | None = None) -> RecordedPort:
     """Open a recording, of what one source sent or of all. Raises PortError."""
+    return RecordedPort(name, pieces_of(name, source), speed)
+
+
+def sources_of(name: str) -> list[str]:
+    """The sources of a recording that have sent something. Raises PortError."""
+    found = _records(_checked(name))
+    return list(dict.fromkeys(item.source for item in found if item.kind is RecordKind.BYTES))
+
+
+def pieces_of(name: str, source: str | None = None) -> Iterator[tuple[bytes, int]]:
+    """Bytes of a recording with their times, of one source or of all. Raises PortError."""
+    path = _checked(name)
+    return (
+        (record.data, record.when)
+        for record in _records(path)
+        if record.kind is RecordKind.BYTES and source in (None, record.source)
+    )
+
+
+def _checked(name: str) -> Path:
     path = Path(name)
     try:
         with path.open("rb") as file:
@@ -27,13 +47,11 @@ def open_recording(name: str, speed: float, source: str | None = None) -> Record
     if not is_recording(head):
         problem = f"{name} is a file, but no recording: its bytes have no times"
         raise PortError(problem, "read it by `protogen decode`, or record with `protogen record`")
-    return RecordedPort(name, _pieces(path, source), speed)
+    return path
 
 
-def _pieces(path: Path, source: str | None) -> Iterator[tuple[bytes, int]]:
-    for record in records(_read(path), lambda problem: None):
-        if record.kind is RecordKind.BYTES and source in (None, record.source):
-            yield record.data, record.when
+def _records(path: Path) -> Iterator[Record]:
+    return records(_read(path), lambda problem: None)
 
 
 def _read(path: Path) -> Iterator[bytes]:

@@ -1,0 +1,56 @@
+"""Arguments and options that the commands of the line have in common."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from protogen.cli.exits import UsageError
+
+if TYPE_CHECKING:
+    from protogen.link.ports.settings import LineSettings
+    from protogen.model.protocol import Link, Protocol
+
+PORTS = (
+    "A device, socket://HOST:PORT, rfc2217://HOST:PORT, listen://HOST:PORT, pty:, a recording or -."
+)
+"""What a port may be."""
+
+PortText = Annotated[str, typer.Argument(metavar="[NAME=]PORT", help=PORTS)]
+
+Baud = Annotated[
+    int | None,
+    typer.Option(metavar="RATE", help="Bits per second. Default: the schema's, or 115200."),
+]
+Dtr = Annotated[
+    bool | None, typer.Option("--dtr/--no-dtr", help="Set DTR. Default: leave it as it is.")
+]
+Rts = Annotated[
+    bool | None, typer.Option("--rts/--no-rts", help="Set RTS. Default: leave it as it is.")
+]
+
+
+def named_port(text: str, protocol: Protocol) -> tuple[str, str]:
+    """Split `NAME=PORT` into the endpoint that is there and the port; the name may be left out.
+
+    Raises UsageError for a name that is no endpoint.
+    """
+    name, equals, port = text.partition("=")
+    if not equals or "/" in name or "\\" in name or Path(text).exists():
+        return "", text
+    if name not in protocol.sending:
+        from protogen.problems import hint_for
+
+        known = ", ".join(protocol.sending)
+        hint = hint_for(name, protocol.sending) or f"these send: {known}"
+        raise UsageError(f"`{name}` is no endpoint of {protocol.name}", hint)
+    return name, port
+
+
+def line_settings(link: Link, baud: int | None, dtr: bool | None, rts: bool | None) -> LineSettings:
+    """The settings of a schema's link, with what the user gave in their place."""
+    from protogen.link.ports.settings import settings_of
+
+    return settings_of(link, baud, dtr=dtr, rts=rts)

@@ -1,0 +1,127 @@
+"""`protogen tap`: in the middle of a line, passing on and showing what both ends send."""
+
+from __future__ import annotations
+
+from contextlib import AsyncExitStack, ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from protogen.cli.exits import CLEAN, UsageError
+from protogen.cli.line.options import Baud, Dtr, PortText, Rts, line_settings, named_port
+from protogen.cli.line.recorders import Force, RecordingFormat, open_recorder
+from protogen.cli.line.running import run_until_stopped, tell, tell_name
+from protogen.cli.line.shown_events import ShownEvents
+from protogen.cli.options import Quiet, SchemaFile
+
+if TYPE_CHECKING:
+    from protogen.link.damage import DamageRates
+    from protogen.link.ports.port import Arrival
+    from protogen.link.ports.settings import LineSettings
+    from protogen.link.tapping import End, Passed, Take
+    from protogen.model.protocol import Protocol
+
+EXAMPLE = "Example: protogen tap rover.yaml board=/dev/ttyUSB0 host=pty: -o run.pgrec"
+
+_MILLISECONDS = 1000
+_LETTERS = ("a", "b")
+"""Names of ports of which no endpoint is named."""
+
+
+def tap(  # noqa: PLR0913 - each option is one argument
+    schema: SchemaFile,
+    port_a: PortText,
+    port_b: PortText,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE", help="Record both directions, too."),
+    ] = None,
+    format: RecordingFormat = "pgrec",
+    force: Force = False,
+    drop: Annotated[
+        float, typer.Option(min=0, max=1, help="Share of bytes to leave out, from 0 to 1.")
+    ] = 0.0,
+    flip: Annotated[
+        float, typer.Option(min=0, max=1, help="Share of bytes to turn over a bit of.")
+    ] = 0.0,
+    delay: Annotated[
+        float, typer.Option(min=0, metavar="MS", help="The most milliseconds to hold bytes back.")
+    ] = 0.0,
+    seed: Annotated[int, typer.Option(help="The same seed does the same damage.")] = 0,
+    quiet: Quiet = False,
+    baud: Baud = None,
+    dtr: Dtr = None,
+    rts: Rts = None,
+) -> int:
+    """Pass bytes on between two ports, at once and as they are, and show what they say.
+
+    `board=/dev/ttyUSB0` says that what comes from there was sent by `board`. With `host=pty:`, a
+    program opens the pseudo-terminal that is made, in the place of the device. Recordings and what
+    is shown are what was passed on: with damage that was done on purpose, the damaged bytes.
+    """
+    from protogen.cli.wire.codec import open_codec
+    from protogen.link.damage import DamageRates
+
+    codec = open_codec(schema)
+    ends = _ends(codec.protocol, port_a, port_b)
+    settings = line_settings(codec.protocol.link, baud, dtr, rts)
+    rates = DamageRates(drop=drop, flip=flip, delay=delay / _MILLISECONDS)
+    passed: dict[str, Passed] = {}
+    with ExitStack() as stack:
+        recorder = None
+        if output is not None:
+            recorder = open_recorder(output, format, None, None, force=force)
+            stack.callback(recorder.close)
+        shown = (
+            None if quiet else ShownEvents(codec, [name for name in ends if name not in _LETTERS])
+        )
+
+        def take(source: str, arrival: Arrival) -> None:
+            if recorder is not None:
+                recorder.write(arrival.data, arrival.when, source)
+            if shown is not None:
+                shown.take(source, arrival.data)
+
+        run_until_stopped(lambda: _tap(ends, settings, rates, seed, take, passed))
+        if shown is not None:
+            shown.end()
+    for name, way in passed.items():
+        held = f"held {way.mean_held * 1e3:.2f} ms on average, {way.most_held * 1e3:.2f} at most"
+        typer.echo(f"{name}: {way.bytes:,} bytes passed on, {held}", err=True)
+    return CLEAN
+
+
+def _ends(protocol: Protocol, *texts: str) -> dict[str, str]:
+    """Endpoint or, where none is named, letter of each port, with the port.
+
+    Raises UsageError where one endpoint is named twice.
+    """
+    named = [named_port(text, protocol) for text in texts]
+    ends = {name or letter: port for (name, port), letter in zip(named, _LETTERS, strict=True)}
+    if len(ends) < len(texts):
+        raise UsageError(f"both ports are said to lead to {named[0][0]}", "name the other end")
+    return ends
+
+
+async def _tap(
+    ends: dict[str, str],
+    settings: LineSettings,
+    rates: DamageRates,
+    seed: int,
+    take: Take,
+    passed: dict[str, Passed],
+) -> None:
+    from protogen.link.damage import Damage
+    from protogen.link.ports.opening import open_lasting_port
+    from protogen.link.tapping import End, tap
+
+    async with AsyncExitStack() as stack:
+        opened: list[End] = []
+        for name, address in ends.items():
+            port = await stack.enter_async_context(await open_lasting_port(address, settings, tell))
+            tell_name(address, port, name)
+            damage = None if rates.is_none else Damage(rates, f"{seed} {name}")
+            opened.append(End(name, port, damage))
+            passed[name] = opened[-1].passed
+        await tap(opened[0], opened[1], take)
