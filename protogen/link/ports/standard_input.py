@@ -26,7 +26,7 @@ class StandardInput(Port):
 
     def __init__(self) -> None:
         """Begin to read. Needs a running event loop."""
-        super().__init__("standard input")
+        super().__init__("-")
         self._loop = asyncio.get_running_loop()
         self._arrived: asyncio.Queue[Arrival] = asyncio.Queue()
         self._room = Semaphore(_WAITING)
