@@ -78,7 +78,6 @@ def opened(name: str) -> Iterator[int]:
     """A port that is opened as a program does."""
     port = os.open(name, os.O_RDWR | os.O_NOCTTY)
     try:
-        tty.setraw(port)
         yield port
     finally:
         os.close(port)

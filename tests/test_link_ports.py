@@ -111,8 +111,8 @@ class TestSerialPort:
     def test_what_is_offered_to_nobody_is_lost(self) -> None:
         async def lost() -> None:
             async with make_pseudo_terminal() as board:
-                assert board.offer(b"first")
-                while board.offer(bytes(1000)):
+                assert await board.offer(b"first")
+                while await board.offer(bytes(1000)):
                     pass
                 reader = os.open(board.name, os.O_RDONLY | os.O_NOCTTY)
                 assert os.read(reader, 5) == b"first"

@@ -34,6 +34,7 @@ _MODULES = {
     "record": "line.record",
     "tap": "line.tap",
     "replay": "line.replay",
+    "simulate": "line.simulate",
     "fuzz": "fuzz",
     "diff": "evolution.diff",
     "breaking": "evolution.breaking",

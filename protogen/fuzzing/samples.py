@@ -125,7 +125,7 @@ def samples(message: Message, frame: Frame, random: Random) -> Iterator[tuple[Va
     greatest, names, special values, single bits, empty and full arrays.
     """
     yield from _boundary_samples(message, frame)
-    yield from _random_samples(message, frame, random)
+    yield from random_samples(message, frame, random)
 
 
 def samples_at_least(
@@ -136,7 +136,7 @@ def samples_at_least(
     for sample in _boundary_samples(message, frame):
         yielded += 1
         yield sample
-    yield from islice(_random_samples(message, frame, random), max(0, least - yielded))
+    yield from islice(random_samples(message, frame, random), max(0, least - yielded))
 
 
 def boundary_rounds(message: Message, frame: Frame) -> int:
@@ -144,9 +144,10 @@ def boundary_rounds(message: Message, frame: Frame) -> int:
     return sum(1 for _ in _boundary_samples(message, frame))
 
 
-def _random_samples(
+def random_samples(
     message: Message, frame: Frame, random: Random
 ) -> Iterator[tuple[Values, Values]]:
+    """Yield values of the fields and of the caller's parts without end, if any fit the frame."""
     chance = Chance(random)
     while True:
         tries = (_sample(message, frame, chance) for _ in range(_TRIES))

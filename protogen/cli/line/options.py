@@ -10,6 +10,7 @@ import typer
 from protogen.cli.exits import UsageError
 
 if TYPE_CHECKING:
+    from protogen.link.damage import DamageRates
     from protogen.link.ports.settings import LineSettings
     from protogen.model.protocol import Link, Protocol
 
@@ -30,6 +31,24 @@ Dtr = Annotated[
 Rts = Annotated[
     bool | None, typer.Option("--rts/--no-rts", help="Set RTS. Default: leave it as it is.")
 ]
+
+Drop = Annotated[
+    float, typer.Option(min=0, max=1, help="Share of bytes to leave out, from 0 to 1.")
+]
+Flip = Annotated[float, typer.Option(min=0, max=1, help="Share of bytes to turn over a bit of.")]
+Delay = Annotated[
+    float, typer.Option(min=0, metavar="MS", help="The most milliseconds to hold bytes back.")
+]
+Seed = Annotated[int, typer.Option(help="The same seed does the same.")]
+
+_MILLISECONDS = 1000
+
+
+def damage_rates(drop: float, flip: float, delay: float) -> DamageRates:
+    """The damage that was asked for; `delay` is in milliseconds."""
+    from protogen.link.damage import DamageRates
+
+    return DamageRates(drop=drop, flip=flip, delay=delay / _MILLISECONDS)
 
 
 def named_port(text: str, protocol: Protocol) -> tuple[str, str]:

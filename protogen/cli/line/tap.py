@@ -9,7 +9,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from protogen.cli.exits import CLEAN, UsageError
-from protogen.cli.line.options import Baud, Dtr, PortText, Rts, line_settings, named_port
+from protogen.cli.line.options import (
+    Baud,
+    Delay,
+    Drop,
+    Dtr,
+    Flip,
+    PortText,
+    Rts,
+    Seed,
+    damage_rates,
+    line_settings,
+    named_port,
+)
 from protogen.cli.line.recorders import Force, RecordingFormat, open_recorder
 from protogen.cli.line.running import run_until_stopped, tell, tell_name
 from protogen.cli.line.shown_events import ShownEvents
@@ -24,7 +36,6 @@ if TYPE_CHECKING:
 
 EXAMPLE = "Example: protogen tap rover.yaml board=/dev/ttyUSB0 host=pty: -o run.pgrec"
 
-_MILLISECONDS = 1000
 _LETTERS = ("a", "b")
 """Names of ports of which no endpoint is named."""
 
@@ -39,16 +50,10 @@ def tap(  # noqa: PLR0913 - each option is one argument
     ] = None,
     format: RecordingFormat = "pgrec",
     force: Force = False,
-    drop: Annotated[
-        float, typer.Option(min=0, max=1, help="Share of bytes to leave out, from 0 to 1.")
-    ] = 0.0,
-    flip: Annotated[
-        float, typer.Option(min=0, max=1, help="Share of bytes to turn over a bit of.")
-    ] = 0.0,
-    delay: Annotated[
-        float, typer.Option(min=0, metavar="MS", help="The most milliseconds to hold bytes back.")
-    ] = 0.0,
-    seed: Annotated[int, typer.Option(help="The same seed does the same damage.")] = 0,
+    drop: Drop = 0.0,
+    flip: Flip = 0.0,
+    delay: Delay = 0.0,
+    seed: Seed = 0,
     quiet: Quiet = False,
     baud: Baud = None,
     dtr: Dtr = None,
@@ -61,12 +66,11 @@ def tap(  # noqa: PLR0913 - each option is one argument
     is shown are what was passed on: with damage that was done on purpose, the damaged bytes.
     """
     from protogen.cli.wire.codec import open_codec
-    from protogen.link.damage import DamageRates
 
     codec = open_codec(schema)
     ends = _ends(codec.protocol, port_a, port_b)
     settings = line_settings(codec.protocol.link, baud, dtr, rts)
-    rates = DamageRates(drop=drop, flip=flip, delay=delay / _MILLISECONDS)
+    rates = damage_rates(drop, flip, delay)
     passed: dict[str, Passed] = {}
     with ExitStack() as stack:
         recorder = None

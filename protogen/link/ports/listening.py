@@ -10,6 +10,8 @@ from protogen.link.ports.port import Arrival, Port, PortError
 
 _MOST = 1 << 16
 """The most bytes that are read at once."""
+_MOST_WAITING = 1 << 12
+"""So many bytes wait for one who does not read; what comes then is lost."""
 
 
 class ListeningPort(Port):
@@ -64,6 +66,16 @@ class ListeningPort(Port):
             await writer.drain()
         except OSError:
             self._leave(writer)
+
+    async def offer(self, data: bytes) -> bool:
+        """Send bytes to whoever is connected and reads; to others they are lost."""
+        if self._streams is None:
+            return False
+        writer = self._streams[1]
+        if writer.transport.get_write_buffer_size() > _MOST_WAITING:
+            return False
+        writer.write(data)
+        return True
 
     def _leave(self, writer: asyncio.StreamWriter) -> None:
         """Let one go, so that the next can come."""

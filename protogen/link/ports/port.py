@@ -47,6 +47,14 @@ class Port(abc.ABC):
     async def write(self, data: bytes) -> None:
         """Send bytes; waits while the port takes no more. Raises PortLostError or PortError."""
 
+    async def offer(self, data: bytes) -> bool:
+        """Send bytes as a device does, which waits for nobody; True if they are on their way.
+
+        Where nobody takes them, they are lost. Raises PortLostError or PortError.
+        """
+        await self.write(data)
+        return True
+
     @abc.abstractmethod
     async def close(self) -> None:
         """Give the port back. Does nothing where it is closed already."""

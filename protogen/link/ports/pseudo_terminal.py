@@ -44,8 +44,8 @@ class PseudoTerminal(Port):
             except OSError as error:
                 raise PortLostError(f"{self.name} is gone: {error.strerror}") from None
 
-    def offer(self, data: bytes) -> bool:
-        """Send bytes if there is room for some; a line without a listener loses them."""
+    async def offer(self, data: bytes) -> bool:
+        """Send bytes as far as there is room; a line without a listener loses the others."""
         try:
             return os.write(self._open(), data) == len(data)
         except BlockingIOError:

@@ -1,0 +1,140 @@
+"""A simulated device for tests of programs: a port, and an endpoint behind it."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Mapping
+from concurrent.futures import Future
+from threading import Thread
+from types import TracebackType
+from typing import Any, Self
+
+from protogen.api import load
+from protogen.link.damage import Damage, DamageRates
+from protogen.link.ports.opening import open_port
+from protogen.link.ports.port import Port, PortError
+from protogen.link.simulated_values import (
+    ValueFunction,
+    computed_values,
+    example_values,
+)
+from protogen.link.simulation import Answer, Counts, Simulation
+from protogen.live.codec import kept_module
+from protogen.model.protocol import Protocol
+
+_PATIENCE = 10
+"""Seconds in which the device has to begin and to end."""
+
+
+class SimulatedDevice:
+    """A device that speaks for one endpoint, in a thread of its own.
+
+    >>> with SimulatedDevice("rover.yaml", "board", rates={"state": 50}) as board:  # doctest: +SKIP
+    ...     board.on("drive", lambda event: [])
+    ...     my_program(board.port)
+    """
+
+    def __init__(
+        self,
+        schema: str | os.PathLike[str] | Protocol,
+        endpoint: str,
+        *,
+        rates: Mapping[str, float] | None = None,
+        values: ValueFunction | None = None,
+        address: str = "pty:",
+        seed: int = 0,
+        damage: DamageRates | None = None,
+    ) -> None:
+        """`rates` are messages with how often each is sent, in Hz.
+
+        Values are those of examples, or random ones in their ranges; a function of the message's
+        name and the seconds since the start gives others. The device is at a pseudo-terminal, or
+        listens: `listen://127.0.0.1:0`. Raises SchemaError.
+        """
+        protocol = schema if isinstance(schema, Protocol) else load(schema)
+        usual = example_values(protocol, endpoint, seed)
+        self._address = address
+        self._simulation = Simulation(
+            protocol,
+            kept_module(protocol),
+            endpoint,
+            rates or {},
+            usual if values is None else computed_values(usual, values),
+            Damage(damage, seed) if damage is not None else None,
+        )
+        self.port = ""
+        """The port that a program opens."""
+        self.messages: dict[str, Any] = kept_module(protocol).MESSAGES
+        """Classes of the messages, by name, for answers."""
+        self._loop = asyncio.new_event_loop()
+        self._work: asyncio.Task[None] | None = None
+        self._opened: Port | None = None
+        self._ended: Future[None] = Future()
+
+    @property
+    def counts(self) -> Counts:
+        """What was sent and received so far."""
+        return self._simulation.counts
+
+    def on(self, message: str, answer: Answer) -> None:
+        """Answer each such message: `answer` takes the event and returns messages to send.
+
+        With a message may come its parts: `[(Ack(), {"counter": event.parts.counter})]`. Raises
+        KeyError if there is no such message.
+        """
+        self._simulation.on(message, answer)
+
+    def send(self, message: Any, **parts: Any) -> None:
+        """Send a message now. Raises EncodeError, and PortError before the device has begun."""
+        if self._opened is None:
+            raise PortError("the device has not begun", "use it in a `with`, or call `start`")
+        sending = self._simulation.send(self._opened, message, **parts)
+        asyncio.run_coroutine_threadsafe(sending, self._loop).result(_PATIENCE)
+
+    def start(self) -> Self:
+        """Open the port, and begin. Raises PortError."""
+        opened: Future[Port] = Future()
+        Thread(target=self._run, args=(opened,), name="simulated device", daemon=True).start()
+        self._opened = opened.result(_PATIENCE)
+        self.port = self._opened.name
+        return self
+
+    def stop(self) -> None:
+        """Take the device away, as if it were unplugged."""
+        if self._work is not None:
+            self._loop.call_soon_threadsafe(self._work.cancel)
+            self._ended.result(_PATIENCE)
+            self._work = None
+
+    def _run(self, opened: Future[Port]) -> None:
+        try:
+            self._loop.run_until_complete(self._serve(opened))
+        except asyncio.CancelledError:
+            pass
+        except Exception as error:
+            if opened.done():
+                self._ended.set_exception(error)
+                return
+            opened.set_exception(error)
+        finally:
+            self._loop.close()
+        if not self._ended.done():
+            self._ended.set_result(None)
+
+    async def _serve(self, opened: Future[Port]) -> None:
+        self._work = asyncio.current_task()
+        async with await open_port(self._address) as port:
+            opened.set_result(port)
+            await self._simulation.run(port)
+
+    def __enter__(self) -> Self:
+        return self.start()
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.stop()
