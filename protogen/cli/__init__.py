@@ -31,6 +31,7 @@ _MODULES = {
     "convert": "wire.convert",
     "explain": "wire.explain",
     "open": "opening",
+    "monitor": "line.monitor",
     "record": "line.record",
     "tap": "line.tap",
     "replay": "line.replay",

@@ -72,7 +72,7 @@ def encode(
     if message is None:
         _encode_lines(codec, sender, write)
     else:
-        write(_encode_message(codec, message, values or [], sender, form))
+        write(encode_message(codec, message, values or [], sender, form))
     return CLEAN
 
 
@@ -87,9 +87,10 @@ def _write_hex(data: bytes) -> None:
 # --- one message ----------------------------------------------------------------------------------
 
 
-def _encode_message(
+def encode_message(
     codec: Codec, name: str, written: Iterable[str], sender: str | None, form: str | None
 ) -> bytes:
+    """Return the frame of a message with values as they are written. Raises UsageError."""
     from protogen.cli.schemas import find_message
     from protogen.cli.wire.hints import hint_at
     from protogen.cli.wire.values import raw_values, split_assignment, tree_of

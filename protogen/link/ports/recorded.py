@@ -20,12 +20,16 @@ class RecordedPort(Port):
         self._pieces = pieces
         self._speed = speed
         self._begin: tuple[int, float] | None = None
+        self._due: tuple[bytes, int] | None = None
 
     async def read(self) -> Arrival:
         """Wait until the next bytes are due; none mean the end. Times are as recorded."""
-        data, when = next(self._pieces, (b"", 0))
+        if self._due is None:
+            self._due = next(self._pieces, (b"", 0))
+        data, when = self._due
         if data and self._speed:
             await self._wait_until(when)
+        self._due = None  # One who gives up waiting finds it here again.
         return Arrival(data, when)
 
     async def _wait_until(self, when: int) -> None:

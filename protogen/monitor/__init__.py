@@ -1,0 +1,1 @@
+"""The live view of a line, in a terminal; needs `pip install 'protogen-serial[monitor]'`."""

@@ -1,0 +1,320 @@
+"""The monitor: what it counts, what it shows, and that it keeps up with real ports."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+from cli_support import ROOT, run
+from tooling import require_tool
+
+from generated.python import matty
+from protogen.api import load
+from protogen.cli.wire.codec import Codec
+from protogen.link.device import SimulatedDevice
+from protogen.link.ports.settings import LineSettings
+from protogen.link.statistics import LineStatistics
+from protogen.live.codec import kept_module
+from protogen.monitor.filters import FilterError, parse_filter
+from protogen.recording import Recorder
+
+pytest.importorskip("serialx")
+pytest.importorskip("textual")
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals are of POSIX")
+
+MATTY = str(ROOT / "schemas/matty.yaml")
+PROTOCOL = load(MATTY)
+SECOND = 10**9
+STATUS = {"status": 0, "mode": 1, "voltage": 7260, "current": 123, "speed": 5, "angle": 0} | {
+    f"encoder{number}": 0 for number in range(4)
+}
+
+
+def module() -> ModuleType:
+    return kept_module(PROTOCOL)
+
+
+def event_of(name: str, counter: int, **fields: int) -> Any:
+    kind = module().MESSAGES[name]
+    sender = kind.SENDERS[0]
+    frame = module().encode(kind(**fields), counter=counter)
+    return module().Decoder(sender).feed(frame)[0]
+
+
+class TestStatistics:
+    def test_rate_and_jitter(self) -> None:
+        statistics = LineStatistics(PROTOCOL)
+        times = [0.0, 0.09, 0.2, 0.31, 0.4]  # 0.1 s apart, off by 10 ms: 90, 110, 110, 90 ms
+        for number, when in enumerate(times):
+            statistics.take(event_of("ack", number), round(when * SECOND))
+        found = statistics.messages["esp", "ack"]
+        assert found.rate(round(0.4 * SECOND)) == pytest.approx(10.0)
+        assert found.jitter == pytest.approx(0.01)
+        assert found.rate(5 * SECOND) == pytest.approx(4 / 5)
+
+    def test_gaps_of_a_counter_that_wraps(self) -> None:
+        statistics = LineStatistics(PROTOCOL)
+        for counter in (254, 255, 0, 3, 4):
+            statistics.take(event_of("ack", counter), 0)
+        statistics.take(event_of("status", 6, **STATUS), 0)
+        assert statistics.messages["esp", "ack"].gaps == 2
+        assert statistics.messages["esp", "status"].gaps == 1
+
+    def test_what_has_changed(self) -> None:
+        statistics = LineStatistics(PROTOCOL)
+        statistics.take(event_of("status", 0, **STATUS), 0)
+        assert statistics.messages["esp", "status"].changed == frozenset()
+        statistics.take(event_of("status", 1, **STATUS | {"speed": 6}), 0)
+        assert statistics.messages["esp", "status"].changed == {"speed"}
+
+    def test_load_of_the_line(self) -> None:
+        """115200 baud are 11520 bytes a second, of 10 bits each."""
+        statistics = LineStatistics(PROTOCOL)
+        statistics.take_bytes("esp", 1152, 0)
+        statistics.take_bytes("esp", 1152, SECOND // 2)
+        assert statistics.load("esp", SECOND // 2) == pytest.approx(0.2)
+        assert statistics.load("esp", 2 * SECOND) == 0
+        assert statistics.load("pc", 0) is None
+
+    def test_what_is_no_message(self) -> None:
+        statistics = LineStatistics(PROTOCOL)
+        for event in module().Decoder("esp").feed(b"noise" + bytes.fromhex("55 02 01 7A 83")):
+            statistics.take(event, 0)
+        assert (statistics.invalid, statistics.invalid_bytes) == ({"noise": 1}, 5)
+        assert statistics.unknown == 1
+
+
+class TestFilter:
+    @pytest.mark.parametrize(
+        ("text", "kept"),
+        [
+            ("", True),
+            ("status", True),
+            ("ack", False),
+            ("esp", True),
+            ("pc or status.speed > 4", True),
+            ("status.speed > 5", False),
+            ("status.speed>=5 and status.voltage < 8000", True),
+            ("status.speed = 5 and ack", False),
+            ("status.angle_deg <= 0.0", True),
+            ("status.mode == remote", True),
+            ("status.mode != REMOTE", False),
+            ("invalid", False),
+        ],
+    )
+    def test_keeps(self, text: str, kept: bool) -> None:
+        event = event_of("status", 0, **STATUS)
+        assert parse_filter(text, module()).keeps(event) is kept
+
+    @pytest.mark.parametrize(
+        ("text", "problem"),
+        [
+            ("statsu", "there is no message `statsu`"),
+            ("status.spede > 1", "`status` has no field `spede`"),
+            ("status.speed", "does not say what the field is to be"),
+            ("status > 1", "does not say what is compared"),
+            ("invalid.size > 1", "`invalid` has no fields"),
+            ("status.speed >", "is no condition"),
+        ],
+    )
+    def test_mistakes_are_told(self, text: str, problem: str) -> None:
+        with pytest.raises(FilterError, match=problem) as caught:
+            parse_filter(text, module())
+        assert caught.value.hint
+
+
+Test = Callable[[Any, Any, Any], Awaitable[None]]
+
+
+def watched(ends: dict[str, str], test: Test) -> None:
+    """Run the full screen at 80 x 24, driven by textual's pilot."""
+    from protogen.monitor.app import MonitorApp
+    from protogen.monitor.session import Session
+
+    async def drive() -> None:
+        session = Session(Codec(PROTOCOL, module()), ends, LineSettings())
+        session.start()
+        app = MonitorApp(session)
+        async with app.run_test(size=(80, 24)) as pilot:
+            await test(app, pilot, session)
+        session.stop()
+
+    asyncio.run(asyncio.wait_for(drive(), 60))
+
+
+async def until(pilot: Any, holds: Callable[[], bool]) -> None:
+    end = time.monotonic() + 20
+    while not holds():
+        assert time.monotonic() < end, "it did not come"
+        await pilot.pause(0.05)
+
+
+async def typed(pilot: Any, key: str, text: str) -> None:
+    await pilot.press(key)
+    await pilot.press(*("space" if letter == " " else letter for letter in text), "enter")
+    await pilot.pause(0.3)
+
+
+class TestScreen:
+    def test_rows_log_plot_and_details(self) -> None:
+        from textual.widgets import DataTable, RichLog, Sparkline, Static
+
+        async def test(app: Any, pilot: Any, session: Any) -> None:
+            table = app.query_one(DataTable)
+            await until(pilot, lambda: table.row_count == 2)
+            await pilot.press("d")
+            await until(
+                pilot, lambda: "voltage: " in str(app.query_one("#detail", Static).render())
+            )
+            await typed(pilot, "p", "status.voltage")
+            await until(pilot, lambda: len(app.query_one(Sparkline).data or []) > 3)
+            await typed(pilot, "f", "ack")
+            log = app.query_one(RichLog)
+            assert log.lines
+            assert all(" ack " in line.text for line in log.lines)
+            await typed(pilot, "f", "statsu")  # Is told, and what was typed stays.
+            assert app.query_one("#typed").display
+            await pilot.press("escape")
+            await pilot.press("space")
+            status = app.query_one("#status", Static)
+            await until(pilot, lambda: "PAUSED" in str(status.render()))
+
+        rates = {"status": 50, "ack": 20}
+        with SimulatedDevice(MATTY, "esp", rates=rates) as board:
+            watched({"esp": board.port}, test)
+
+    def test_sends_and_saves(self, tmp_path: Path) -> None:
+        async def test(app: Any, pilot: Any, session: Any) -> None:
+            await typed(pilot, "s", "go speed=5 steer=0 @counter=7")
+            await until(pilot, lambda: board.counts.received == {"go": 1})
+            await until(pilot, lambda: len(session.log) > 5)
+            await typed(pilot, "w", str(tmp_path / "log.jsonl"))
+
+        with SimulatedDevice(MATTY, "esp", rates={"ack": 50}) as board:
+            watched({"esp": board.port}, test)
+        lines = (tmp_path / "log.jsonl").read_text().splitlines()
+        assert len(lines) > 5
+        assert all('"message": "ack"' in line for line in lines)
+
+    def test_two_hundred_messages(self, tmp_path: Path) -> None:
+        from textual.widgets import DataTable
+
+        schema = tmp_path / "many.yaml"
+        rest = "from: board, fields: {x: uint8}"
+        names = "".join(f"  m{n}: {{id: {n}, {rest}}}\n" for n in range(200))
+        schema.write_text(
+            "protocol: many\nendpoints: {board: Board}\nframe:\n"
+            "  type: {type: uint8, id: true}\n  payload: {}\n"
+            "  sum: {type: uint8, algorithm: sum-8, covers: type..payload}\n"
+            "  end: {literal: 0}\ntransparency: {encoding: cobs}\n"
+            f"messages:\n{names}"
+        )
+        protocol = load(schema)
+        own = kept_module(protocol)
+        with Recorder(tmp_path / "run.pgrec") as recorder:
+            for number in range(200):
+                recorder.write(own.encode(own.MESSAGES[f"m{number}"](x=1)), t_ns=number)
+        from protogen.monitor.app import MonitorApp
+        from protogen.monitor.session import Session
+
+        async def drive() -> None:
+            session = Session(
+                Codec(protocol, own), {"board": f"{tmp_path}/run.pgrec"}, LineSettings()
+            )
+            session.start()
+            app = MonitorApp(session)
+            async with app.run_test(size=(80, 24)) as pilot:
+                await until(pilot, lambda: app.query_one(DataTable).row_count == 200)
+            session.stop()
+
+        asyncio.run(drive())
+
+
+@contextmanager
+def terminal(command: str) -> Iterator[Callable[[], str]]:
+    """A real terminal of 80 x 24, and what is on its screen."""
+    tmux = [require_tool("tmux"), "-L", f"protogen{os.getpid()}"]
+    start = [*tmux, "new-session", "-d", "-x", "80", "-y", "24", command]
+    subprocess.run(start, check=True, cwd=ROOT)
+    try:
+        yield (
+            lambda: (
+                subprocess.run(
+                    [*tmux, "capture-pane", "-p"], check=True, capture_output=True, text=True
+                ).stdout
+            )
+        )
+    finally:
+        subprocess.run([*tmux, "kill-server"], check=False)
+
+
+def shown(screen: Callable[[], str], pattern: str, seconds: float = 30) -> re.Match[str]:
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if found := re.search(pattern, screen()):
+            return found
+        time.sleep(0.2)
+    raise AssertionError(screen())
+
+
+@pytest.mark.slow
+def test_in_a_terminal_rates_are_right_and_a_port_comes_back() -> None:
+    port = Path(tempfile.mkdtemp(dir="/tmp")) / "port"  # Short, to fit a line of the screen.
+    program = f"{sys.executable} -m protogen monitor {MATTY} esp={port}"
+    with SimulatedDevice(MATTY, "esp", rates={"status": 100, "ack": 20}) as board:
+        port.symlink_to(board.port)
+        with terminal(program) as screen:
+            shown(screen, r"esp ack +\d{2,} ")
+            time.sleep(12)  # Rates are those of ten seconds.
+            text = screen()
+            for name, rate in (("status", 100), ("ack", 20)):
+                found = re.search(rf"esp {name} +\d+ +([0-9.]+)", text)
+                assert found is not None, text
+                assert float(found[1]) == pytest.approx(rate, rel=0.02), text
+            board.stop()
+            shown(screen, "is gone")
+            port.unlink()
+            with SimulatedDevice(MATTY, "esp", rates={"ack": 20}) as again:
+                port.symlink_to(again.port)
+                shown(screen, "is back")
+                count = int(shown(screen, r"esp ack +(\d+)")[1])
+                shown(screen, rf"esp ack +(?!{count} )\d+")
+
+
+class TestPlain:
+    def test_lines_for_a_pipe(self, tmp_path: Path) -> None:
+        with Recorder(tmp_path / "run.pgrec") as recorder:
+            frame = matty.encode(matty.Ack(), counter=1)
+            recorder.write(b"?" + frame, t_ns=1_500_000_000, source="esp")
+        done = run("monitor", MATTY, f"esp={tmp_path}/run.pgrec", "--plain")
+        assert done.exit_code == 0, done.output
+        assert [line.split() for line in done.stdout.splitlines()] == [
+            ["1.500000", "0", "esp", "invalid", "noise", "3F"],
+            ["1.500000", "1", "esp", "ack", "@counter=1"],
+        ]
+        done = run("monitor", MATTY, f"esp={tmp_path}/run.pgrec", "--plain", "--filter", "ack")
+        assert len(done.stdout.splitlines()) == 1
+
+    @pytest.mark.parametrize(
+        ("args", "problem"),
+        [
+            (("esp=/dev/no_such_port",), "there is no such port"),
+            (("esp=pty:", "--filter", "statsu"), "there is no message `statsu`"),
+            (("pty:", "pty:"), "two ports need the names of who is there"),
+        ],
+    )
+    def test_mistakes_are_told(self, args: tuple[str, ...], problem: str) -> None:
+        done = run("monitor", MATTY, *args)
+        assert done.exit_code == 2
+        assert problem in done.stderr
