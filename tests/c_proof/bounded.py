@@ -1,0 +1,175 @@
+"""Programs for a bounded model checker that give generated functions every possible input."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from c_proof.checked import MACROS, checked
+from protogen.model.protocol import Protocol
+
+_HEAD = """#include <stddef.h>
+#include <stdint.h>
+#include <stdbool.h>
+{macros}#define {upper}_FAST_FEED 0
+{source}
+static volatile uint8_t sink;
+
+/* Any value, as no function of these names is there. */
+bool nondet_bool(void);
+uint8_t nondet_uint8_t(void);
+uint16_t nondet_uint16_t(void);
+uint32_t nondet_uint32_t(void);
+size_t nondet_size_t(void);
+"""
+_DECODE = re.compile(
+    r"enum \w+ (\w+)_decode\( ?struct (\w+) \*message, const uint8_t \*payload, "
+    r"size_t size((?:, \w+ \w+)*)\);"
+)
+_GREATEST = re.compile(r"#define (\w+)_PAYLOAD_MAX (\d+)[uU]")
+_PAYLOAD = """
+static void prove_{prefix}_decode(void) {{
+    uint8_t bytes[{room}]; /* Any bytes, of which the payload is the last ones. */
+    const size_t size = nondet_size_t();
+{held}    struct {struct} message;
+    __ESBMC_assume(size <= {room}U);
+    (void){prefix}_decode(&message, &bytes[{room}U - size], size{arguments});
+}}
+"""
+_ARRAY = re.compile(r"^    (\w+) (\w+)\[(\d+)\];\n", re.MULTILINE)
+_STEP = """
+static bool holds(const struct {prefix}_decoder *decoder);
+static void {prefix}_run(struct {prefix}_decoder *decoder, bool is_end) {{
+    (void)is_end; /* It goes on with one step, again and again. */
+    __ESBMC_assert(holds(decoder), "what holds in front of a step");
+}}
+"""
+_STEPS = """
+static bool holds(const struct {prefix}_decoder *decoder) {{
+    if (decoder->count > {buffer}U || decoder->next > decoder->count) {{
+        return false;
+    }}
+    switch (decoder->state) {{
+    case {upper}_SEEKING:
+        return {seeking};
+    case {upper}_FAILED:
+        return true;
+    case {upper}_TAKING:
+        return {taking};
+    default:
+        return false;
+    }}
+}}
+
+/* Both ends of a payload are there. */
+static void take(void *user, const struct {prefix}_event *event) {{
+    (void)user;
+    if (event->payload_size > 0U) {{
+        sink = event->payload[0];
+        sink = event->payload[event->payload_size - 1U];
+    }}
+{reads}}}
+
+struct {prefix}_decoder nondet_decoder(void);
+
+int main(void) {{
+{arrays}    struct {prefix}_decoder decoder = nondet_decoder();
+    const uint8_t choice = nondet_uint8_t();
+{points}    decoder.handler = take;
+    decoder.user = &decoder;
+    __ESBMC_assume(holds(&decoder));
+    if (choice == 0U) {{
+        {prefix}_step(&decoder, nondet_bool());
+    }} else if (choice == 1U) {{
+        {prefix}_decoder_push(&decoder, nondet_uint8_t());
+    }} else if (choice == 2U) {{
+        __ESBMC_assume(decoder.state == {upper}_TAKING && decoder.wire != 0U);
+        {prefix}_judge(&decoder, {upper}_TRUNCATED);
+    }} else if (choice == 3U) {{
+        {prefix}_end_noise(&decoder);
+        {prefix}_reset(&decoder);
+    }} else if (choice == 4U) {{
+        {prefix}_decoder_init(&decoder, take, &decoder);
+    }} else {{
+        const struct {prefix}_decoder zeros = {{0}};
+        decoder = zeros;
+    }}
+    __ESBMC_assert(holds(&decoder), "what holds behind a step");
+    return 0;
+}}
+"""
+
+
+@dataclass(frozen=True)
+class Harness:
+    """A program that calls generated functions, and the header that it takes."""
+
+    text: str
+    header: str
+
+
+def decode_harness(protocol: Protocol, header: str, source: str, message: str) -> Harness:
+    """Every payload of up to a byte more than the greatest, for the `decode` of a message."""
+    flat = re.sub(r"\s+", " ", header)
+    greatest = {name: int(size) for name, size in _GREATEST.findall(flat)}
+    prefix = f"{protocol.name}_{message}"
+    [(struct, held)] = [found[1:] for found in _DECODE.findall(flat) if found[0] == prefix]
+    names = re.findall(r"(\w+) (\w+)", held)
+    text = _head(protocol, source) + _PAYLOAD.format(
+        prefix=prefix,
+        struct=struct,
+        room=greatest[prefix.upper()] + 1,
+        held="".join(f"    const {type_} {name} = nondet_{type_}();\n" for type_, name in names),
+        arguments="".join(f", {name}" for _, name in names),
+    )
+    main = f"\nint main(void) {{\n    prove_{prefix}_decode();\n    return 0;\n}}\n"
+    return Harness(text + main, header)
+
+
+def step_harness(
+    protocol: Protocol,
+    texts: tuple[str, str],
+    sender: str,
+    conditions: tuple[str, str],
+    *,
+    loads: bool,
+) -> Harness:
+    """One step of a decoder from any state in which something holds, that holds again behind it.
+
+    It holds of a decoder that was initialised, so it holds after any number of bytes. `conditions`
+    say what holds without and with a candidate for a frame. Messages are loaded if asked for, which
+    a proof of `decode` also covers where the payload is as it was received. Arrays of the decoder
+    are objects of their own here, so that it is found where an access leaves one of them.
+    """
+    header, source = texts
+    prefix, upper = f"{protocol.name}_{sender}", protocol.name.upper()
+    struct = re.search(rf"^struct {prefix}_decoder \{{\n(?:.*\n)*?\}};\n", header, re.MULTILINE)
+    assert struct is not None
+    arrays = _ARRAY.findall(struct.group())
+    pointers = _ARRAY.sub(r"    \1 *\2;\n", struct.group())
+    seeking, taking = conditions
+    given = {
+        "reads": f"    {prefix}_dispatch(NULL, event);\n" if loads else "",
+        "arrays": "".join(f"    {type_} {name}[{size}];\n" for type_, name, size in arrays),
+        "points": "".join(f"    decoder.{name} = {name};\n" for _, name, _ in arrays),
+        "buffer": {name: size for _, name, size in arrays}["buffer"],
+    }
+    text = _STEPS.format(prefix=prefix, upper=upper, seeking=seeking, taking=taking, **given)
+    stepped = _one_step(source, prefix)
+    changed = header.replace(struct.group(), pointers)
+    return Harness(_head(protocol, stepped) + text, changed)
+
+
+def _one_step(source: str, prefix: str) -> str:
+    """The loop that reads what is kept does one step; what calls it sees what holds in between."""
+    loop = re.compile(
+        rf"(static void {prefix}_)run(\((?:.*\n)*?    )while( \(goes_on\) \{{\n(?:.*\n)*?\}}\n)"
+    )
+    text, count = loop.subn(rf"\1step\2if\3{_STEP.format(prefix=prefix)}", source)
+    assert count == 1
+    return text
+
+
+def _head(protocol: Protocol, source: str) -> str:
+    upper = protocol.name.upper()
+    return _HEAD.format(macros=MACROS, upper=upper, source=checked(source, protocol.name))
