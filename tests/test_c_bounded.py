@@ -1,8 +1,8 @@
 """A bounded model checker finds nothing that could go wrong where EVA does not see enough.
 
-`decode` is given each payload of up to a byte more than the greatest. Of a decoder, each step is
-looked at, from every state in which something holds that also holds behind the step: so any number
-of bytes is safe.
+`decode` is given each payload of up to some bytes more than the greatest. Of a decoder, each step
+is looked at, from every state in which something holds that also holds behind the step: so any
+number of bytes is safe.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ DECODES = [
     ("bounded/chosen", "lines", 8),
     ("bounded/chosen", "fixed", 6),
     ("bounded/last_bits", "hops", 5),
-    ("bounded/last_bits", "notes", 10),
+    ("bounded/last_bits", "notes", 12),
 ]
 """Schema, message, and a pass more than any loop needs."""
 
