@@ -7,7 +7,7 @@ So it needs no module loader, which no page has that is opened as a file.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from posixpath import dirname, join, normpath
 
@@ -30,6 +30,14 @@ _BEFORE_REGEX = re.compile(r"(?:^|[({\[,;:=!&|?+\n>~]|\b(?:return|typeof|case|of
 """What stands in front of a regular expression, and of no division."""
 _NO_BREAK_BEHIND = "\n{([,;:?=&|"
 _NO_BREAK_BEFORE = "})],;:?.&|="
+
+_ARROW = 6
+"""Tokens of an arrow function with one parameter, and what stands in front."""
+_CLOSING = ("}", "]", ")")
+_HEADS = ("for", "while", "if")
+"""Words in front of brackets behind which an empty statement may stand."""
+_SHORTER = {"const": "let", "undefined": "void 0", "true": "!0", "false": "!1"}
+"""Words, and what means the same where they are no names of members."""
 
 _KEPT = 128
 """Modules of which is remembered what was made of them: most are the same on each page."""
@@ -70,7 +78,7 @@ def _module(path: str, text: str, numbers: Mapping[str, str], more: Iterable[str
         names = [item.strip() for item in found["names"].split(",") if item.strip()]
         if found["kind"] == "export":
             given.extend(
-                f"{item.split(' as ')[-1]}: {name}.{item.split(' as ')[0]}" for item in names
+                f"{item.split(' as ')[-1]}:{name}.{item.split(' as ')[0]}" for item in names
             )
             return ""
         bound = ", ".join(item.replace(" as ", ": ") for item in names)
@@ -80,8 +88,8 @@ def _module(path: str, text: str, numbers: Mapping[str, str], more: Iterable[str
     given += [found["name"] for found in _EXPORTED.finditer(text)]
     text = re.sub(r"^export (?=async|function|class|const)", "", text, flags=re.MULTILINE)
     assert not re.search(r"^export ", text, re.MULTILINE), f"{path} exports in a way not known here"
-    exports = f"return {{ {', '.join(given)} }};\n"
-    return f"const {numbers[path]} = (() => {{\n{_short(text)}{exports}}})();\n"
+    exports = f"return{{{','.join(given)}}};"
+    return f"let {numbers[path]}=(()=>{{\n{_short(text)}{exports}}})();\n"
 
 
 @lru_cache(_KEPT)
@@ -94,11 +102,48 @@ def _short(text: str) -> str:
         if kind in ("remark", "blank", "line"):
             blank = "\n" if kind == "line" else blank or " "
             continue
+        if kind == "word" and not _is_member(text, end, parts[-1]):
+            token = _SHORTER.get(token, token)
         if blank and _needs(blank, parts[-1], token):
             parts.append(blank)
+        else:
+            _drop_mark(parts, token)
         parts.append(token)
+        if parts[-2:] == ["=", ">"] and len(parts) > _ARROW:
+            _unwrap(parts)
         blank = ""
     return "".join(parts[1:]) + "\n"
+
+
+def _is_member(text: str, end: int, last: str) -> bool:
+    """True if a word that ends there may be the name of a member."""
+    return last in (".", "?.") or text[end : end + 1] == ":"
+
+
+def _drop_mark(parts: list[str], behind: str) -> None:
+    """Leave out the last comma or semicolon where a bracket behind it makes it needless."""
+    is_comma = parts[-1] == "," and behind in _CLOSING
+    if is_comma or (parts[-1] == ";" and behind == "}" and not _is_empty(parts)):
+        parts.pop()
+
+
+def _unwrap(parts: list[str]) -> None:
+    """Leave out the brackets around the only parameter of an arrow function."""
+    before, opening, name, closing = parts[-_ARROW:-2]
+    is_alone = opening == "(" and closing == ")" and name.isidentifier()
+    if is_alone and before in ("(", ",", "=", ":", "?", "{", "["):
+        parts[-_ARROW + 1 : -2] = [name]
+
+
+def _is_empty(parts: Sequence[str]) -> bool:
+    """True if the last semicolon may be a statement by itself."""
+    depth, index = 0, len(parts) - 2
+    while parts[index] == ")" or depth:
+        depth += (parts[index] == ")") - (parts[index] == "(")
+        index -= 1
+        if not depth:
+            return parts[index] in _HEADS
+    return parts[index] in (";", "{", "}", "else", "do")
 
 
 def _token(text: str, start: int, last: str) -> tuple[str, str]:

@@ -1,6 +1,5 @@
 /** Frames from their parts. */
 import type { MessagePlan } from "./plan.js";
-import type { ValueNumber } from "./plan.js";
 import { type Sender } from "./sender.js";
 /** Values of parts by their names, as callers give them. */
 export type GivenParts = Readonly<Record<string, unknown>>;
@@ -8,5 +7,3 @@ export type GivenParts = Readonly<Record<string, unknown>>;
 export declare function frameOf(sender: Sender, message: MessagePlan, value: unknown, given: GivenParts, strict: boolean): Uint8Array;
 /** The frame of an unknown message, whose identity is given. Throws an EncodeError. */
 export declare function unknownFrameOf(sender: Sender, payload: Uint8Array, given: GivenParts): Uint8Array;
-/** The value parts of a sender. */
-export declare function valueParts(sender: Sender): readonly ValueNumber[];

@@ -1,18 +1,19 @@
 /** Frames from their parts. */
-import { concatenated, equal } from "./bytes.js";
+import { concatenated, equal, hasHighBit } from "./bytes.js";
 import { Cut, dueOf, verdictOn } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { EncodeError } from "./errors.js";
 import { areAmong, at } from "./plan.js";
-import { numbersOf, payloadOf } from "./sender.js";
+import { numbersOf, payloadOf, writerOf } from "./sender.js";
 /** The frame of a message. Throws an EncodeError. */
 export function frameOf(sender, message, value, given, strict) {
-    const made = payloadOf(message, value, strict);
-    const payload = sender.trimmed(made.payload);
-    const parts = withHeld(given, made.held);
-    const values = new Array(sender.frame.slots).fill(undefined);
-    const names = identityOf(sender, message, parts, values);
-    return encodeFrame(sender, payload, parts, names, values, strict);
+    const { headSize } = sender.frame;
+    const made = payloadOf(message, value, strict, headSize);
+    const size = sender.trimmed(made.bytes, headSize, made.size - headSize);
+    const parts = message.held.length ? withHeld(given, made.held) : given;
+    const values = new Array(sender.frame.slots);
+    identityOf(sender, message, parts, values);
+    return encodeFrame(sender, made, size, parts, values, strict);
 }
 /** The parts that callers give, and those that are fields. Throws an EncodeError if they differ. */
 function withHeld(given, held) {
@@ -28,36 +29,30 @@ function withHeld(given, held) {
 }
 /** Set the identity of a message: what callers give, or the first one. */
 function identityOf(sender, message, given, values) {
-    const names = new Set();
-    sender.frame.identity.forEach((slot, index) => {
-        const { name, number } = identityPart(sender, slot);
-        names.add(name);
+    for (let index = 0; index < sender.identityParts.length; index++) {
+        const { name, slot, number } = sender.identityParts[index];
         const runs = message.identities[index];
         const own = given[name];
-        const chosen = own === undefined || own === null ? runs[0][0] : givenTo(number, own, name);
+        values[slot] = runs[0][0];
+        if (own === undefined || own === null)
+            continue;
+        const chosen = givenTo(number, own, name);
         if (!areAmong([runs], [chosen])) {
             throw new EncodeError(name, `${chosen} is not an identity of ${message.name}`);
         }
         values[slot] = chosen;
-    });
-    return names;
+    }
 }
 /** The frame of an unknown message, whose identity is given. Throws an EncodeError. */
 export function unknownFrameOf(sender, payload, given) {
-    const values = new Array(sender.frame.slots).fill(undefined);
-    const names = new Set();
-    for (const slot of sender.frame.identity) {
-        const { name, number } = identityPart(sender, slot);
-        names.add(name);
+    const values = new Array(sender.frame.slots);
+    for (const { name, slot, number } of sender.identityParts) {
         values[slot] = givenTo(number, given[name], name);
     }
-    return encodeFrame(sender, payload, given, names, values, false);
-}
-function identityPart(sender, slot) {
-    const told = sender.frame.told.find((part) => part.slot === slot);
-    if (told)
-        return { name: told.name, number: null };
-    return numbersOf(sender.frame.parts).find((part) => part.slot === slot);
+    const writer = writerOf(false, sender.frame.headSize);
+    const place = writer.room(payload.length);
+    writer.bytes.set(payload, place);
+    return encodeFrame(sender, writer, payload.length, given, values, false);
 }
 function givenTo(number, value, name) {
     if (!number) {
@@ -75,28 +70,25 @@ function givenTo(number, value, name) {
 function inside(error, name) {
     return error instanceof EncodeError ? new EncodeError(name, error.problem) : error;
 }
-/** The value parts of a sender. */
-export function valueParts(sender) {
-    return numbersOf(sender.frame.parts).filter((part) => part.kind === "value");
-}
-function encodeFrame(sender, payload, given, identity, values, strict) {
-    const parts = valueParts(sender);
+function encodeFrame(sender, writer, size, given, values, strict) {
+    const { valueParts } = sender;
     for (const name of Object.keys(given)) {
-        const isKnown = identity.has(name) || parts.some((part) => part.name === name);
-        if (!isKnown && given[name] !== undefined && given[name] !== null) {
+        if (!sender.given.has(name) && given[name] !== undefined && given[name] !== null) {
             throw new EncodeError(name, "there is no such part");
         }
     }
-    for (const part of parts)
+    for (const part of valueParts)
         values[part.slot] = valueOf(part, given[part.name], strict);
-    const wire = new Assembly(sender, values, payload).wire();
+    const wire = new Assembly(sender, values, writer, size).wire();
     const { frame } = sender;
     if (frame.isBounded && wire.length > frame.greatest) {
         const problem = `makes a frame of ${wire.length} bytes, at most ${frame.greatest} are allowed`;
         throw new EncodeError("payload", problem);
     }
-    if (frame.cutAmbiguous || !sender.group(values))
+    if (frame.cutAmbiguous || !sender.group(values)) {
+        const payload = writer.bytes.slice(frame.headSize, frame.headSize + size);
         checkCut(sender, wire, payload, values);
+    }
     return wire;
 }
 function valueOf(part, given, strict) {
@@ -130,75 +122,81 @@ function checkCut(sender, wire, payload, values) {
 }
 /** The bytes of one frame's parts. A checksum or a length is worked out when it is needed. */
 class Assembly {
-    constructor(sender, values, payload) {
+    constructor(sender, values, writer, payload) {
         this.sender = sender;
         this.values = values;
         this.payload = payload;
-        /** Where each part lies; equal bounds where it is absent. */
-        this.places = [];
-        this.made = new Set();
-        let place = 0;
-        for (const part of sender.frame.parts) {
-            const isAbsent = part.isOptional === true && !payload.length;
-            const size = part.kind === "payload" ? payload.length : isAbsent ? 0 : part.size;
-            this.places.push([place, place + size]);
-            place += size;
-        }
-        this.content = new Uint8Array(place);
+        const { offsets, offsetsEmpty, frame } = sender;
+        this.offsets = payload ? offsets : offsetsEmpty;
+        this.isMade = new Array(frame.parts.length);
+        writer.room(frame.tailSize);
+        this.content = writer.bytes;
+    }
+    /** Where a part begins; the part behind the last one, where the content ends. */
+    place(index) {
+        const isBehind = index > this.sender.frame.payloadIndex;
+        return this.offsets[index] + (isBehind ? this.payload : 0);
     }
     wire() {
         const { frame } = this.sender;
         const isHeld = this.sender.length !== null || frame.isBounded;
-        if (isHeld && this.payload.length > frame.greatestPayload) {
-            const problem = `has ${this.payload.length} bytes, at most ${frame.greatestPayload} fit`;
+        if (isHeld && this.payload > frame.greatestPayload) {
+            const problem = `has ${this.payload} bytes, at most ${frame.greatestPayload} fit`;
             throw new EncodeError("payload", problem);
         }
-        if (frame.sevenBit && this.payload.some((byte) => byte > 0x7f)) {
+        const { headSize, end } = frame;
+        if (frame.sevenBit && hasHighBit(this.content, headSize, headSize + this.payload)) {
             throw new EncodeError("payload", "a byte has its most significant bit set");
         }
         if (this.sender.toldLength)
             this.length(this.sender.toldLength);
-        const whole = this.bytes(0, this.content.length);
+        const size = this.place(frame.parts.length);
+        this.complete(0, size);
         const region = this.region();
-        if (!region)
-            return concatenated([whole, frame.end]);
-        const [from, to] = region;
-        const stuffed = frame.transparency.encode(whole.slice(from, to));
-        return concatenated([whole.subarray(0, from), stuffed, whole.subarray(to), frame.end]);
+        return region
+            ? frame.transparency.put(this.content, size, ...region, end)
+            : concatenated([this.content.slice(0, size), end]);
     }
     /** Bounds of what is stuffed; null where nothing is. */
     region() {
         const { parts, firstStuffed, lastStuffed, transparency } = this.sender.frame;
         if (!transparency)
             return null;
-        const stuffed = parts.slice(firstStuffed, lastStuffed + 1);
-        const isThere = stuffed.some((part) => part.isOptional !== true || this.payload.length > 0);
-        if (!isThere)
+        const stuffed = this.payload ? [] : parts.slice(firstStuffed, lastStuffed + 1);
+        if (!this.payload && stuffed.every((part) => part.isOptional === true))
             return null;
-        return [this.places[firstStuffed][0], this.places[lastStuffed][1]];
+        return [this.place(firstStuffed), this.place(lastStuffed + 1)];
+    }
+    /** Make all parts of some content. */
+    complete(from, to) {
+        const { parts } = this.sender.frame;
+        for (let index = 0; index < parts.length; index++) {
+            if (this.isMade[index])
+                continue;
+            const start = this.place(index);
+            if (start >= to || this.place(index + 1) <= from)
+                continue;
+            this.isMade[index] = true;
+            this.make(parts[index], start);
+        }
     }
     /** Content, all of whose parts are made. */
     bytes(from, to) {
-        this.places.forEach(([start, end], index) => {
-            if (start < to && end > from && !this.made.has(index)) {
-                this.made.add(index);
-                this.make(this.sender.frame.parts[index], start);
-            }
-        });
-        return this.content.subarray(from, to);
+        this.complete(from, to);
+        return this.content.slice(from, to);
     }
     make(part, place) {
-        if (part.kind === "literal")
-            this.content.set(part.bytes, place);
-        else if (part.kind === "payload")
-            this.content.set(this.payload, place);
+        if (part.kind === "literal") {
+            for (let index = 0; index < part.size; index++)
+                this.content[place + index] = part.bytes[index];
+        }
         else if (part.kind === "bits")
             this.makeBits(part, place);
         else if (part.kind === "sum") {
             const { number, name } = this.sender.frame.sums[part.sum];
             this.put(number, this.sum(part.sum), place, name);
         }
-        else {
+        else if (part.kind === "number") {
             const { part: item } = part;
             const value = item.kind === "length" ? this.length(item) : this.values[item.slot];
             this.put(item.number, value, place, item.name);
@@ -246,11 +244,11 @@ class Assembly {
         return this.length(lengths.find((item) => item.slot === slot));
     }
     length(part) {
-        const size = this.payload.length;
+        const size = this.payload;
         let value = part.base + (size ? size + part.optional : 0);
         const region = part.overWire ? this.region() : null;
         if (region) {
-            const plain = this.bytes(...region).slice();
+            const plain = this.bytes(...region);
             value += this.sender.frame.transparency.encode(plain).length - plain.length;
         }
         if (value < part.least || value > part.greatest) {
@@ -261,6 +259,14 @@ class Assembly {
     }
     sum(index) {
         const sum = this.sender.frame.sums[index];
+        const [first] = sum.covers;
+        if (sum.covers.length === 1 && first && "from" in first && !first.stuffed) {
+            const { headSize } = this.sender.frame;
+            const from = at(first.from, headSize, this.payload);
+            const to = at(first.to, headSize, this.payload);
+            this.complete(from, to);
+            return dueOf(sum, sum.algorithm.compute(this.content, from, to));
+        }
         const pieces = sum.covers.map((covered) => this.covered(covered, sum.name));
         const joined = concatenated(pieces);
         return dueOf(sum, sum.algorithm.compute(joined, 0, joined.length));
@@ -277,9 +283,9 @@ class Assembly {
             throw new EncodeError(part.name, problem);
         }
         const { headSize } = this.sender.frame;
-        const size = this.payload.length;
+        const size = this.payload;
         const from = at(covered.from, headSize, size);
-        const plain = this.bytes(from, at(covered.to, headSize, size)).slice();
+        const plain = this.bytes(from, at(covered.to, headSize, size));
         return covered.stuffed ? this.sender.frame.transparency.encode(plain) : plain;
     }
 }

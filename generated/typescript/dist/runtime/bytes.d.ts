@@ -10,3 +10,5 @@ export declare function equal(one: ArrayLike<number>, other: ArrayLike<number>):
 export declare function standsAt(bytes: ArrayLike<number>, size: number, place: number, word: Uint8Array): boolean;
 /** Several pieces, one behind another. */
 export declare function concatenated(pieces: readonly ArrayLike<number>[]): Uint8Array;
+/** True if one of the bytes has its most significant bit set. */
+export declare function hasHighBit(bytes: Uint8Array, from: number, to: number): boolean;

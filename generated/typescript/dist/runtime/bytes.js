@@ -43,8 +43,15 @@ export function concatenated(pieces) {
     const bytes = new Uint8Array(size);
     let at = 0;
     for (const piece of pieces) {
-        bytes.set(piece, at);
-        at += piece.length;
+        for (let index = 0; index < piece.length; index++)
+            bytes[at++] = piece[index];
     }
     return bytes;
+}
+/** True if one of the bytes has its most significant bit set. */
+export function hasHighBit(bytes, from, to) {
+    for (let place = from; place < to; place++)
+        if (bytes[place] > 0x7f)
+            return true;
+    return false;
 }

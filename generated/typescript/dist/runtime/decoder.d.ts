@@ -62,7 +62,8 @@ export declare class Decoder<Message = unknown, Parts = unknown> {
     private restart;
     /** Keep the bytes, behind those that are there. */
     private append;
-    /** The events so far. What they cover is forgotten once there is much of it. */
+    /** Forget what is delivered: what is left goes to a place of its own, where more fits behind it. */
+    private move;
     private deliver;
     private run;
     /** Look for the next possible start; what is in front of it is noise. */
@@ -70,6 +71,8 @@ export declare class Decoder<Message = unknown, Parts = unknown> {
     private nextStart;
     /** Begin at a possible start. */
     private open;
+    /** Take the frame there if it is plainly one, or as much of it as has come. */
+    private takeWhole;
     private begin;
     /** Give the candidate bytes until its verdict. */
     private take;

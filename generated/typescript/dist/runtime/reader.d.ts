@@ -32,6 +32,7 @@ export declare class Reader {
     /** The place behind the last byte of the payload, or of the region. */
     end: number;
     private readonly path;
+    private depth;
     private regions;
     /** `held` has the parts of the frame that are fields. */
     constructor(bytes: Uint8Array, held?: HeldParts);

@@ -2,23 +2,27 @@
 import { EncodeError } from "./errors.js";
 import type { Value } from "./numbers.js";
 import { type Step, type TextForm } from "./reader.js";
-/** Bytes of a payload so far. Each method appends a value, or throws an EncodeError. */
+/**
+ * Bytes of a payload so far. Each method appends a value, or throws an EncodeError.
+ *
+ * There may be room in front of the payload, for the parts of the frame that stand there.
+ */
 export declare class Writer {
-    readonly strict: boolean;
+    strict: boolean;
     bytes: Uint8Array;
-    /** Bytes so far. */
+    /** Bytes so far, those in front of the payload among them. */
     size: number;
     /** Values of the fields that are parts of the frame, by the names of the parts. */
-    readonly held: Record<string, Value>;
+    held: Record<string, Value>;
     private readonly path;
     /** With `strict`, values that the schema forbids are refused, even where they fit the wire. */
     constructor(strict: boolean);
+    /** Begin another payload, in the place of the one before, behind so many bytes. */
+    restart(strict: boolean, from: number): this;
     /** The error of a field. */
     error(step: Step, problem: string): EncodeError;
     enter(step: Step): void;
     leave(): void;
-    /** The bytes. */
-    finish(): Uint8Array;
     /** The place of so many more bytes. */
     room(size: number): number;
     /** Leave a number to the frame, whose part it is. */

@@ -48,8 +48,13 @@ export function concatenated(pieces: readonly ArrayLike<number>[]): Uint8Array {
   const bytes = new Uint8Array(size);
   let at = 0;
   for (const piece of pieces) {
-    bytes.set(piece, at);
-    at += piece.length;
+    for (let index = 0; index < piece.length; index++) bytes[at++] = piece[index]!;
   }
   return bytes;
+}
+
+/** True if one of the bytes has its most significant bit set. */
+export function hasHighBit(bytes: Uint8Array, from: number, to: number): boolean {
+  for (let place = from; place < to; place++) if (bytes[place]! > 0x7f) return true;
+  return false;
 }

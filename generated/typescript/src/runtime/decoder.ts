@@ -116,30 +116,26 @@ export class Decoder<Message = unknown, Parts = unknown> {
 
   /** Keep the bytes, behind those that are there. */
   private append(chunk: Uint8Array): void {
-    const size = this.size + chunk.length;
-    if (size > this.data.length) {
-      const larger = new Uint8Array(Math.max(LEAST_ROOM, 2 * size));
-      larger.set(this.data.subarray(0, this.size));
-      this.data = larger;
-    }
+    if (this.size + chunk.length > this.data.length) this.move(chunk.length);
     this.data.set(chunk, this.size);
-    this.size = size;
+    this.size += chunk.length;
   }
 
-  /** The events so far. What they cover is forgotten once there is much of it. */
+  /** Forget what is delivered: what is left goes to a place of its own, where more fits behind it. */
+  private move(more: number): void {
+    // The bytes stay where they are, for the events.
+    const passed = Math.max(0, this.done - this.search.starts.context);
+    const left = this.data.subarray(passed, this.size);
+    this.data = new Uint8Array(Math.max(LEAST_ROOM, 2 * left.length + more));
+    this.data.set(left);
+    this.size = left.length;
+    this.offset += passed;
+    this.done -= passed;
+    this.scan -= passed;
+    this.pushed -= passed;
+  }
+
   private deliver(): Event<Message, Parts>[] {
-    const passed = this.done - this.search.starts.context;
-    if (passed > 0 && (passed >= this.data.length >> 1 || passed >= this.size)) {
-      // The bytes stay where they are, for the events; what is left goes to a place of its own.
-      const left = this.data.subarray(passed, this.size);
-      this.data = new Uint8Array(Math.max(LEAST_ROOM, 2 * left.length));
-      this.data.set(left);
-      this.size = left.length;
-      this.offset += passed;
-      this.done -= passed;
-      this.scan -= passed;
-      this.pushed -= passed;
-    }
     const { events } = this;
     this.events = [];
     return events as unknown as Event<Message, Parts>[];
@@ -152,6 +148,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
     while (goesOn) {
       if (this.failure) goesOn = this.resume(this.failure, final);
       else if (this.candidate) goesOn = this.take(this.candidate, final);
+      else if (this.whole?.isWaiting) goesOn = this.takeWhole(this.whole, final);
       else goesOn = this.seek(final);
     }
   }
@@ -161,10 +158,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
     const start = this.nextStart();
     const { starts } = this.search;
     const end = final ? this.size : starts.undecided(this.data, this.size, this.scan);
-    if (start >= 0 && start <= end) {
-      this.open(start);
-      return true;
-    }
+    if (start >= 0 && start <= end) return this.open(start, final);
     this.scan = end;
     this.noise(end, final);
     return false;
@@ -176,18 +170,31 @@ export class Decoder<Message = unknown, Parts = unknown> {
   }
 
   /** Begin at a possible start. */
-  private open(start: number): void {
+  private open(start: number, final: boolean): boolean {
     this.beganFresh = this.isFresh;
     this.isFresh = false;
     if (!this.isAnywhere) this.noise(start, true);
     this.scan = this.pushed = start;
-    const event = this.whole?.take(this.data, this.size, start, this.offset);
-    if (event) {
-      this.events.push(event);
-      this.done = this.scan = start + event.size;
-      return;
+    if (this.whole) {
+      this.whole.begin();
+      return this.takeWhole(this.whole, final);
     }
     this.candidate = this.begin(this.beganFresh);
+    return true;
+  }
+
+  /** Take the frame there if it is plainly one, or as much of it as has come. */
+  private takeWhole(whole: WholeFrames, final: boolean): boolean {
+    const event = whole.take(this.data, this.size, this.scan, this.offset);
+    if (event) {
+      this.events.push(event);
+      this.done = this.scan += event.size;
+      return true;
+    }
+    if (whole.isWaiting && !final) return false;
+    whole.isWaiting = false;
+    this.candidate = this.begin(this.beganFresh);
+    return true;
   }
 
   private begin(isFresh: boolean): Judge {

@@ -1,6 +1,6 @@
 /** The codec of a protocol: encode, decode, and an encoder that counts. */
 
-import { frameOf, valueParts, type GivenParts } from "./assembly.js";
+import { frameOf, type GivenParts } from "./assembly.js";
 import { standsAt } from "./bytes.js";
 import { Candidate, Failure, verdictOn, type ToldValues } from "./candidate.js";
 import { DecodeError, EncodeError, Fault } from "./errors.js";
@@ -35,9 +35,18 @@ export interface NamedMessage {
   readonly message: string;
 }
 
+/** Senders of a message, for what was asked for. */
+interface Choice {
+  readonly sender: string | undefined;
+  readonly form: string | undefined;
+  readonly senders: readonly Sender[];
+}
+
 /** The senders of a protocol. */
 export class Protocol {
   private kept: readonly Sender[] | null = null;
+  /** What was chosen before, by the messages' names. */
+  private readonly chosen = new Map<string, Choice[]>();
 
   constructor(
     /** Give the frame of each sender; they are asked when one is first needed. */
@@ -97,6 +106,17 @@ export class Protocol {
 
   /** An endpoint that sends the message, in the forms that carry it. */
   private sendersOf(message: NamedMessage, options: EncodeOptions<object>): readonly Sender[] {
+    const { sender, form } = options;
+    const { message: name } = message;
+    let known = this.chosen.get(name);
+    if (!known) this.chosen.set(name, (known = []));
+    for (const item of known) if (item.sender === sender && item.form === form) return item.senders;
+    const senders = this.choose(message, options);
+    known.push({ sender, form, senders });
+    return senders;
+  }
+
+  private choose(message: NamedMessage, options: EncodeOptions<object>): readonly Sender[] {
     const { message: name } = message;
     const all = this.made.filter((sender) => sender.named(name));
     const chosen = options.sender;
@@ -126,14 +146,15 @@ function firstThatFits(
   senders: readonly Sender[],
   encode: (sender: Sender) => Uint8Array,
 ): Uint8Array {
-  for (const sender of senders.slice(0, -1)) {
+  const last = senders.length - 1;
+  for (let index = 0; index < last; index++) {
     try {
-      return encode(sender);
+      return encode(senders[index]!);
     } catch (error) {
       if (!(error instanceof EncodeError)) throw error;
     }
   }
-  return encode(senders[senders.length - 1]!);
+  return encode(senders[last]!);
 }
 
 function readAs(sender: Sender, data: Uint8Array, told: ToldValues): Framed {
@@ -176,7 +197,7 @@ export class Encoder<Message extends NamedMessage = NamedMessage, Parts = GivenP
 
   constructor(protocol: Protocol, sender: string) {
     this.senders = protocol.senders(sender);
-    for (const part of this.senders.flatMap(valueParts)) {
+    for (const part of this.senders.flatMap((sender) => sender.valueParts)) {
       if (part.isCounter) this.next.set(part.name, part.default ?? part.least);
     }
   }
@@ -195,7 +216,7 @@ export class Encoder<Message extends NamedMessage = NamedMessage, Parts = GivenP
     );
     if (!senders.length) throw new EncodeError("message", `${message.message} is not sent`);
     return firstThatFits(senders, (sender) => {
-      const counters = valueParts(sender).filter(
+      const counters = sender.valueParts.filter(
         (part) => part.isCounter && (given[part.name] ?? null) === null,
       );
       const counted = counters.map((part) => [part.name, this.next.get(part.name)] as const);

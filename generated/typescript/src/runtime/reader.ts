@@ -40,6 +40,7 @@ export class Reader {
   /** The place behind the last byte of the payload, or of the region. */
   end: number;
   private readonly path: Step[] = [];
+  private depth = 0;
   private regions = 0;
 
   /** `held` has the parts of the frame that are fields. */
@@ -57,7 +58,7 @@ export class Reader {
     this.at = at;
     this.end = end;
     this.regions = 0;
-    if (this.path.length) this.path.length = 0;
+    this.depth = 0;
     return this;
   }
 
@@ -65,17 +66,18 @@ export class Reader {
   fault(step: Step, reason: "size" | "value" | "encoding", problem: string, missing = 0): Fault {
     // More bytes behind a region would not help.
     const more = this.regions ? 0 : missing;
-    return new Fault(reason, problem, joined([...this.path, step]), this.at, more);
+    const path = joined([...this.path.slice(0, this.depth), step]);
+    return new Fault(reason, problem, path, this.at, more);
   }
 
   /** Begin what lies inside of a field or an element. */
   enter(step: Step): void {
-    this.path.push(step);
+    this.path[this.depth++] = step;
   }
 
   /** End what lies inside of it. */
   leave(): void {
-    this.path.pop();
+    this.depth--;
   }
 
   /** Bytes that are left. */
@@ -183,9 +185,12 @@ export class Reader {
   /** An unsigned integer of up to 53 bits in bytes of 8 bits or, if `base` is 128, of 7. */
   uint(size: number, bits: number, little: boolean, base: 128 | 256, step: Step): number {
     const start = this.take(size, step);
-    let raw = 0;
-    for (let index = 0; index < size; index++) {
-      const byte = this.bytes[little ? start + size - 1 - index : start + index]!;
+    const { bytes } = this;
+    const first = little ? start + size - 1 : start;
+    let raw = bytes[first]!;
+    if (raw >= base) throw this.eighthBit(raw, step);
+    for (let index = 1; index < size; index++) {
+      const byte = bytes[little ? first - index : first + index]!;
       if (byte >= base) throw this.eighthBit(byte, step);
       raw = raw * base + byte;
     }

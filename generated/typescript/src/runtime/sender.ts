@@ -2,10 +2,10 @@
 
 import { NO_BYTES } from "./bytes.js";
 import { EncodeError, Fault } from "./errors.js";
-import type { Value } from "./numbers.js";
+import type { PartNumber, Value } from "./numbers.js";
 import { areAmong, holds, NO_PARTS } from "./plan.js";
 import type { Frame, Group, HeldParts, LengthNumber, MessagePlan } from "./plan.js";
-import type { NumberPart, Part, Runs } from "./plan.js";
+import type { NumberPart, Part, Runs, ValueNumber } from "./plan.js";
 import { Reader } from "./reader.js";
 import { Writer } from "./writer.js";
 
@@ -14,9 +14,8 @@ function only(runs: Runs): readonly Value[] | null {
   return isOne ? runs.map((each) => each[0]![0]) : null;
 }
 
-function keyOf(values: readonly Value[]): Value {
-  return values.length === 1 ? values[0]! : values.join();
-}
+/** Groups by the values of an identity, one after another. */
+type Listed = Map<Value, Listed | Group>;
 
 function isFirstLength(part: NumberPart): part is LengthNumber {
   return part.kind === "length" && !part.isFurther;
@@ -30,9 +29,34 @@ export function numbersOf(parts: readonly Part[]): readonly NumberPart[] {
   });
 }
 
+function offsetsOf(parts: readonly Part[], isEmpty: boolean): readonly number[] {
+  let offset = 0;
+  const sizes = parts.map((part) => (isEmpty && part.isOptional ? 0 : part.size));
+  return [0, ...sizes.map((size) => (offset += size))];
+}
+
+/** A part of the identity; without a number where it is not sent. */
+export interface IdentityPart {
+  readonly name: string;
+  readonly slot: number;
+  readonly number: PartNumber | null;
+}
+
 export class Sender {
-  private readonly listed = new Map<Value, Group>();
+  /** Those of which each identity has one value. */
+  private listed: Listed | Group | undefined;
   private readonly wide: Group[] = [];
+  private readonly messages = new Map<string, MessagePlan>();
+  /** Parts of the identity, also those that are told. */
+  readonly identityParts: readonly IdentityPart[];
+  /** Values that callers give. */
+  readonly valueParts: readonly ValueNumber[];
+  /** Names of parts that callers may give. */
+  readonly given: ReadonlySet<string>;
+  /** Where each part begins without the bytes of the payload, and where the last one ends. */
+  readonly offsets: readonly number[];
+  /** The same where the payload is empty. */
+  readonly offsetsEmpty: readonly number[];
   private readonly slots = new Map<string, number>();
   /** Bytes that complete a start. None where the same literal ends frames. */
   readonly completesStart = new Uint8Array(256);
@@ -40,6 +64,7 @@ export class Sender {
   readonly emptyFrame: Uint8Array;
   readonly startSize: number;
   readonly hasWireSum: boolean;
+  readonly isFitted: boolean;
   /** The length that tells where a frame ends. */
   readonly length: LengthNumber | null;
   /** The same where it is not sent, and a receiver is told it. */
@@ -48,23 +73,46 @@ export class Sender {
   constructor(readonly frame: Frame) {
     for (const group of frame.groups) {
       const values = only(group.identities);
-      if (values) this.listed.set(keyOf(values), group);
+      if (values) this.list(values, group);
       else this.wide.push(group);
     }
-    for (const part of [...frame.told, ...numbersOf(frame.parts)]) {
-      this.slots.set(part.name, part.slot);
+    const numbers = numbersOf(frame.parts);
+    for (const part of [...frame.told, ...numbers]) this.slots.set(part.name, part.slot);
+    const sent = frame.groups.flatMap((group) => group.messages);
+    for (const message of [...sent, ...frame.encodeOnly]) {
+      if (!this.messages.has(message.name)) this.messages.set(message.name, message);
     }
+    const parts = [...frame.told.map((part) => ({ ...part, number: null })), ...numbers];
+    this.identityParts = frame.identity.map((slot) => parts.find((part) => part.slot === slot)!);
+    this.offsets = offsetsOf(frame.parts, false);
+    this.offsetsEmpty = offsetsOf(frame.parts, true);
+    this.valueParts = numbers.filter((part): part is ValueNumber => part.kind === "value");
+    this.given = new Set([...this.identityParts, ...this.valueParts].map((part) => part.name));
     this.startSize = frame.startWords[0]?.length ?? 0;
     const own = frame.sharesDelimiter ? [] : frame.startWords;
     for (const word of own) this.completesStart[word[word.length - 1]!] = 1;
     this.toldLength = frame.told.find((part) => part.length)?.length ?? null;
     this.length = this.toldLength ?? numbersOf(frame.parts).find(isFirstLength) ?? null;
+    this.isFitted = frame.kept !== null || frame.isCut;
     this.hasWireSum = frame.sums.some((sum) => sum.overWire);
     this.emptyFrame = NO_BYTES;
     if (frame.start === "after_end") this.emptyFrame = frame.end;
     else if (frame.sharesDelimiter) {
       this.emptyFrame = Uint8Array.of(...frame.startBytes, ...frame.end);
     }
+  }
+
+  private list(values: readonly Value[], group: Group): void {
+    const last = values.length - 1;
+    if (last < 0) this.listed = group;
+    let listed = (this.listed ??= new Map()) as Listed;
+    values.forEach((value, index) => {
+      if (index === last) listed.set(value, group);
+      else {
+        if (!listed.has(value)) listed.set(value, new Map());
+        listed = listed.get(value) as Listed;
+      }
+    });
   }
 
   get key(): string {
@@ -79,10 +127,12 @@ export class Sender {
 
   /** The messages of an identity; undefined where it is unknown. */
   group(values: readonly (Value | undefined)[]): Group | undefined {
-    const slots = this.frame.identity;
-    const key = slots.length === 1 ? values[slots[0]!]! : keyOf(this.identity(values));
-    const found = this.listed.get(key);
-    if (found || !this.wide.length) return found;
+    const { identity: slots } = this.frame;
+    let found = this.listed;
+    for (let index = 0; found && index < slots.length; index++) {
+      found = (found as Listed).get(values[slots[index]!]!);
+    }
+    if (found || !this.wide.length) return found as Group | undefined;
     const identity = this.identity(values);
     return this.wide.find((group) => areAmong(group.identities, identity));
   }
@@ -117,10 +167,6 @@ export class Sender {
     if (!toldLength || payload < 0) return;
     const { base, optional, slot } = toldLength;
     values[slot] = base + (payload ? payload + optional : 0);
-  }
-
-  get isFitted(): boolean {
-    return this.frame.kept !== null || this.frame.isCut;
   }
 
   /** The parts of a frame that are fields of the message, among the values of the frame. */
@@ -169,20 +215,16 @@ export class Sender {
   }
 
   /** The bytes of a message's payload that an encoder puts into a frame. */
-  trimmed(payload: Uint8Array): Uint8Array {
+  trimmed(bytes: Uint8Array, from: number, size: number): number {
     const { kept } = this.frame;
-    if (kept === null) return payload;
-    let size = payload.length;
-    while (size > kept && payload[size - 1] === 0) size--;
-    return payload.subarray(0, size);
+    let left = size;
+    if (kept !== null) while (left > kept && bytes[from + left - 1] === 0) left--;
+    return left;
   }
 
   /** The message called `name`, if the endpoint sends one. */
   named(name: string): MessagePlan | undefined {
-    for (const group of this.frame.groups) {
-      for (const message of group.messages) if (message.name === name) return message;
-    }
-    return this.frame.encodeOnly.find((message) => message.name === name);
+    return this.messages.get(name);
   }
 }
 
@@ -205,23 +247,36 @@ export function readPayload(
 
 /** The payload of a message. Throws an EncodeError. */
 export function writePayload(message: MessagePlan, value: unknown, strict: boolean): Uint8Array {
-  return payloadOf(message, value, strict).payload;
+  const { bytes, size } = payloadOf(message, value, strict, 0);
+  return bytes.slice(0, size);
 }
 
-/** The payload of a message, and its fields that are parts. Throws an EncodeError. */
+const WRITER = /* @__PURE__ */ new Writer(true);
+
+/** Room for a payload behind so many bytes. It is that of all frames, one after another. */
+export function writerOf(strict: boolean, from: number): Writer {
+  return WRITER.restart(strict, from);
+}
+
+/**
+ * The payload of a message behind so many bytes, and its fields that are parts.
+ *
+ * It stays until the next call. Throws an EncodeError.
+ */
 export function payloadOf(
   message: MessagePlan,
   value: unknown,
   strict: boolean,
-): { readonly payload: Uint8Array; readonly held: HeldParts } {
-  const writer = new Writer(strict);
+  from: number,
+): Writer {
+  const writer = writerOf(strict, from);
   message.write(writer, value as never);
-  const payload = writer.finish();
-  if (!holds(message.sizes, payload.length)) {
-    const problem = `makes ${payload.length} bytes of payload, which ${message.name} can't have`;
+  const size = writer.size - from;
+  if (!holds(message.sizes, size)) {
+    const problem = `makes ${size} bytes of payload, which ${message.name} can't have`;
     throw new EncodeError("", problem);
   }
-  return { payload, held: writer.held };
+  return writer;
 }
 
 /** Bytes at the start of `data` that the message takes. Throws a Fault. */

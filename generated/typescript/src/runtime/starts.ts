@@ -17,21 +17,27 @@ function startWords(words: readonly Uint8Array[]): Starts {
   const wordSize = words[0]!.length;
   const begins = new Uint8Array(256);
   for (const word of words) begins[word[0]!] = 1;
+  const [first] = words as readonly [Uint8Array];
+  function stands(data: Uint8Array, size: number, place: number): boolean {
+    return words.length === 1
+      ? standsAt(data, size, place, first)
+      : words.some((word) => standsAt(data, size, place, word));
+  }
   return {
     context: 0,
     find(data, size, low, high) {
       const last = Math.min(high, size - wordSize + 1);
       for (let place = low; place < last; place++) {
         if (!begins[data[place]!]) continue;
-        if (wordSize === 1 || words.some((word) => standsAt(data, size, place, word))) return place;
+        if (wordSize === 1 || stands(data, size, place)) return place;
       }
       return -1;
     },
     undecided(data, size, low) {
       for (let place = Math.max(low, size - wordSize + 1); place < size; place++) {
+        if (!begins[data[place]!]) continue;
         const left = data.subarray(place, size);
-        const isBegun = words.some((word) => standsAt(word, word.length, 0, left));
-        if (isBegun) return place;
+        if (words.some((word) => standsAt(word, word.length, 0, left))) return place;
       }
       return size;
     },

@@ -1,56 +1,100 @@
 /**
- * Frames that stand in the input as a whole and are plainly in order, taken without a candidate.
+ * Frames that are plainly in order, taken as they come in, without a candidate.
  *
  * Whatever is not plain is left to a candidate, which looks at it byte by byte and knows the reason.
+ * So what is waited for here, a candidate would wait for as well.
  */
 
-import { concatenated, equal, NO_BYTES, standsAt } from "./bytes.js";
+import { concatenated, equal, hasHighBit, NO_BYTES, standsAt } from "./bytes.js";
 import { Cut, sumIsRight } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { Fault } from "./errors.js";
 import { framed, Framed } from "./events.js";
 import type { Value } from "./numbers.js";
 import { at as placeAt, holds } from "./plan.js";
-import type { Covered, Group, Literal, NumberPart, Sum } from "./plan.js";
+import type { Covered, Frame, Group, NumberPart, Place, Sum } from "./plan.js";
 import { Reader } from "./reader.js";
-import type { Sender } from "./sender.js";
+import { numbersOf, type Sender } from "./sender.js";
+import type { Transparency, Unstuffer } from "./transparency.js";
 
-interface Placed<Item> {
-  readonly item: Item;
+/** A part in front of the payload: bytes that are always the same, or a number. */
+interface HeadPart {
   readonly offset: number;
-}
-
-/** Content of a frame, from `base` on, and the wire bytes that it is made of. */
-interface Found {
-  readonly bytes: Uint8Array;
-  readonly base: number;
-  readonly payload: number;
-  /** Place behind the frame. */
+  /** Place behind it in the content. */
   readonly end: number;
+  readonly literal: Uint8Array;
+  readonly number: NumberPart | null;
+  readonly slot: number;
+  /** True if it is a number of one byte, which may be any. */
+  readonly isByte: boolean;
 }
 
-/** Takes whole frames of one sender. */
+/** A run of content. */
+interface Run {
+  readonly from: Place;
+  readonly to: Place;
+}
+
+/** Takes frames of one sender, as far as they have come in. */
 export class WholeFrames {
-  private readonly literals: Placed<Literal>[] = [];
-  private readonly numbers: Placed<NumberPart>[] = [];
+  /** True if all that has come of the frame is in order, and more has to come. */
+  isWaiting = false;
+  private readonly head: HeadPart[] = [];
+  /** What each checksum runs over, where that is one run. */
+  private readonly runs: (Run | undefined)[];
   /** Bytes of content in front of what is stuffed. */
   private readonly before: number;
+  /** Content where some of it is stuffed. */
   private readonly scratch: Uint8Array;
+  /** Bytes that the search for starts has compared. */
+  private readonly found: number;
+  private readonly frame: Frame;
+  private readonly transparency: Transparency | null;
   private readonly reader = new Reader(NO_BYTES);
+  /** Bytes that may end a start or an end inside the frame, or have the bit that no payload has. */
+  private readonly marks: Uint8Array;
+  // Of the frame that is taken:
+  /** Bytes on the wire that are in order. */
+  private place = 0;
+  /** Bytes of content that are there. */
+  private filled = 0;
+  /** Bytes on the wire in which nothing stands that would end the frame. */
+  private clear = 0;
+  /** Parts in front of the payload that are in order. */
+  private passed = 0;
+  /** Bytes of the payload; -1 while that is not known. */
+  private payload = -1;
+  private unstuffer: Unstuffer | null = null;
   private values: (Value | undefined)[] = [];
   private group: Group | undefined;
 
   private constructor(private readonly sender: Sender) {
     const { frame } = sender;
+    this.frame = frame;
+    this.transparency = frame.transparency;
     let offset = 0;
-    frame.parts.slice(0, frame.payloadIndex).forEach((part) => {
-      if (part.kind === "literal") this.literals.push({ item: part, offset });
-      if (part.kind === "number") this.numbers.push({ item: part.part, offset });
-      offset += part.size;
-    });
+    for (const part of frame.parts.slice(0, frame.payloadIndex)) {
+      const literal = part.kind === "literal" ? part.bytes : NO_BYTES;
+      const number = part.kind === "number" ? part.part : null;
+      const end = offset + part.size;
+      const slot = number?.slot ?? -1;
+      const isByte = number?.kind !== "length" && part.size === 1 && isAny(number);
+      if (frame.startBytes.length < end) {
+        this.head.push({ offset, end, literal, number, slot, isByte });
+      }
+      offset = end;
+    }
     const inFront = frame.parts.slice(0, Math.max(0, frame.firstStuffed));
     this.before = inFront.reduce((size, part) => size + part.size, 0);
     this.scratch = new Uint8Array(frame.greatest + 1);
+    this.scratch.set(frame.startBytes);
+    this.found = Math.min(frame.startBytes.length, this.before);
+    this.runs = frame.sums.map(({ covers: [first, ...more] }) =>
+      first && "from" in first && !more.length ? first : undefined,
+    );
+    this.marks = frame.startIsUnique ? sender.completesStart.slice() : new Uint8Array(256);
+    if (frame.endIsUnique) this.marks[frame.end[frame.end.length - 1]!] = 1;
+    if (frame.sevenBit) this.marks.fill(1, 128);
   }
 
   /** What takes the frames of a sender; null where the frame does not allow that. */
@@ -60,180 +104,252 @@ export class WholeFrames {
       (part, index) => part.kind !== "bits" && (index < frame.payloadIndex || !part.isOptional),
     );
     const isTold = frame.told.length > 0 || frame.virtual.length > 0;
-    const allows = frame.takesWhole && isPlain && !isTold && !frame.sharesDelimiter;
+    const isOnce = numbersOf(frame.parts).every((part) => part.kind !== "length" || !part.isFurther);
+    const allows = frame.takesWhole && isPlain && isOnce && !isTold && !frame.sharesDelimiter;
     return allows && !sender.hasWireSum ? new WholeFrames(sender) : null;
   }
 
-  /** The event of the frame there; null: a candidate has to look. */
+  /** Begin another frame. */
+  begin(): void {
+    this.place = this.filled = this.found;
+    this.passed = 0;
+    this.clear = this.sender.startSize;
+    this.payload = -1;
+    this.unstuffer = this.transparency?.decoder() ?? null;
+  }
+
+  /** The event of the frame there; null: it is not all there yet, or a candidate has to look. */
   take(data: Uint8Array, size: number, at: number, offset: number): Framed | null {
-    const { frame } = this.sender;
+    this.isWaiting = false;
     try {
-      const found = this.find(data, size, at);
-      if (!found || found.end - at > frame.givenUpAt || this.startsInside(data, at, found.end)) {
+      const end = this.reach(data, size, at);
+      if (end < 0) {
+        this.isWaiting &&= size - at < this.frame.givenUpAt;
         return null;
       }
-      const start = found.base + frame.headSize;
-      const behind = start + found.payload;
-      for (const sum of frame.sums) if (!this.isRight(sum, found)) return null;
-      if (frame.sevenBit && hasHighBit(found.bytes, start, behind)) return null;
-      return this.event(found, data, at, offset + at);
+      return end - at > this.frame.givenUpAt ? null : this.event(data, at, end, offset + at);
     } catch (error) {
+      this.isWaiting = false;
       if (error instanceof Fault) return null;
       throw error;
     }
   }
 
-  /** The event of a frame that is right. Throws a Fault where its payload is no message's. */
-  private event(found: Found, data: Uint8Array, at: number, offset: number): Framed {
-    const { group, values, sender } = this;
-    const size = found.end - at;
-    const start = found.base + sender.frame.headSize;
-    const only = group?.messages.length === 1 && !sender.isFitted ? group.messages[0]! : null;
-    if (!only || !holds(only.sizes, found.payload)) {
-      const payload = found.bytes.slice(start, start + found.payload);
-      return framed(sender, new Cut(size, values, payload), offset, data, at, size);
-    }
-    const reader = this.reader.restart(
-      found.bytes,
-      start,
-      start + found.payload,
-      sender.held(only, values),
-    );
-    const message = only.read(reader);
-    reader.finish();
-    return new Framed("message", offset, size, data, at, sender, values, NO_BYTES, message, only);
-  }
-
-  private find(data: Uint8Array, size: number, at: number): Found | null {
+  /** The place behind the frame; -1 where it is not all there, or not plainly one. */
+  private reach(data: Uint8Array, size: number, at: number): number {
     const { frame } = this.sender;
-    if (size - at < frame.least) return null;
-    if (frame.start === "after_end" && standsAt(data, size, at, frame.end)) return null;
-    const stop = frame.endIsUnique ? endIn(data, size, at + frame.markSize, frame.end) : -1;
-    if (frame.endIsUnique && stop < 0) return null;
-    return frame.transparency ? this.stuffed(data, size, at, stop) : this.plain(data, size, at, stop);
+    const { headSize } = frame;
+    if (frame.start === "after_end" && standsAt(data, size, at, frame.end)) return -1;
+    if (this.payload < 0) {
+      const isThere = this.fill(data, size, at, headSize);
+      if (this.transparency ? !this.readHead(this.scratch, 0) : !this.readHead(data, at)) return -1;
+      if (!isThere) return this.wait(data, size, at);
+      this.payload = this.payloadSize();
+      if (this.payload < 0) return this.reachEnd(data, size, at);
+    }
+    const due = headSize + this.payload + this.sender.tailSize(this.payload);
+    if (!this.fill(data, size, at, due)) return this.wait(data, size, at);
+    return this.filled === due ? this.behind(data, size, at) : -1;
   }
 
-  private plain(data: Uint8Array, size: number, at: number, stop: number): Found | null {
-    const { headSize, end } = this.sender.frame;
-    if (at + headSize > size || !this.readHead(data, at)) return null;
-    const payload = this.payloadSize(stop - at);
-    if (payload < 0) return null;
-    const behind = at + headSize + payload + this.sender.tailSize(payload);
-    if (stop < 0 ? !standsAt(data, size, behind, end) : behind !== stop) return null;
-    return behind > size ? null : { bytes: data, base: at, payload, end: behind + end.length };
+  /** The same where the end has to tell the size. */
+  private reachEnd(data: Uint8Array, size: number, at: number): number {
+    const { end, endIsUnique, markSize, behindRegion, greatest } = this.frame;
+    if (this.sender.length || !endIsUnique) return -1;
+    const stop = endIn(data, size, at + markSize, end) - at;
+    if (stop < 0) return -1;
+    if (!this.transparency) this.filled = this.place = stop;
+    else {
+      this.unstuff(data, at + stop - behindRegion, at, greatest);
+      if (this.place !== stop - behindRegion) return -1;
+      this.closeRegion();
+      this.copy(data, size, at, this.filled + behindRegion);
+    }
+    this.payload = this.sender.payloadSize(this.filled);
+    return this.payload < 0 ? -1 : this.behind(data, size, at);
   }
 
-  /** The same where some of it is stuffed. */
-  private stuffed(data: Uint8Array, size: number, at: number, stop: number): Found | null {
-    const { headSize, transparency, behindRegion, end } = this.sender.frame;
-    const { before, scratch } = this;
-    const last = stop < 0 ? size : stop - behindRegion;
-    const unstuffer = transparency!.decoder();
-    for (let index = 0; index < before; index++) scratch[index] = data[at + index]!;
-    let filled = before;
-    let place = at + before;
-    let payload = -1;
-    let due = stop < 0 ? headSize : scratch.length;
-    while (place < last && filled < due) {
-      const released = unstuffer.push(data[place++]!);
-      for (let index = 0; index < released.length; index++) scratch[filled++] = released[index]!;
-      if (stop < 0 && payload < 0 && filled >= headSize) {
-        if (!this.readHead(scratch, 0)) return null;
-        payload = this.payloadSize(-1);
-        if (payload < 0) return null;
-        due = headSize + payload + this.sender.tailSize(payload) - behindRegion;
-      }
+  /** The place behind the end, which has to stand here. */
+  private behind(data: Uint8Array, size: number, at: number): number {
+    const { end } = this.frame;
+    const place = at + this.place;
+    const behind = place + end.length;
+    for (let index = 0; index < end.length && place + index < size; index++) {
+      if (data[place + index] !== end[index]) return -1;
     }
-    const rest = unstuffer.finish();
-    if (stop < 0 ? rest.length || filled !== due || payload < 0 : place !== last) return null;
-    for (let index = 0; index < rest.length; index++) scratch[filled++] = rest[index]!;
-    if (place + behindRegion + end.length > size) return null;
-    for (let index = 0; index < behindRegion; index++) scratch[filled++] = data[place++]!;
-    if (!standsAt(data, size, place, end)) return null;
-    if (stop >= 0) {
-      if (filled < headSize || !this.readHead(scratch, 0)) return null;
-      payload = this.payloadSize(filled);
-      const whole = headSize + payload + this.sender.tailSize(payload);
-      if (payload < 0 || whole !== filled) return null;
-    }
-    return { bytes: scratch, base: 0, payload, end: place + end.length };
+    if (behind > size) return this.wait(data, size, at);
+    return this.isClear(data, at, behind, behind) ? behind : -1;
   }
 
-  /** Read the parts in front of the payload. False: they are not plainly those of a frame. */
-  private readHead(bytes: Uint8Array, base: number): boolean {
-    for (const { item, offset } of this.literals) {
-      if (!standsAt(bytes, bytes.length, base + offset, item.bytes)) return false;
+  private wait(data: Uint8Array, size: number, at: number): number {
+    const { transparency } = this;
+    const { sevenBit } = this.frame;
+    this.isWaiting = !(sevenBit && transparency) && this.isClear(data, at, size, -1);
+    return -1;
+  }
+
+  /** True if nothing stands in the bytes up to a place that would end the frame. */
+  private isClear(data: Uint8Array, at: number, to: number, behind: number): boolean {
+    const { marks } = this;
+    // Of a strict stuffing nothing is left that would.
+    if (this.transparency?.isStrict) return true;
+    for (let place = at + this.clear; place < to; place++) {
+      if (marks[data[place]!] && this.isEnded(data, at, place, behind)) return false;
     }
-    const values = new Array<Value | undefined>(this.sender.frame.slots);
-    for (const { item, offset } of this.numbers) {
-      const value = item.number.decode(bytes, base + offset);
-      values[item.slot] = value;
-      if (item.kind === "value" && item.isHeld && !mayBe(item, value)) return false;
-    }
-    this.values = values;
-    this.group = this.sender.group(values);
+    this.clear = to - at;
     return true;
   }
 
-  /** The payload's size: by a length, or by the identity, or by all content; -1 if none is plain. */
-  private payloadSize(content: number): number {
+  /** True if a frame that ends behind the place `behind` can't have this byte there. */
+  private isEnded(data: Uint8Array, at: number, place: number, behind: number): boolean {
+    const { completesStart, startSize, frame } = this.sender;
+    const { headSize, end } = frame;
+    const byte = data[place]!;
+    const index = place - at - headSize;
+    const isPlain = !this.transparency && index >= 0 && index < this.payload;
+    if (byte > 0x7f && frame.sevenBit && isPlain) return true;
+    const first = place + 1 - startSize;
+    if (frame.startIsUnique && completesStart[byte] && first > at) {
+      if (frame.startWords.some((word) => standsAt(data, place + 1, first, word))) return true;
+    }
+    const stop = place + 1 - end.length;
+    if (!frame.endIsUnique || place + 1 === behind || stop < at + frame.markSize) return false;
+    return standsAt(data, place + 1, stop, end);
+  }
+
+  // --- content -------------------------------------------------------------------------------
+
+  /** Take content until so much is there. False: more has to come. */
+  private fill(data: Uint8Array, size: number, at: number, due: number): boolean {
+    const { transparency } = this;
+    const { behindRegion } = this.frame;
+    if (!transparency) this.filled = this.place = Math.min(due, size - at);
+    else {
+      this.unstuff(data, size, at, this.payload < 0 ? due : due - behindRegion);
+      if (this.payload >= 0 && this.filled >= due - behindRegion) {
+        this.closeRegion();
+        this.copy(data, size, at, due);
+      }
+    }
+    return this.filled >= due;
+  }
+
+  /** Take content up to the end of what is stuffed. */
+  private unstuff(data: Uint8Array, size: number, at: number, due: number): void {
+    this.copy(data, size, at, Math.min(this.before, due));
+    const { unstuffer } = this;
+    if (this.filled < this.before || !unstuffer) return;
+    unstuffer.filled = this.filled;
+    this.place = unstuffer.fill(data, at + this.place, size, this.scratch, due) - at;
+    this.filled = unstuffer.filled;
+  }
+
+  /** Take the end of what is stuffed, and what was held back. Throws a Fault. */
+  private closeRegion(): void {
+    const rest = this.unstuffer?.finish() ?? NO_BYTES;
+    this.unstuffer = null;
+    for (let index = 0; index < rest.length; index++) this.scratch[this.filled++] = rest[index]!;
+  }
+
+  /** Take content that is not stuffed. */
+  private copy(data: Uint8Array, size: number, at: number, due: number): void {
+    while (this.filled < due && at + this.place < size) {
+      this.scratch[this.filled++] = data[at + this.place++]!;
+    }
+  }
+
+  /** Read the parts in front of the payload that are there. False: one is not plainly right. */
+  private readHead(bytes: Uint8Array, base: number): boolean {
+    const { head } = this;
+    if (!this.passed) this.values = new Array<Value | undefined>(this.frame.slots);
+    for (; this.passed < head.length; this.passed++) {
+      const { offset, end, literal, number, slot, isByte } = head[this.passed]!;
+      if (end > this.filled) return true;
+      if (isByte) this.values[slot] = bytes[base + offset]!;
+      else if (!number) {
+        if (!standsAt(bytes, base + end, base + offset, literal)) return false;
+      } else {
+        const value = number.number.decode(bytes, base + offset);
+        this.values[slot] = value;
+        if (!isTaken(number, value)) return false;
+      }
+    }
+    this.group = this.sender.group(this.values);
+    return true;
+  }
+
+  /** The payload's size: by a length, or by the identity; -1 if neither tells it plainly. */
+  private payloadSize(): number {
     const { frame, length } = this.sender;
     const { group } = this;
-    if (!length) {
-      return group && group.fixed !== null
-        ? group.fixed
-        : content < 0
-          ? -1
-          : this.sender.payloadSize(content);
-    }
+    if (!length) return group?.fixed ?? -1;
     const value = this.values[length.slot] as number;
     const size = value === length.base ? 0 : value - length.base - length.optional;
-    if (value < length.least || value > length.greatest) return -1;
     if (size > frame.greatestPayload || (size <= 0 && value !== length.base)) return -1;
     const isHeld = group && frame.rescans;
     return isHeld && !group.carried.some((sizes) => holds(sizes, size)) ? -1 : size;
   }
 
-  /** True if a start stands inside that would end the frame. */
-  private startsInside(data: Uint8Array, at: number, end: number): boolean {
-    const { completesStart, startSize, frame } = this.sender;
-    if (!frame.startIsUnique) return false;
-    for (let place = at + startSize; place < end; place++) {
-      if (!completesStart[data[place]!]) continue;
-      const first = place + 1 - startSize;
-      if (first > at && frame.startWords.some((word) => standsAt(data, end, first, word))) {
-        return true;
-      }
+  // --- the complete frame --------------------------------------------------------------------
+
+  /** The event of the frame; null where it is not right. Throws a Fault. */
+  private event(data: Uint8Array, at: number, end: number, offset: number): Framed | null {
+    const { group, values, sender, payload } = this;
+    const { frame } = sender;
+    const isPlain = !this.transparency;
+    const bytes = isPlain ? data : this.scratch;
+    const base = isPlain ? at : 0;
+    const start = base + frame.headSize;
+    const behind = start + payload;
+    const size = end - at;
+    for (let index = 0; index < frame.sums.length; index++) {
+      if (!this.isRight(frame.sums[index]!, this.runs[index], bytes, base)) return null;
     }
-    return false;
+    if (!isPlain && frame.sevenBit && hasHighBit(bytes, start, behind)) return null;
+    const only = group && group.messages.length === 1 && !sender.isFitted ? group.messages[0]! : null;
+    if (!only || !holds(only.sizes, payload)) {
+      const cut = new Cut(size, values, bytes.slice(start, behind));
+      return framed(sender, cut, offset, data, at, size);
+    }
+    const reader = this.reader.restart(bytes, start, behind, sender.held(only, values));
+    const message = only.read(reader);
+    reader.finish();
+    return new Framed("message", offset, size, data, at, sender, values, NO_BYTES, message, only);
   }
 
-  private isRight(sum: Sum, found: Found): boolean {
-    const { headSize } = this.sender.frame;
-    const { base, bytes, payload } = found;
+  private isRight(sum: Sum, run: Run | undefined, bytes: Uint8Array, base: number): boolean {
+    const { payload } = this;
+    const { headSize } = this.frame;
     const place = base + placeAt(sum.place, headSize, payload);
-    const [first] = sum.covers;
-    if (sum.covers.length === 1 && first && "from" in first) {
-      const from = base + placeAt(first.from, headSize, payload);
-      const to = base + placeAt(first.to, headSize, payload);
+    if (run) {
+      const from = base + placeAt(run.from, headSize, payload);
+      const to = base + placeAt(run.to, headSize, payload);
       return sumIsRight(sum, sum.algorithm.compute(bytes, from, to), bytes, place);
     }
-    const joined = concatenated(sum.covers.map((covered) => this.covered(covered, found)));
+    const joined = concatenated(sum.covers.map((covered) => this.covered(covered, bytes, base)));
     return sumIsRight(sum, sum.algorithm.compute(joined, 0, joined.length), bytes, place);
   }
 
-  private covered(covered: Covered, { bytes, base, payload }: Found): Uint8Array {
+  private covered(covered: Covered, bytes: Uint8Array, base: number): Uint8Array {
     if ("bytes" in covered) return covered.bytes;
     if ("virtual" in covered) throw new Fault("checksum", "it covers what is not sent");
-    const { headSize } = this.sender.frame;
-    const from = placeAt(covered.from, headSize, payload);
-    return bytes.subarray(base + from, base + placeAt(covered.to, headSize, payload));
+    const { headSize } = this.frame;
+    const from = placeAt(covered.from, headSize, this.payload);
+    return bytes.subarray(base + from, base + placeAt(covered.to, headSize, this.payload));
   }
 }
 
-function hasHighBit(bytes: Uint8Array, from: number, to: number): boolean {
-  for (let place = from; place < to; place++) if (bytes[place]! > 0x7f) return true;
-  return false;
+/** True if the number can be any byte. */
+function isAny(part: NumberPart | null): boolean {
+  return part?.number.isPlain === true && !(part.kind === "value" && part.isHeld);
+}
+
+/** True if a receiver takes a value of the number, whatever else is in the frame. */
+function isTaken(part: NumberPart, value: Value): boolean {
+  if (part.kind === "value") return !part.isHeld || mayBe(part, value);
+  if (part.kind !== "length") return true;
+  const length = value as number;
+  return part.least <= length && length <= part.greatest;
 }
 
 /** The first place of an end; -1 where there is none. */

@@ -62,6 +62,7 @@ function store(
 /** An integer of `bits` bits from bit `low` on, of an unsigned integer of `size` bytes. */
 class Unsigned implements PartNumber {
   private readonly greatest: bigint;
+  private readonly most: number;
   readonly isPlain: boolean;
 
   constructor(
@@ -73,12 +74,12 @@ class Unsigned implements PartNumber {
     private readonly isPart: boolean,
   ) {
     this.greatest = (1n << BigInt(bits)) - 1n;
+    this.most = Number(this.greatest);
     this.isPlain = size <= 4 && !sevenBit && !isPart && bits === 8 * size;
   }
 
   decode(bytes: ArrayLike<number>, at: number): Value {
     if (this.isPlain) {
-      if (this.size === 1) return bytes[at]!;
       let raw = 0;
       for (let index = 0; index < this.size; index++) {
         raw = raw * 256 + bytes[this.little ? at + this.size - 1 - index : at + index]!;
@@ -94,6 +95,13 @@ class Unsigned implements PartNumber {
   }
 
   encode(value: Value, out: Uint8Array, at: number): void {
+    if (this.isPlain && typeof value === "number" && value >= 0 && value <= this.most) {
+      for (let index = 0, rest = value; index < this.size; index++) {
+        out[this.little ? at + index : at + this.size - 1 - index] = rest;
+        rest = Math.floor(rest / 256);
+      }
+      return;
+    }
     const raw = BigInt(value);
     if (raw < 0n || raw > this.greatest) {
       throw new EncodeError("", `${value} is not in 0..${this.greatest}`);

@@ -4,19 +4,42 @@ import { concatenated, equal, NO_BYTES, standsAt } from "./bytes.js";
 import { Fault, spelled } from "./errors.js";
 
 /** Decodes one region, byte by byte. Of no use after a Fault or `finish`. */
-export interface Unstuffer {
+export abstract class Unstuffer {
+  /** Bytes that `fill` has put out. */
+  filled = 0;
   /** Take the next byte of the region; the bytes that it releases. Throws a Fault. */
-  push(byte: number): ArrayLike<number>;
+  abstract push(byte: number): ArrayLike<number>;
   /** Take the end of the region; the bytes that were held back. Throws a Fault. */
-  finish(): ArrayLike<number>;
+  abstract finish(): ArrayLike<number>;
+
+  /** Take bytes up to a place, or until there are `due`; the place behind them. Throws a Fault. */
+  fill(data: Uint8Array, from: number, to: number, out: Uint8Array, due: number): number {
+    let place = from;
+    while (place < to && this.filled < due) {
+      const released = this.push(data[place++]!);
+      for (let index = 0; index < released.length; index++) out[this.filled++] = released[index]!;
+    }
+    return place;
+  }
 }
 
 /** One kind of transparency with its parameters. */
 export interface Transparency {
+  /** True if only what a sender makes of some bytes is taken off. */
+  readonly isStrict: boolean;
   /** The region on the wire that stands for the bytes. */
   encode(bytes: Uint8Array): Uint8Array;
+  /** The first `size` bytes with a region of them on the wire, and an end behind them. */
+  put(bytes: Uint8Array, size: number, from: number, to: number, end: Uint8Array): Uint8Array;
   /** What takes a region off, from its first byte on. */
   decoder(): Unstuffer;
+}
+
+function putBy(encode: Transparency["encode"]): Transparency["put"] {
+  return (bytes, size, from, to, end) => {
+    const region = encode(bytes.slice(from, to));
+    return concatenated([bytes.slice(0, from), region, bytes.slice(to, size), end]);
+  };
 }
 
 /** Each byte by its value, as what a byte releases. */
@@ -28,63 +51,97 @@ function cutSequence(held: ArrayLike<number>): Fault {
 
 // --- substitution ------------------------------------------------------------------------------
 
-interface Node {
-  readonly next: Map<number, Node>;
-  value: number;
+/** The sequences of a table, and the bytes that stand for themselves. */
+interface Sequences {
+  /**
+   * What becomes of each byte behind each beginning of a sequence, of which the first is empty: the
+   * byte that the sequence stands for, -1 where there is none, or -2 less the next beginning.
+   */
+  readonly steps: Int16Array;
+  readonly beginnings: readonly (readonly number[])[];
 }
 
-/** The sequences of a table, and the bytes that stand for themselves, as a tree. */
-function treeOf(codes: readonly (readonly [number, Uint8Array])[]): Node {
-  const root: Node = { next: new Map(), value: -1 };
-  const listed = new Set(codes.map(([byte]) => byte));
-  const plain = BYTES.map((word, byte) => [byte, word] as const);
-  for (const [byte, word] of [...codes, ...plain.filter(([byte]) => !listed.has(byte))]) {
-    let node = root;
-    for (const item of word) {
-      let inner = node.next.get(item);
-      if (!inner) node.next.set(item, (inner = { next: new Map(), value: -1 }));
-      node = inner;
-    }
-    node.value = byte;
+function sequencesOf(codes: readonly (readonly [number, Uint8Array])[]): Sequences {
+  const steps: number[] = BYTES.map((_, byte) => byte);
+  const beginnings: number[][] = [[]];
+  for (const [byte] of codes) steps[byte] = -1;
+  for (const [byte, word] of codes) {
+    let node = 0;
+    word.forEach((item, index) => {
+      const at = 256 * node + item;
+      if (index === word.length - 1) steps[at] = byte;
+      else {
+        if (steps[at]! > -2) {
+          steps[at] = -2 - beginnings.length;
+          beginnings.push([...word.subarray(0, index + 1)]);
+          for (let count = 0; count < 256; count++) steps.push(-1);
+        }
+        node = -2 - steps[at]!;
+      }
+    });
   }
-  return root;
+  return { steps: Int16Array.from(steps), beginnings };
 }
 
-class StrictSequences implements Unstuffer {
-  private node: Node;
-  private held: number[] = [];
+class StrictSequences extends Unstuffer {
+  private node = 0;
 
-  constructor(private readonly root: Node) {
-    this.node = root;
+  constructor(private readonly sequences: Sequences) {
+    super();
   }
 
   push(byte: number): ArrayLike<number> {
-    const node = this.node.next.get(byte);
-    if (!node) {
-      const found = spelled([...this.held, byte]);
-      throw new Fault("stuffing", `${found} is no sequence and no plain byte`);
+    const step = this.sequences.steps[256 * this.node + byte]!;
+    if (step === -1) throw this.none(byte);
+    this.node = step < 0 ? -2 - step : 0;
+    return step < 0 ? NO_BYTES : BYTES[step]!;
+  }
+
+  override fill(data: Uint8Array, from: number, to: number, out: Uint8Array, due: number): number {
+    const { steps } = this.sequences;
+    let { filled, node } = this;
+    let place = from;
+    while (place < to && filled < due) {
+      const last = node ? place : Math.min(to, place + due - filled);
+      // Most bytes stand for themselves.
+      for (let step; place < last && (step = steps[data[place]!]!) >= 0; place++) {
+        out[filled++] = step;
+      }
+      if (place === to || filled === due) break;
+      const byte = data[place++]!;
+      const step = steps[256 * node + byte]!;
+      if (step >= 0) {
+        out[filled++] = step;
+        node = 0;
+      } else {
+        this.node = node;
+        if (step === -1) throw this.none(byte);
+        node = -2 - step;
+      }
     }
-    if (node.value >= 0) {
-      this.node = this.root;
-      if (this.held.length) this.held = [];
-      return BYTES[node.value]!;
-    }
+    this.filled = filled;
     this.node = node;
-    this.held.push(byte);
-    return NO_BYTES;
+    return place;
+  }
+
+  private none(byte: number): Fault {
+    const found = spelled([...this.sequences.beginnings[this.node]!, byte]);
+    return new Fault("stuffing", `${found} is no sequence and no plain byte`);
   }
 
   finish(): ArrayLike<number> {
-    if (this.held.length) throw cutSequence(this.held);
+    if (this.node) throw cutSequence(this.sequences.beginnings[this.node]!);
     return NO_BYTES;
   }
 }
 
 /** Where a sequence stands it is replaced; where none does, one byte passes as it is. */
-class LenientSequences implements Unstuffer {
+class LenientSequences extends Unstuffer {
   private held: number[] = [];
 
-  constructor(private readonly root: Node) {}
+  constructor(private readonly sequences: Sequences) {
+    super();
+  }
 
   push(byte: number): ArrayLike<number> {
     this.held.push(byte);
@@ -101,24 +158,26 @@ class LenientSequences implements Unstuffer {
 
   /** True if what is held is the beginning of a longer sequence, and no more. */
   private isBegun(): boolean {
-    let node: Node | undefined = this.root;
+    let node = 0;
     for (const byte of this.held) {
-      node = node.next.get(byte);
-      if (!node) return false;
+      const step = this.sequences.steps[256 * node + byte]!;
+      if (step >= -1) return false;
+      node = -2 - step;
     }
-    return node.next.size > 0;
+    return true;
   }
 
   private release(released: number[]): void {
-    let node: Node | undefined = this.root;
+    let node = 0;
     for (let size = 0; size < this.held.length; size++) {
-      node = node.next.get(this.held[size]!);
-      if (!node) break;
-      if (node.value >= 0) {
-        released.push(node.value);
+      const step = this.sequences.steps[256 * node + this.held[size]!]!;
+      if (step >= 0) {
+        released.push(step);
         this.held = this.held.slice(size + 1);
         return;
       }
+      if (step === -1) break;
+      node = -2 - step;
     }
     released.push(this.held[0]!);
     this.held = this.held.slice(1);
@@ -130,38 +189,67 @@ export function substitution(
   codes: readonly (readonly [number, Uint8Array])[],
   lenient = false,
 ): Transparency {
-  let root: Node | undefined;
+  let sequences: Sequences | undefined;
+  let words: Words | undefined;
+  const put: Transparency["put"] = (bytes, size, from, to, end) => {
+    words ??= wordsOf(codes);
+    return replaced(bytes, size, from, to, end, words);
+  };
   return {
-    encode: (bytes) => replaced(bytes, codes),
+    isStrict: !lenient,
+    encode: (bytes) => put(bytes, bytes.length, 0, bytes.length, NO_BYTES),
+    put,
     decoder() {
-      root ??= treeOf(codes);
-      return lenient ? new LenientSequences(root) : new StrictSequences(root);
+      sequences ??= sequencesOf(codes);
+      return lenient ? new LenientSequences(sequences) : new StrictSequences(sequences);
     },
   };
 }
 
+/** What each byte is replaced by. */
+type Words = readonly (Uint8Array | null)[];
+
+function wordsOf(codes: readonly (readonly [number, Uint8Array])[]): Words {
+  const words: (Uint8Array | null)[] = BYTES.map(() => null);
+  for (const [byte, word] of codes) words[byte] = word;
+  return words;
+}
+
 function replaced(
   bytes: Uint8Array,
-  codes: readonly (readonly [number, Uint8Array])[],
+  size: number,
+  from: number,
+  to: number,
+  end: Uint8Array,
+  words: Words,
 ): Uint8Array {
-  const words = new Map(codes);
-  const out: number[] = [];
-  for (const byte of bytes) {
-    const word = words.get(byte);
-    if (word) out.push(...word);
-    else out.push(byte);
+  let more = end.length;
+  for (let index = from; index < to; index++) {
+    const word = words[bytes[index]!]!;
+    if (word) more += word.length - 1;
   }
-  return Uint8Array.from(out);
+  const out = new Uint8Array(size + more);
+  let at = 0;
+  for (let index = 0; index < size; index++) {
+    const byte = bytes[index]!;
+    const word = index >= from && index < to ? words[byte]! : null;
+    if (!word) out[at++] = byte;
+    else for (let place = 0; place < word.length; place++) out[at++] = word[place]!;
+  }
+  for (let index = 0; index < end.length; index++) out[at++] = end[index]!;
+  return out;
 }
 
 /** Any byte behind the escape byte is transformed back; others stand for themselves. */
-class LenientEscape implements Unstuffer {
+class LenientEscape extends Unstuffer {
   private isEscaped = false;
 
   constructor(
     private readonly escape: number,
     private readonly mask: number,
-  ) {}
+  ) {
+    super();
+  }
 
   push(byte: number): ArrayLike<number> {
     if (this.isEscaped) {
@@ -187,20 +275,22 @@ export function escape(
 ): Transparency {
   const strict = substitution(codes);
   return lenient
-    ? { encode: strict.encode, decoder: () => new LenientEscape(byte, mask) }
+    ? { ...strict, isStrict: false, decoder: () => new LenientEscape(byte, mask) }
     : strict;
 }
 
 // --- a byte that is put in ---------------------------------------------------------------------
 
 /** Holds the last byte of each sequence until the byte behind it is there. */
-class Inserted implements Unstuffer {
+class Inserted extends Unstuffer {
   private seen: number[] = [];
 
   constructor(
     private readonly sequence: Uint8Array,
     private readonly byte: number,
-  ) {}
+  ) {
+    super();
+  }
 
   push(byte: number): ArrayLike<number> {
     const last = this.sequence.length;
@@ -226,27 +316,32 @@ class Inserted implements Unstuffer {
 
 /** Behind each sequence of two bytes or more, a byte is put in. */
 export function insertion(sequence: Uint8Array, byte: number): Transparency {
+  const encode = (bytes: Uint8Array): Uint8Array => {
+    const out: number[] = [];
+    for (let at = 0; at < bytes.length; ) {
+      if (standsAt(bytes, bytes.length, at, sequence)) {
+        out.push(...sequence, byte);
+        at += sequence.length;
+      } else out.push(bytes[at++]!);
+    }
+    return Uint8Array.from(out);
+  };
   return {
-    encode(bytes) {
-      const out: number[] = [];
-      for (let at = 0; at < bytes.length; ) {
-        if (standsAt(bytes, bytes.length, at, sequence)) {
-          out.push(...sequence, byte);
-          at += sequence.length;
-        } else out.push(bytes[at++]!);
-      }
-      return Uint8Array.from(out);
-    },
+    isStrict: true,
+    encode,
+    put: putBy(encode),
     decoder: () => new Inserted(sequence, byte),
   };
 }
 
 // --- base 16 -----------------------------------------------------------------------------------
 
-class Base16 implements Unstuffer {
+class Base16 extends Unstuffer {
   private upper = -1;
 
-  constructor(private readonly lenient: boolean) {}
+  constructor(private readonly lenient: boolean) {
+    super();
+  }
 
   push(byte: number): ArrayLike<number> {
     const digit = this.digit(byte);
@@ -274,16 +369,19 @@ class Base16 implements Unstuffer {
 
 /** Each byte is written as two hexadecimal digits in upper case. */
 export function base16(lenient = false): Transparency {
+  const encode = (bytes: Uint8Array): Uint8Array => {
+    const out = new Uint8Array(2 * bytes.length);
+    bytes.forEach((byte, index) => {
+      const digits = byte.toString(16).toUpperCase().padStart(2, "0");
+      out[2 * index] = digits.charCodeAt(0);
+      out[2 * index + 1] = digits.charCodeAt(1);
+    });
+    return out;
+  };
   return {
-    encode(bytes) {
-      const out = new Uint8Array(2 * bytes.length);
-      bytes.forEach((byte, index) => {
-        const digits = byte.toString(16).toUpperCase().padStart(2, "0");
-        out[2 * index] = digits.charCodeAt(0);
-        out[2 * index + 1] = digits.charCodeAt(1);
-      });
-      return out;
-    },
+    isStrict: !lenient,
+    encode,
+    put: putBy(encode),
     decoder: () => new Base16(lenient),
   };
 }
@@ -293,12 +391,14 @@ export function base16(lenient = false): Transparency {
 const FULL_CODE = 0xff;
 const ZERO = Uint8Array.of(0);
 
-class CobsDecoder implements Unstuffer {
+class CobsDecoder extends Unstuffer {
   private code = 0;
   private left = 0;
   private isNeedless = false;
 
-  constructor(private readonly lenient: boolean) {}
+  constructor(private readonly lenient: boolean) {
+    super();
+  }
 
   push(byte: number): ArrayLike<number> {
     if (byte === 0) throw new Fault("encoding", "COBS never writes a zero");
@@ -327,23 +427,26 @@ class CobsDecoder implements Unstuffer {
 
 /** Consistent overhead byte stuffing: the region never contains a zero. */
 export function cobs(lenient = false): Transparency {
-  return {
-    encode(bytes) {
-      const groups: Uint8Array[] = [];
-      let start = 0;
-      for (let at = 0; at <= bytes.length; at++) {
-        if (at - start === FULL_CODE - 1) {
-          groups.push(Uint8Array.of(FULL_CODE), bytes.subarray(start, at));
-          if (at === bytes.length) break; // Behind a full group, the end needs no group of its own.
-          start = at;
-        }
-        if (at === bytes.length || bytes[at] === 0) {
-          groups.push(Uint8Array.of(at - start + 1), bytes.subarray(start, at));
-          start = at + 1;
-        }
+  const encode = (bytes: Uint8Array): Uint8Array => {
+    const groups: Uint8Array[] = [];
+    let start = 0;
+    for (let at = 0; at <= bytes.length; at++) {
+      if (at - start === FULL_CODE - 1) {
+        groups.push(Uint8Array.of(FULL_CODE), bytes.subarray(start, at));
+        if (at === bytes.length) break; // Behind a full group, the end needs no group of its own.
+        start = at;
       }
-      return concatenated(groups);
-    },
+      if (at === bytes.length || bytes[at] === 0) {
+        groups.push(Uint8Array.of(at - start + 1), bytes.subarray(start, at));
+        start = at + 1;
+      }
+    }
+    return concatenated(groups);
+  };
+  return {
+    isStrict: !lenient,
+    encode,
+    put: putBy(encode),
     decoder: () => new CobsDecoder(lenient),
   };
 }

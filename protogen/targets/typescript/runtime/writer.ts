@@ -7,17 +7,31 @@ import { same, shown, type Step, type TextForm } from "./reader.js";
 const WORD = new DataView(new ArrayBuffer(8));
 const GREATEST_FLOAT32 = (2 - 2 ** -23) * 2 ** 127;
 
-/** Bytes of a payload so far. Each method appends a value, or throws an EncodeError. */
+/**
+ * Bytes of a payload so far. Each method appends a value, or throws an EncodeError.
+ *
+ * There may be room in front of the payload, for the parts of the frame that stand there.
+ */
 export class Writer {
-  bytes: Uint8Array = new Uint8Array(64);
-  /** Bytes so far. */
+  bytes: Uint8Array = new Uint8Array(256);
+  /** Bytes so far, those in front of the payload among them. */
   size = 0;
   /** Values of the fields that are parts of the frame, by the names of the parts. */
-  readonly held: Record<string, Value> = {};
+  held: Record<string, Value> = {};
   private readonly path: Step[] = [];
 
   /** With `strict`, values that the schema forbids are refused, even where they fit the wire. */
-  constructor(readonly strict: boolean) {}
+  constructor(public strict: boolean) {}
+
+  /** Begin another payload, in the place of the one before, behind so many bytes. */
+  restart(strict: boolean, from: number): this {
+    this.strict = strict;
+    this.size = 0;
+    this.room(from);
+    this.held = {};
+    if (this.path.length) this.path.length = 0;
+    return this;
+  }
 
   /** The error of a field. */
   error(step: Step, problem: string): EncodeError {
@@ -30,11 +44,6 @@ export class Writer {
 
   leave(): void {
     this.path.pop();
-  }
-
-  /** The bytes. */
-  finish(): Uint8Array {
-    return this.bytes.slice(0, this.size);
   }
 
   /** The place of so many more bytes. */
@@ -198,6 +207,14 @@ export class Writer {
   /** The lowest bits of an integer in bytes of 8 bits or, if `base` is 128, of 7. */
   uint(value: number, size: number, bits: number, little: boolean, base: 128 | 256): void {
     const at = this.room(size);
+    if (bits < 32) {
+      const shift = base === 128 ? 7 : 8;
+      for (let index = 0, left = value & (2 ** bits - 1); index < size; index++) {
+        this.bytes[little ? at + index : at + size - 1 - index] = left & (base - 1);
+        left >>= shift;
+      }
+      return;
+    }
     let rest = value < 0 ? value + 2 ** bits : value;
     for (let index = 0; index < size; index++) {
       this.bytes[little ? at + index : at + size - 1 - index] = rest % base;
@@ -258,8 +275,9 @@ export class Writer {
   /** The characters of a text, which are bytes. */
   characters(value: unknown, step: Step): string {
     if (typeof value !== "string") throw this.error(step, `must be text, not ${shown(value)}`);
-    for (const character of value) {
-      if (character > (this.strict ? "\x7f" : "\xff")) {
+    for (let index = 0; index < value.length; index++) {
+      if (value.charCodeAt(index) > (this.strict ? 0x7f : 0xff)) {
+        const character = String.fromCodePoint(value.codePointAt(index)!);
         const most = this.strict ? "ASCII, characters up to U+007F" : "characters up to U+00FF";
         throw this.error(step, `must be ${most}; "${character}" is none`);
       }
@@ -278,7 +296,8 @@ export class Writer {
   ): void {
     const text = this.characters(value, step);
     this.count(text.length, least, greatest, "characters", step);
-    const data = Uint8Array.from(text, (character) => character.charCodeAt(0));
+    const data = new Uint8Array(text.length);
+    for (let index = 0; index < data.length; index++) data[index] = text.charCodeAt(index);
     this.octets(data, 0, data.length, sevenBit, step, until);
   }
 

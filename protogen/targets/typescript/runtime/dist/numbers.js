@@ -32,12 +32,11 @@ class Unsigned {
         this.low = low;
         this.isPart = isPart;
         this.greatest = (1n << BigInt(bits)) - 1n;
+        this.most = Number(this.greatest);
         this.isPlain = size <= 4 && !sevenBit && !isPart && bits === 8 * size;
     }
     decode(bytes, at) {
         if (this.isPlain) {
-            if (this.size === 1)
-                return bytes[at];
             let raw = 0;
             for (let index = 0; index < this.size; index++) {
                 raw = raw * 256 + bytes[this.little ? at + this.size - 1 - index : at + index];
@@ -52,6 +51,13 @@ class Unsigned {
         return this.bits > BITS_OF_NUMBERS ? raw : Number(raw);
     }
     encode(value, out, at) {
+        if (this.isPlain && typeof value === "number" && value >= 0 && value <= this.most) {
+            for (let index = 0, rest = value; index < this.size; index++) {
+                out[this.little ? at + index : at + this.size - 1 - index] = rest;
+                rest = Math.floor(rest / 256);
+            }
+            return;
+        }
         const raw = BigInt(value);
         if (raw < 0n || raw > this.greatest) {
             throw new EncodeError("", `${value} is not in 0..${this.greatest}`);

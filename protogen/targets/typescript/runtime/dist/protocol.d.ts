@@ -33,6 +33,8 @@ export declare class Protocol {
     /** Names of the senders whose frames are alike, so that any may stand for the others. */
     private readonly alike;
     private kept;
+    /** What was chosen before, by the messages' names. */
+    private readonly chosen;
     constructor(
     /** Give the frame of each sender; they are asked when one is first needed. */
     frames: readonly (() => Frame)[], 
@@ -49,6 +51,7 @@ export declare class Protocol {
     encode(message: NamedMessage, options?: EncodeOptions<object>): Uint8Array;
     /** An endpoint that sends the message, in the forms that carry it. */
     private sendersOf;
+    private choose;
 }
 /** Makes the frames of one endpoint, one after another, and advances their counters. */
 export declare class Encoder<Message extends NamedMessage = NamedMessage, Parts = GivenParts> {

@@ -1,5 +1,5 @@
 /** The codec of a protocol: encode, decode, and an encoder that counts. */
-import { frameOf, valueParts } from "./assembly.js";
+import { frameOf } from "./assembly.js";
 import { standsAt } from "./bytes.js";
 import { Candidate, Failure, verdictOn } from "./candidate.js";
 import { DecodeError, EncodeError, Fault } from "./errors.js";
@@ -16,6 +16,8 @@ export class Protocol {
         this.frames = frames;
         this.alike = alike;
         this.kept = null;
+        /** What was chosen before, by the messages' names. */
+        this.chosen = new Map();
     }
     get made() {
         this.kept ?? (this.kept = this.frames.map((frame) => new Sender(frame())));
@@ -64,6 +66,19 @@ export class Protocol {
     }
     /** An endpoint that sends the message, in the forms that carry it. */
     sendersOf(message, options) {
+        const { sender, form } = options;
+        const { message: name } = message;
+        let known = this.chosen.get(name);
+        if (!known)
+            this.chosen.set(name, (known = []));
+        for (const item of known)
+            if (item.sender === sender && item.form === form)
+                return item.senders;
+        const senders = this.choose(message, options);
+        known.push({ sender, form, senders });
+        return senders;
+    }
+    choose(message, options) {
         const { message: name } = message;
         const all = this.made.filter((sender) => sender.named(name));
         const chosen = options.sender;
@@ -86,16 +101,17 @@ export class Protocol {
 }
 /** The frame in the first form that can be made. Throws the EncodeError of the last. */
 function firstThatFits(senders, encode) {
-    for (const sender of senders.slice(0, -1)) {
+    const last = senders.length - 1;
+    for (let index = 0; index < last; index++) {
         try {
-            return encode(sender);
+            return encode(senders[index]);
         }
         catch (error) {
             if (!(error instanceof EncodeError))
                 throw error;
         }
     }
-    return encode(senders[senders.length - 1]);
+    return encode(senders[last]);
 }
 function readAs(sender, data, told) {
     const { startWords } = sender.frame;
@@ -136,7 +152,7 @@ export class Encoder {
     constructor(protocol, sender) {
         this.next = new Map();
         this.senders = protocol.senders(sender);
-        for (const part of this.senders.flatMap(valueParts)) {
+        for (const part of this.senders.flatMap((sender) => sender.valueParts)) {
             if (part.isCounter)
                 this.next.set(part.name, part.default ?? part.least);
         }
@@ -153,7 +169,7 @@ export class Encoder {
         if (!senders.length)
             throw new EncodeError("message", `${message.message} is not sent`);
         return firstThatFits(senders, (sender) => {
-            const counters = valueParts(sender).filter((part) => part.isCounter && (given[part.name] ?? null) === null);
+            const counters = sender.valueParts.filter((part) => part.isCounter && (given[part.name] ?? null) === null);
             const counted = counters.map((part) => [part.name, this.next.get(part.name)]);
             const parts = { ...given, ...Object.fromEntries(counted) };
             const plan = sender.named(message.message);

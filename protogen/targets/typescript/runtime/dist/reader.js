@@ -18,6 +18,7 @@ export class Reader {
         /** The place of the next byte. */
         this.at = 0;
         this.path = [];
+        this.depth = 0;
         this.regions = 0;
         this.end = bytes.length;
     }
@@ -28,23 +29,23 @@ export class Reader {
         this.at = at;
         this.end = end;
         this.regions = 0;
-        if (this.path.length)
-            this.path.length = 0;
+        this.depth = 0;
         return this;
     }
     /** The Fault of a field. */
     fault(step, reason, problem, missing = 0) {
         // More bytes behind a region would not help.
         const more = this.regions ? 0 : missing;
-        return new Fault(reason, problem, joined([...this.path, step]), this.at, more);
+        const path = joined([...this.path.slice(0, this.depth), step]);
+        return new Fault(reason, problem, path, this.at, more);
     }
     /** Begin what lies inside of a field or an element. */
     enter(step) {
-        this.path.push(step);
+        this.path[this.depth++] = step;
     }
     /** End what lies inside of it. */
     leave() {
-        this.path.pop();
+        this.depth--;
     }
     /** Bytes that are left. */
     get left() {
@@ -131,9 +132,13 @@ export class Reader {
     /** An unsigned integer of up to 53 bits in bytes of 8 bits or, if `base` is 128, of 7. */
     uint(size, bits, little, base, step) {
         const start = this.take(size, step);
-        let raw = 0;
-        for (let index = 0; index < size; index++) {
-            const byte = this.bytes[little ? start + size - 1 - index : start + index];
+        const { bytes } = this;
+        const first = little ? start + size - 1 : start;
+        let raw = bytes[first];
+        if (raw >= base)
+            throw this.eighthBit(raw, step);
+        for (let index = 1; index < size; index++) {
+            const byte = bytes[little ? first - index : first + index];
             if (byte >= base)
                 throw this.eighthBit(byte, step);
             raw = raw * base + byte;

@@ -1,13 +1,32 @@
 /** A sender: its frame, with what is looked up of it. */
-import type { Value } from "./numbers.js";
+import type { PartNumber, Value } from "./numbers.js";
 import type { Frame, Group, HeldParts, LengthNumber, MessagePlan } from "./plan.js";
-import type { NumberPart, Part } from "./plan.js";
+import type { NumberPart, Part, ValueNumber } from "./plan.js";
+import { Writer } from "./writer.js";
 /** The numbers of parts, those that are bits of others among them. */
 export declare function numbersOf(parts: readonly Part[]): readonly NumberPart[];
+/** A part of the identity; without a number where it is not sent. */
+export interface IdentityPart {
+    readonly name: string;
+    readonly slot: number;
+    readonly number: PartNumber | null;
+}
 export declare class Sender {
     readonly frame: Frame;
-    private readonly listed;
+    /** Those of which each identity has one value. */
+    private listed;
     private readonly wide;
+    private readonly messages;
+    /** Parts of the identity, also those that are told. */
+    readonly identityParts: readonly IdentityPart[];
+    /** Values that callers give. */
+    readonly valueParts: readonly ValueNumber[];
+    /** Names of parts that callers may give. */
+    readonly given: ReadonlySet<string>;
+    /** Where each part begins without the bytes of the payload, and where the last one ends. */
+    readonly offsets: readonly number[];
+    /** The same where the payload is empty. */
+    readonly offsetsEmpty: readonly number[];
     private readonly slots;
     /** Bytes that complete a start. None where the same literal ends frames. */
     readonly completesStart: Uint8Array<ArrayBuffer>;
@@ -15,11 +34,13 @@ export declare class Sender {
     readonly emptyFrame: Uint8Array;
     readonly startSize: number;
     readonly hasWireSum: boolean;
+    readonly isFitted: boolean;
     /** The length that tells where a frame ends. */
     readonly length: LengthNumber | null;
     /** The same where it is not sent, and a receiver is told it. */
     readonly toldLength: LengthNumber | null;
     constructor(frame: Frame);
+    private list;
     get key(): string;
     /** The identity among the values of a frame. */
     identity(values: readonly (Value | undefined)[]): Value[];
@@ -32,7 +53,6 @@ export declare class Sender {
     payloadSize(content: number): number;
     /** What a receiver has to be told of the size of a frame, by its slot. */
     tellSize(values: (Value | undefined)[], payload: number): void;
-    get isFitted(): boolean;
     /** The parts of a frame that are fields of the message, among the values of the frame. */
     held(message: MessagePlan, values: readonly (Value | undefined)[]): HeldParts;
     /** Bytes that are known of a payload; null where its fields take all of it. */
@@ -43,7 +63,7 @@ export declare class Sender {
     /** The message of a frame's payload and values, and its plan. Throws a Fault. */
     read(group: Group, payload: Uint8Array, values: readonly (Value | undefined)[]): readonly [MessagePlan, unknown];
     /** The bytes of a message's payload that an encoder puts into a frame. */
-    trimmed(payload: Uint8Array): Uint8Array;
+    trimmed(bytes: Uint8Array, from: number, size: number): number;
     /** The message called `name`, if the endpoint sends one. */
     named(name: string): MessagePlan | undefined;
 }
@@ -51,10 +71,13 @@ export declare class Sender {
 export declare function readPayload(message: MessagePlan, payload: Uint8Array, held?: HeldParts): unknown;
 /** The payload of a message. Throws an EncodeError. */
 export declare function writePayload(message: MessagePlan, value: unknown, strict: boolean): Uint8Array;
-/** The payload of a message, and its fields that are parts. Throws an EncodeError. */
-export declare function payloadOf(message: MessagePlan, value: unknown, strict: boolean): {
-    readonly payload: Uint8Array;
-    readonly held: HeldParts;
-};
+/** Room for a payload behind so many bytes. It is that of all frames, one after another. */
+export declare function writerOf(strict: boolean, from: number): Writer;
+/**
+ * The payload of a message behind so many bytes, and its fields that are parts.
+ *
+ * It stays until the next call. Throws an EncodeError.
+ */
+export declare function payloadOf(message: MessagePlan, value: unknown, strict: boolean, from: number): Writer;
 /** Bytes at the start of `data` that the message takes. Throws a Fault. */
 export declare function prefixSize(message: MessagePlan, data: Uint8Array, held: HeldParts): number;

@@ -8,9 +8,6 @@ function only(runs) {
     const isOne = runs.every((each) => each.length === 1 && each[0][0] === each[0][1]);
     return isOne ? runs.map((each) => each[0][0]) : null;
 }
-function keyOf(values) {
-    return values.length === 1 ? values[0] : values.join();
-}
 function isFirstLength(part) {
     return part.kind === "length" && !part.isFurther;
 }
@@ -22,30 +19,47 @@ export function numbersOf(parts) {
         return part.kind === "bits" ? part.members : [];
     });
 }
+function offsetsOf(parts, isEmpty) {
+    let offset = 0;
+    const sizes = parts.map((part) => (isEmpty && part.isOptional ? 0 : part.size));
+    return [0, ...sizes.map((size) => (offset += size))];
+}
 export class Sender {
     constructor(frame) {
         this.frame = frame;
-        this.listed = new Map();
         this.wide = [];
+        this.messages = new Map();
         this.slots = new Map();
         /** Bytes that complete a start. None where the same literal ends frames. */
         this.completesStart = new Uint8Array(256);
         for (const group of frame.groups) {
             const values = only(group.identities);
             if (values)
-                this.listed.set(keyOf(values), group);
+                this.list(values, group);
             else
                 this.wide.push(group);
         }
-        for (const part of [...frame.told, ...numbersOf(frame.parts)]) {
+        const numbers = numbersOf(frame.parts);
+        for (const part of [...frame.told, ...numbers])
             this.slots.set(part.name, part.slot);
+        const sent = frame.groups.flatMap((group) => group.messages);
+        for (const message of [...sent, ...frame.encodeOnly]) {
+            if (!this.messages.has(message.name))
+                this.messages.set(message.name, message);
         }
+        const parts = [...frame.told.map((part) => ({ ...part, number: null })), ...numbers];
+        this.identityParts = frame.identity.map((slot) => parts.find((part) => part.slot === slot));
+        this.offsets = offsetsOf(frame.parts, false);
+        this.offsetsEmpty = offsetsOf(frame.parts, true);
+        this.valueParts = numbers.filter((part) => part.kind === "value");
+        this.given = new Set([...this.identityParts, ...this.valueParts].map((part) => part.name));
         this.startSize = frame.startWords[0]?.length ?? 0;
         const own = frame.sharesDelimiter ? [] : frame.startWords;
         for (const word of own)
             this.completesStart[word[word.length - 1]] = 1;
         this.toldLength = frame.told.find((part) => part.length)?.length ?? null;
         this.length = this.toldLength ?? numbersOf(frame.parts).find(isFirstLength) ?? null;
+        this.isFitted = frame.kept !== null || frame.isCut;
         this.hasWireSum = frame.sums.some((sum) => sum.overWire);
         this.emptyFrame = NO_BYTES;
         if (frame.start === "after_end")
@@ -53,6 +67,21 @@ export class Sender {
         else if (frame.sharesDelimiter) {
             this.emptyFrame = Uint8Array.of(...frame.startBytes, ...frame.end);
         }
+    }
+    list(values, group) {
+        const last = values.length - 1;
+        if (last < 0)
+            this.listed = group;
+        let listed = (this.listed ?? (this.listed = new Map()));
+        values.forEach((value, index) => {
+            if (index === last)
+                listed.set(value, group);
+            else {
+                if (!listed.has(value))
+                    listed.set(value, new Map());
+                listed = listed.get(value);
+            }
+        });
     }
     get key() {
         const { sender, form } = this.frame;
@@ -64,9 +93,11 @@ export class Sender {
     }
     /** The messages of an identity; undefined where it is unknown. */
     group(values) {
-        const slots = this.frame.identity;
-        const key = slots.length === 1 ? values[slots[0]] : keyOf(this.identity(values));
-        const found = this.listed.get(key);
+        const { identity: slots } = this.frame;
+        let found = this.listed;
+        for (let index = 0; found && index < slots.length; index++) {
+            found = found.get(values[slots[index]]);
+        }
         if (found || !this.wide.length)
             return found;
         const identity = this.identity(values);
@@ -102,9 +133,6 @@ export class Sender {
             return;
         const { base, optional, slot } = toldLength;
         values[slot] = base + (payload ? payload + optional : 0);
-    }
-    get isFitted() {
-        return this.frame.kept !== null || this.frame.isCut;
     }
     /** The parts of a frame that are fields of the message, among the values of the frame. */
     held(message, values) {
@@ -145,23 +173,17 @@ export class Sender {
         return [fitting, readPayload(fitting, known, this.held(fitting, values))];
     }
     /** The bytes of a message's payload that an encoder puts into a frame. */
-    trimmed(payload) {
+    trimmed(bytes, from, size) {
         const { kept } = this.frame;
-        if (kept === null)
-            return payload;
-        let size = payload.length;
-        while (size > kept && payload[size - 1] === 0)
-            size--;
-        return payload.subarray(0, size);
+        let left = size;
+        if (kept !== null)
+            while (left > kept && bytes[from + left - 1] === 0)
+                left--;
+        return left;
     }
     /** The message called `name`, if the endpoint sends one. */
     named(name) {
-        for (const group of this.frame.groups) {
-            for (const message of group.messages)
-                if (message.name === name)
-                    return message;
-        }
-        return this.frame.encodeOnly.find((message) => message.name === name);
+        return this.messages.get(name);
     }
 }
 /** The message of a payload's bytes; `held` has the parts that are fields. Throws a Fault. */
@@ -178,18 +200,28 @@ export function readPayload(message, payload, held = NO_PARTS) {
 }
 /** The payload of a message. Throws an EncodeError. */
 export function writePayload(message, value, strict) {
-    return payloadOf(message, value, strict).payload;
+    const { bytes, size } = payloadOf(message, value, strict, 0);
+    return bytes.slice(0, size);
 }
-/** The payload of a message, and its fields that are parts. Throws an EncodeError. */
-export function payloadOf(message, value, strict) {
-    const writer = new Writer(strict);
+const WRITER = /* @__PURE__ */ new Writer(true);
+/** Room for a payload behind so many bytes. It is that of all frames, one after another. */
+export function writerOf(strict, from) {
+    return WRITER.restart(strict, from);
+}
+/**
+ * The payload of a message behind so many bytes, and its fields that are parts.
+ *
+ * It stays until the next call. Throws an EncodeError.
+ */
+export function payloadOf(message, value, strict, from) {
+    const writer = writerOf(strict, from);
     message.write(writer, value);
-    const payload = writer.finish();
-    if (!holds(message.sizes, payload.length)) {
-        const problem = `makes ${payload.length} bytes of payload, which ${message.name} can't have`;
+    const size = writer.size - from;
+    if (!holds(message.sizes, size)) {
+        const problem = `makes ${size} bytes of payload, which ${message.name} can't have`;
         throw new EncodeError("", problem);
     }
-    return { payload, held: writer.held };
+    return writer;
 }
 /** Bytes at the start of `data` that the message takes. Throws a Fault. */
 export function prefixSize(message, data, held) {

@@ -5,6 +5,12 @@ function startWords(words) {
     const begins = new Uint8Array(256);
     for (const word of words)
         begins[word[0]] = 1;
+    const [first] = words;
+    function stands(data, size, place) {
+        return words.length === 1
+            ? standsAt(data, size, place, first)
+            : words.some((word) => standsAt(data, size, place, word));
+    }
     return {
         context: 0,
         find(data, size, low, high) {
@@ -12,16 +18,17 @@ function startWords(words) {
             for (let place = low; place < last; place++) {
                 if (!begins[data[place]])
                     continue;
-                if (wordSize === 1 || words.some((word) => standsAt(data, size, place, word)))
+                if (wordSize === 1 || stands(data, size, place))
                     return place;
             }
             return -1;
         },
         undecided(data, size, low) {
             for (let place = Math.max(low, size - wordSize + 1); place < size; place++) {
+                if (!begins[data[place]])
+                    continue;
                 const left = data.subarray(place, size);
-                const isBegun = words.some((word) => standsAt(word, word.length, 0, left));
-                if (isBegun)
+                if (words.some((word) => standsAt(word, word.length, 0, left)))
                     return place;
             }
             return size;

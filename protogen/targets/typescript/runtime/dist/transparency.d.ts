@@ -1,15 +1,23 @@
 /** Transparency: what keeps delimiters out of a region of a frame, and takes it off again. */
 /** Decodes one region, byte by byte. Of no use after a Fault or `finish`. */
-export interface Unstuffer {
+export declare abstract class Unstuffer {
+    /** Bytes that `fill` has put out. */
+    filled: number;
     /** Take the next byte of the region; the bytes that it releases. Throws a Fault. */
-    push(byte: number): ArrayLike<number>;
+    abstract push(byte: number): ArrayLike<number>;
     /** Take the end of the region; the bytes that were held back. Throws a Fault. */
-    finish(): ArrayLike<number>;
+    abstract finish(): ArrayLike<number>;
+    /** Take bytes up to a place, or until there are `due`; the place behind them. Throws a Fault. */
+    fill(data: Uint8Array, from: number, to: number, out: Uint8Array, due: number): number;
 }
 /** One kind of transparency with its parameters. */
 export interface Transparency {
+    /** True if only what a sender makes of some bytes is taken off. */
+    readonly isStrict: boolean;
     /** The region on the wire that stands for the bytes. */
     encode(bytes: Uint8Array): Uint8Array;
+    /** The first `size` bytes with a region of them on the wire, and an end behind them. */
+    put(bytes: Uint8Array, size: number, from: number, to: number, end: Uint8Array): Uint8Array;
     /** What takes a region off, from its first byte on. */
     decoder(): Unstuffer;
 }

@@ -1,60 +1,115 @@
 /** Transparency: what keeps delimiters out of a region of a frame, and takes it off again. */
 import { concatenated, equal, NO_BYTES, standsAt } from "./bytes.js";
 import { Fault, spelled } from "./errors.js";
+/** Decodes one region, byte by byte. Of no use after a Fault or `finish`. */
+export class Unstuffer {
+    constructor() {
+        /** Bytes that `fill` has put out. */
+        this.filled = 0;
+    }
+    /** Take bytes up to a place, or until there are `due`; the place behind them. Throws a Fault. */
+    fill(data, from, to, out, due) {
+        let place = from;
+        while (place < to && this.filled < due) {
+            const released = this.push(data[place++]);
+            for (let index = 0; index < released.length; index++)
+                out[this.filled++] = released[index];
+        }
+        return place;
+    }
+}
+function putBy(encode) {
+    return (bytes, size, from, to, end) => {
+        const region = encode(bytes.slice(from, to));
+        return concatenated([bytes.slice(0, from), region, bytes.slice(to, size), end]);
+    };
+}
 /** Each byte by its value, as what a byte releases. */
 const BYTES = Array.from({ length: 256 }, (_, byte) => Uint8Array.of(byte));
 function cutSequence(held) {
     return new Fault("stuffing", `the region ends inside a sequence, behind ${spelled(held)}`);
 }
-/** The sequences of a table, and the bytes that stand for themselves, as a tree. */
-function treeOf(codes) {
-    const root = { next: new Map(), value: -1 };
-    const listed = new Set(codes.map(([byte]) => byte));
-    const plain = BYTES.map((word, byte) => [byte, word]);
-    for (const [byte, word] of [...codes, ...plain.filter(([byte]) => !listed.has(byte))]) {
-        let node = root;
-        for (const item of word) {
-            let inner = node.next.get(item);
-            if (!inner)
-                node.next.set(item, (inner = { next: new Map(), value: -1 }));
-            node = inner;
-        }
-        node.value = byte;
+function sequencesOf(codes) {
+    const steps = BYTES.map((_, byte) => byte);
+    const beginnings = [[]];
+    for (const [byte] of codes)
+        steps[byte] = -1;
+    for (const [byte, word] of codes) {
+        let node = 0;
+        word.forEach((item, index) => {
+            const at = 256 * node + item;
+            if (index === word.length - 1)
+                steps[at] = byte;
+            else {
+                if (steps[at] > -2) {
+                    steps[at] = -2 - beginnings.length;
+                    beginnings.push([...word.subarray(0, index + 1)]);
+                    for (let count = 0; count < 256; count++)
+                        steps.push(-1);
+                }
+                node = -2 - steps[at];
+            }
+        });
     }
-    return root;
+    return { steps: Int16Array.from(steps), beginnings };
 }
-class StrictSequences {
-    constructor(root) {
-        this.root = root;
-        this.held = [];
-        this.node = root;
+class StrictSequences extends Unstuffer {
+    constructor(sequences) {
+        super();
+        this.sequences = sequences;
+        this.node = 0;
     }
     push(byte) {
-        const node = this.node.next.get(byte);
-        if (!node) {
-            const found = spelled([...this.held, byte]);
-            throw new Fault("stuffing", `${found} is no sequence and no plain byte`);
+        const step = this.sequences.steps[256 * this.node + byte];
+        if (step === -1)
+            throw this.none(byte);
+        this.node = step < 0 ? -2 - step : 0;
+        return step < 0 ? NO_BYTES : BYTES[step];
+    }
+    fill(data, from, to, out, due) {
+        const { steps } = this.sequences;
+        let { filled, node } = this;
+        let place = from;
+        while (place < to && filled < due) {
+            const last = node ? place : Math.min(to, place + due - filled);
+            // Most bytes stand for themselves.
+            for (let step; place < last && (step = steps[data[place]]) >= 0; place++) {
+                out[filled++] = step;
+            }
+            if (place === to || filled === due)
+                break;
+            const byte = data[place++];
+            const step = steps[256 * node + byte];
+            if (step >= 0) {
+                out[filled++] = step;
+                node = 0;
+            }
+            else {
+                this.node = node;
+                if (step === -1)
+                    throw this.none(byte);
+                node = -2 - step;
+            }
         }
-        if (node.value >= 0) {
-            this.node = this.root;
-            if (this.held.length)
-                this.held = [];
-            return BYTES[node.value];
-        }
+        this.filled = filled;
         this.node = node;
-        this.held.push(byte);
-        return NO_BYTES;
+        return place;
+    }
+    none(byte) {
+        const found = spelled([...this.sequences.beginnings[this.node], byte]);
+        return new Fault("stuffing", `${found} is no sequence and no plain byte`);
     }
     finish() {
-        if (this.held.length)
-            throw cutSequence(this.held);
+        if (this.node)
+            throw cutSequence(this.sequences.beginnings[this.node]);
         return NO_BYTES;
     }
 }
 /** Where a sequence stands it is replaced; where none does, one byte passes as it is. */
-class LenientSequences {
-    constructor(root) {
-        this.root = root;
+class LenientSequences extends Unstuffer {
+    constructor(sequences) {
+        super();
+        this.sequences = sequences;
         this.held = [];
     }
     push(byte) {
@@ -72,25 +127,27 @@ class LenientSequences {
     }
     /** True if what is held is the beginning of a longer sequence, and no more. */
     isBegun() {
-        let node = this.root;
+        let node = 0;
         for (const byte of this.held) {
-            node = node.next.get(byte);
-            if (!node)
+            const step = this.sequences.steps[256 * node + byte];
+            if (step >= -1)
                 return false;
+            node = -2 - step;
         }
-        return node.next.size > 0;
+        return true;
     }
     release(released) {
-        let node = this.root;
+        let node = 0;
         for (let size = 0; size < this.held.length; size++) {
-            node = node.next.get(this.held[size]);
-            if (!node)
-                break;
-            if (node.value >= 0) {
-                released.push(node.value);
+            const step = this.sequences.steps[256 * node + this.held[size]];
+            if (step >= 0) {
+                released.push(step);
                 this.held = this.held.slice(size + 1);
                 return;
             }
+            if (step === -1)
+                break;
+            node = -2 - step;
         }
         released.push(this.held[0]);
         this.held = this.held.slice(1);
@@ -98,30 +155,54 @@ class LenientSequences {
 }
 /** Each listed byte is replaced by a sequence. */
 export function substitution(codes, lenient = false) {
-    let root;
+    let sequences;
+    let words;
+    const put = (bytes, size, from, to, end) => {
+        words ?? (words = wordsOf(codes));
+        return replaced(bytes, size, from, to, end, words);
+    };
     return {
-        encode: (bytes) => replaced(bytes, codes),
+        isStrict: !lenient,
+        encode: (bytes) => put(bytes, bytes.length, 0, bytes.length, NO_BYTES),
+        put,
         decoder() {
-            root ?? (root = treeOf(codes));
-            return lenient ? new LenientSequences(root) : new StrictSequences(root);
+            sequences ?? (sequences = sequencesOf(codes));
+            return lenient ? new LenientSequences(sequences) : new StrictSequences(sequences);
         },
     };
 }
-function replaced(bytes, codes) {
-    const words = new Map(codes);
-    const out = [];
-    for (const byte of bytes) {
-        const word = words.get(byte);
+function wordsOf(codes) {
+    const words = BYTES.map(() => null);
+    for (const [byte, word] of codes)
+        words[byte] = word;
+    return words;
+}
+function replaced(bytes, size, from, to, end, words) {
+    let more = end.length;
+    for (let index = from; index < to; index++) {
+        const word = words[bytes[index]];
         if (word)
-            out.push(...word);
-        else
-            out.push(byte);
+            more += word.length - 1;
     }
-    return Uint8Array.from(out);
+    const out = new Uint8Array(size + more);
+    let at = 0;
+    for (let index = 0; index < size; index++) {
+        const byte = bytes[index];
+        const word = index >= from && index < to ? words[byte] : null;
+        if (!word)
+            out[at++] = byte;
+        else
+            for (let place = 0; place < word.length; place++)
+                out[at++] = word[place];
+    }
+    for (let index = 0; index < end.length; index++)
+        out[at++] = end[index];
+    return out;
 }
 /** Any byte behind the escape byte is transformed back; others stand for themselves. */
-class LenientEscape {
+class LenientEscape extends Unstuffer {
     constructor(escape, mask) {
+        super();
         this.escape = escape;
         this.mask = mask;
         this.isEscaped = false;
@@ -144,13 +225,14 @@ class LenientEscape {
 export function escape(byte, mask, codes, lenient = false) {
     const strict = substitution(codes);
     return lenient
-        ? { encode: strict.encode, decoder: () => new LenientEscape(byte, mask) }
+        ? { ...strict, isStrict: false, decoder: () => new LenientEscape(byte, mask) }
         : strict;
 }
 // --- a byte that is put in ---------------------------------------------------------------------
 /** Holds the last byte of each sequence until the byte behind it is there. */
-class Inserted {
+class Inserted extends Unstuffer {
     constructor(sequence, byte) {
+        super();
         this.sequence = sequence;
         this.byte = byte;
         this.seen = [];
@@ -178,25 +260,29 @@ class Inserted {
 }
 /** Behind each sequence of two bytes or more, a byte is put in. */
 export function insertion(sequence, byte) {
-    return {
-        encode(bytes) {
-            const out = [];
-            for (let at = 0; at < bytes.length;) {
-                if (standsAt(bytes, bytes.length, at, sequence)) {
-                    out.push(...sequence, byte);
-                    at += sequence.length;
-                }
-                else
-                    out.push(bytes[at++]);
+    const encode = (bytes) => {
+        const out = [];
+        for (let at = 0; at < bytes.length;) {
+            if (standsAt(bytes, bytes.length, at, sequence)) {
+                out.push(...sequence, byte);
+                at += sequence.length;
             }
-            return Uint8Array.from(out);
-        },
+            else
+                out.push(bytes[at++]);
+        }
+        return Uint8Array.from(out);
+    };
+    return {
+        isStrict: true,
+        encode,
+        put: putBy(encode),
         decoder: () => new Inserted(sequence, byte),
     };
 }
 // --- base 16 -----------------------------------------------------------------------------------
-class Base16 {
+class Base16 extends Unstuffer {
     constructor(lenient) {
+        super();
         this.lenient = lenient;
         this.upper = -1;
     }
@@ -227,24 +313,28 @@ class Base16 {
 }
 /** Each byte is written as two hexadecimal digits in upper case. */
 export function base16(lenient = false) {
+    const encode = (bytes) => {
+        const out = new Uint8Array(2 * bytes.length);
+        bytes.forEach((byte, index) => {
+            const digits = byte.toString(16).toUpperCase().padStart(2, "0");
+            out[2 * index] = digits.charCodeAt(0);
+            out[2 * index + 1] = digits.charCodeAt(1);
+        });
+        return out;
+    };
     return {
-        encode(bytes) {
-            const out = new Uint8Array(2 * bytes.length);
-            bytes.forEach((byte, index) => {
-                const digits = byte.toString(16).toUpperCase().padStart(2, "0");
-                out[2 * index] = digits.charCodeAt(0);
-                out[2 * index + 1] = digits.charCodeAt(1);
-            });
-            return out;
-        },
+        isStrict: !lenient,
+        encode,
+        put: putBy(encode),
         decoder: () => new Base16(lenient),
     };
 }
 // --- COBS --------------------------------------------------------------------------------------
 const FULL_CODE = 0xff;
 const ZERO = Uint8Array.of(0);
-class CobsDecoder {
+class CobsDecoder extends Unstuffer {
     constructor(lenient) {
+        super();
         this.lenient = lenient;
         this.code = 0;
         this.left = 0;
@@ -279,24 +369,27 @@ class CobsDecoder {
 }
 /** Consistent overhead byte stuffing: the region never contains a zero. */
 export function cobs(lenient = false) {
-    return {
-        encode(bytes) {
-            const groups = [];
-            let start = 0;
-            for (let at = 0; at <= bytes.length; at++) {
-                if (at - start === FULL_CODE - 1) {
-                    groups.push(Uint8Array.of(FULL_CODE), bytes.subarray(start, at));
-                    if (at === bytes.length)
-                        break; // Behind a full group, the end needs no group of its own.
-                    start = at;
-                }
-                if (at === bytes.length || bytes[at] === 0) {
-                    groups.push(Uint8Array.of(at - start + 1), bytes.subarray(start, at));
-                    start = at + 1;
-                }
+    const encode = (bytes) => {
+        const groups = [];
+        let start = 0;
+        for (let at = 0; at <= bytes.length; at++) {
+            if (at - start === FULL_CODE - 1) {
+                groups.push(Uint8Array.of(FULL_CODE), bytes.subarray(start, at));
+                if (at === bytes.length)
+                    break; // Behind a full group, the end needs no group of its own.
+                start = at;
             }
-            return concatenated(groups);
-        },
+            if (at === bytes.length || bytes[at] === 0) {
+                groups.push(Uint8Array.of(at - start + 1), bytes.subarray(start, at));
+                start = at + 1;
+            }
+        }
+        return concatenated(groups);
+    };
+    return {
+        isStrict: !lenient,
+        encode,
+        put: putBy(encode),
         decoder: () => new CobsDecoder(lenient),
     };
 }

@@ -3,17 +3,31 @@ import { EncodeError, joined, spelled } from "./errors.js";
 import { same, shown } from "./reader.js";
 const WORD = new DataView(new ArrayBuffer(8));
 const GREATEST_FLOAT32 = (2 - 2 ** -23) * 2 ** 127;
-/** Bytes of a payload so far. Each method appends a value, or throws an EncodeError. */
+/**
+ * Bytes of a payload so far. Each method appends a value, or throws an EncodeError.
+ *
+ * There may be room in front of the payload, for the parts of the frame that stand there.
+ */
 export class Writer {
     /** With `strict`, values that the schema forbids are refused, even where they fit the wire. */
     constructor(strict) {
         this.strict = strict;
-        this.bytes = new Uint8Array(64);
-        /** Bytes so far. */
+        this.bytes = new Uint8Array(256);
+        /** Bytes so far, those in front of the payload among them. */
         this.size = 0;
         /** Values of the fields that are parts of the frame, by the names of the parts. */
         this.held = {};
         this.path = [];
+    }
+    /** Begin another payload, in the place of the one before, behind so many bytes. */
+    restart(strict, from) {
+        this.strict = strict;
+        this.size = 0;
+        this.room(from);
+        this.held = {};
+        if (this.path.length)
+            this.path.length = 0;
+        return this;
     }
     /** The error of a field. */
     error(step, problem) {
@@ -24,10 +38,6 @@ export class Writer {
     }
     leave() {
         this.path.pop();
-    }
-    /** The bytes. */
-    finish() {
-        return this.bytes.slice(0, this.size);
     }
     /** The place of so many more bytes. */
     room(size) {
@@ -171,6 +181,14 @@ export class Writer {
     /** The lowest bits of an integer in bytes of 8 bits or, if `base` is 128, of 7. */
     uint(value, size, bits, little, base) {
         const at = this.room(size);
+        if (bits < 32) {
+            const shift = base === 128 ? 7 : 8;
+            for (let index = 0, left = value & (2 ** bits - 1); index < size; index++) {
+                this.bytes[little ? at + index : at + size - 1 - index] = left & (base - 1);
+                left >>= shift;
+            }
+            return;
+        }
         let rest = value < 0 ? value + 2 ** bits : value;
         for (let index = 0; index < size; index++) {
             this.bytes[little ? at + index : at + size - 1 - index] = rest % base;
@@ -223,8 +241,9 @@ export class Writer {
     characters(value, step) {
         if (typeof value !== "string")
             throw this.error(step, `must be text, not ${shown(value)}`);
-        for (const character of value) {
-            if (character > (this.strict ? "\x7f" : "\xff")) {
+        for (let index = 0; index < value.length; index++) {
+            if (value.charCodeAt(index) > (this.strict ? 0x7f : 0xff)) {
+                const character = String.fromCodePoint(value.codePointAt(index));
                 const most = this.strict ? "ASCII, characters up to U+007F" : "characters up to U+00FF";
                 throw this.error(step, `must be ${most}; "${character}" is none`);
             }
@@ -235,7 +254,9 @@ export class Writer {
     latin1(value, least, greatest, sevenBit, step, until = -1) {
         const text = this.characters(value, step);
         this.count(text.length, least, greatest, "characters", step);
-        const data = Uint8Array.from(text, (character) => character.charCodeAt(0));
+        const data = new Uint8Array(text.length);
+        for (let index = 0; index < data.length; index++)
+            data[index] = text.charCodeAt(index);
         this.octets(data, 0, data.length, sevenBit, step, until);
     }
     /** A text among separators. */
