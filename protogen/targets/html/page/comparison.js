@@ -9,5 +9,5 @@ JSON.parse(by("versions").textContent).forEach(({ plans, endpoints }, at) => {
   const explainers = plans.map((item, side) => new Explainer(resolved(item), codecs[at][side]));
   const within = document.querySelector(`[data-versions="${at}"]`);
   for (const holder of within.querySelectorAll("[data-hex]")) showWitness(holder, explainers);
-  new ComparisonBench(within.querySelector(".own"), explainers, endpoints);
+  new ComparisonBench(within.querySelector(".own > div"), explainers, endpoints);
 });

@@ -40,7 +40,7 @@ function sides(explainers, { names, group }, heads = HEADS) {
     const isOther = (cells) => !known[1 - side].has(cells.join("\t"));
     const events = group[side].map(({ event, time }) => eventView(explainers[side], event, time, isOther));
     const nothing = names[side] === null ? "has no such endpoint" : "reads nothing that ends here";
-    return h("div", {}, h("h5", {}, heads[side]), events.length ? events : h("p", {}, nothing));
+    return h("div", {}, h("p", { className: "side" }, heads[side]), events.length ? events : h("p", {}, nothing));
   });
   return h("div", { className: "sides" }, columns);
 }
@@ -103,7 +103,7 @@ export class ComparisonBench {
 export function showWitness(holder, explainers) {
   const { hex, old, now } = holder.dataset;
   const pieces = [{ bytes: fromHex(hex), time: null, name: "" }];
-  const heads = [...holder.querySelectorAll("h5")].map((item) => item.textContent);
+  const heads = [...holder.querySelectorAll(".side")].map((item) => item.textContent);
   const found = readingsOf(explainers, [old ?? null, now ?? null], pieces);
   holder.replaceWith(...found.map((item) => sides(explainers, item, heads)));
 }
