@@ -35,9 +35,10 @@ export class DecodeView {
     if (chosen) this.set(hexOf(fromHex(chosen.hex)), chosen.sender);
   }
 
-  /** Show these bytes of an endpoint. */
-  set(text, endpoint) {
+  /** Show these bytes of an endpoint; `told` has what they do not say. */
+  set(text, endpoint, told = new Map()) {
     by("bytes").value = text;
+    for (const [name, field] of this.told) field.value = told.get(`@${name}`) ?? field.value;
     if (endpoint) by("sender").value = endpoint;
     this.update();
   }
@@ -57,7 +58,7 @@ export class DecodeView {
       if (!(error instanceof InputError || error instanceof RangeError)) throw error;
       by("note").textContent = error.message;
     }
-    this.onChange(text, endpoint);
+    this.onChange(text, endpoint, Object.fromEntries(this.told.map(([name, field]) => [`@${name}`, field.value])));
   }
 
   /** Identities that the bytes do not say: numbers, or several for frames that follow each other. */

@@ -68,9 +68,12 @@ function linked(bytes, rows) {
     // What is some bits has no bytes of its own: they are those of the run in front of it.
     let own = index;
     while (lines[own]?.dataset.inside !== undefined) own--;
+    // A field lights up with all of its bits, and one of them with its field.
+    let end = index + 1;
+    while (own === index && lines[end]?.dataset.inside !== undefined) end++;
     for (const item of [...runsOf, ...lines]) {
-      const { row } = item.dataset;
-      if (row !== undefined) item.classList.toggle("lit", row === String(index) || row === String(own));
+      const row = Number(item.dataset.row);
+      item.classList.toggle("lit", row === own || (index <= row && row < end));
     }
   };
   const onPoint = (event) => {
