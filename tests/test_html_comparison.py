@@ -171,13 +171,13 @@ class TestPage:
         _, found = findings(*protocols)
         frames = [witness for item in found for witness in item.witnesses]
         sides = opened.page.locator(".sides")
+        codecs = [open_codec(path) for path in versions]
         assert frames
         assert sides.count() == len(frames)
         for holder, witness in zip(sides.all(), frames, strict=True):
             heads = holder.locator(".side").all_inner_texts()
             verbs = ("sends", "reads") if witness.old_sends else ("reads", "sends")
             assert heads == [f"Old {verbs[0]}", f"New {verbs[1]}"]
-            codecs = [open_codec(path) for path in versions]
             names = {"rover": ("rover", "robot"), "robot": ("rover", "robot")}
             senders = names.get(witness.sender, (witness.sender,) * 2)
             for column, codec, sender in zip(
