@@ -54,11 +54,13 @@ bench: $(INSTALLED)
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --editable '.[bench]'
 	@for benchmark in benchmarks/bench_*.py; do $(BIN)/python $$benchmark || exit 1; done
 
-# The site, in .cache/site. Fails if a link leads nowhere.
+# The site with our protocols' pages, in .cache/site. Fails if a link leads nowhere.
 docs: $(INSTALLED)
 	@mkdir -p $(CACHE)
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --editable '.[docs]'
 	@$(BIN)/zensical build --strict >$(CACHE)/docs.log 2>&1 || { cat $(CACHE)/docs.log; exit 1; }
+	@rm -rf $(CACHE)/site/pages
+	@cp -R generated/html $(CACHE)/site/pages
 
 format: $(INSTALLED)
 	@$(BIN)/ruff check --quiet --fix --exit-zero

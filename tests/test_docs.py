@@ -156,3 +156,9 @@ class TestSite:
         listed = set(re.findall(r"[\w/-]+\.md", text_of("mkdocs.yml")))
         found = {str(path.relative_to(ROOT / "docs")) for path in (ROOT / "docs").rglob("*.md")}
         assert listed == found
+
+    def test_links_to_every_page_of_our_protocols(self) -> None:
+        """`make docs` puts these beside the site's own, which has no such links otherwise."""
+        linked = set(re.findall(r"\(\.\./pages/([\w.]+)\)", text_of("docs/reference/pages.md")))
+        assert linked == {path.name for path in (ROOT / "generated" / "html").iterdir()}
+        assert "cp -R generated/html $(CACHE)/site/pages" in text_of("Makefile")

@@ -1,19 +1,25 @@
-"""Findings as a page: each witness as both versions read it, side by side."""
+"""Findings as a page: fields and frames of both versions side by side, and a bench."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import count
+from typing import Any
 
 import msgspec
 
 from protogen.evolution.compare import Comparison
 from protogen.evolution.findings import SHOWN_BY_FRAMES, Finding, Verdict
 from protogen.evolution.report import by_subject, place, title
+from protogen.evolution.side_by_side import COLUMNS, FieldRow, frame_fields, message_fields
 from protogen.evolution.witness import Witness
 from protogen.model.protocol import Protocol, Sender
 from protogen.model.reading.annotate import annotate
 from protogen.model.reading.dissect import Row
 from protogen.model.reading.readings import quoted
+from protogen.targets.html.bench import comparison_script, has_codec
+from protogen.targets.html.plans import plans
+from protogen.targets.html.shell import data, printed
 
 Cells = tuple[str, ...]
 
@@ -22,6 +28,8 @@ class Reading(msgspec.Struct, frozen=True):
     """A frame as one version reads it."""
 
     heading: str
+    endpoint: str | None
+    """The sender; None where the version has none of that name."""
     rows: tuple[tuple[Cells, bool], ...]
     """Cells, and whether the other version has no such row."""
 
@@ -30,7 +38,8 @@ class Shown(msgspec.Struct, frozen=True):
     """A frame in words, and both readings of it."""
 
     words: str
-    readings: tuple[Reading, ...]
+    hex: str
+    readings: tuple[Reading, Reading]
 
 
 class Item(msgspec.Struct, frozen=True):
@@ -43,36 +52,77 @@ class Item(msgspec.Struct, frozen=True):
     frames: tuple[Shown, ...]
 
 
+class Subject(msgspec.Struct, frozen=True):
+    """A message, or the frame, with tables of its fields and what changed in it."""
+
+    title: str
+    tables: tuple[tuple[str, tuple[FieldRow, ...]], ...]
+    items: tuple[Item, ...]
+
+
 class Section(msgspec.Struct, frozen=True):
     """A schema and what changed in it."""
 
     name: str
     note: str = ""
-    subjects: tuple[tuple[str, tuple[Item, ...]], ...] = ()
-
-
-def page(sections: Sequence[Section]) -> str:
-    """The page of several schemas."""
-    from protogen.targets.html.shell import printed
-
-    return printed("comparison", sections=sections, heads=_HEADS)
+    subjects: tuple[Subject, ...] = ()
+    comparison: Comparison | None = None
+    """What the bench of the schema compares; None if it has no bench."""
 
 
 _HEADS = ("byte", "wire", "name", "type", "raw", "meaning")
 
 
-def section(name: str, comparison: Comparison, found: Sequence[Finding]) -> Section:
-    """What changed in a schema."""
-    subjects = tuple(
-        (subject or "frame and protocol", tuple(_item(comparison, item) for item in items))
-        for subject, items in by_subject(found)
+def page(schemas: Iterable[tuple[str, str | tuple[Comparison, Sequence[Finding]]]]) -> str:
+    """The page of several schemas: of each, its name, and what changed in it or a note."""
+    sections = [_section(*item) for item in schemas]
+    compared = [item.comparison for item in sections if item.comparison is not None]
+    numbers = count()
+    numbered = [(None if item.comparison is None else next(numbers), item) for item in sections]
+    script = comparison_script([(item.old, item.new) for item in compared]) if compared else None
+    return printed(
+        "comparison",
+        script,
+        sections=numbered,
+        heads=_HEADS,
+        columns=COLUMNS,
+        versions=data([_versions(item) for item in compared]),
     )
-    return Section(name, "" if found else "no change", subjects)
+
+
+def _versions(comparison: Comparison) -> dict[str, Any]:
+    """What the bench goes by: the plans of both versions, and endpoints by both names."""
+    names = {name: comparison.endpoints.get(name) for name in comparison.old.sending}
+    pairs = [[name, now if now in comparison.new.sending else None] for name, now in names.items()]
+    added = [[None, name] for name in comparison.new.sending if name not in names.values()]
+    return {
+        "plans": [plans(comparison.old), plans(comparison.new)],
+        "endpoints": [*pairs, *added],
+    }
+
+
+def _section(name: str, changed: str | tuple[Comparison, Sequence[Finding]]) -> Section:
+    if isinstance(changed, str):
+        return Section(name, changed)
+    comparison, found = changed
+    if not found:
+        return Section(name, "no change")
+    subjects = tuple(_subject(comparison, *item) for item in by_subject(found))
+    has_bench = has_codec(comparison.old) and has_codec(comparison.new)
+    return Section(name, "", subjects, comparison if has_bench else None)
+
+
+def _subject(comparison: Comparison, message: str, found: Sequence[Finding]) -> Subject:
+    items = tuple(_item(comparison, item) for item in found)
+    if not message:
+        return Subject("frame and protocol", tuple(frame_fields(comparison)), items)
+    return Subject(message, (("", message_fields(comparison, message)),), items)
 
 
 def _item(comparison: Comparison, item: Finding) -> Item:
     frames = tuple(
-        Shown(witness.words, tuple(_readings(comparison, witness))) for witness in item.witnesses
+        Shown(witness.words, witness.frame.hex(), _readings(comparison, witness))
+        for witness in item.witnesses
     )
     facts = tuple(_facts(comparison, item))
     return Item(item.category.value, item.rule.name, title(item), facts, frames)
@@ -93,22 +143,34 @@ def _facts(comparison: Comparison, item: Finding) -> Iterator[tuple[str, str]]:
 # --- both readings --------------------------------------------------------------------------------
 
 
-def _readings(comparison: Comparison, witness: Witness) -> Iterator[Reading]:
+def _readings(comparison: Comparison, witness: Witness) -> tuple[Reading, Reading]:
     names = comparison.endpoints
     if witness.old_sends:
         old, new = witness.sender, names.get(witness.sender, witness.sender)
     else:
         back = {new: old for old, new in names.items()}
         old, new = back.get(witness.sender, witness.sender), witness.sender
-    sides = (("Old", comparison.old, old), ("New", comparison.new, new))
-    read = [_rows(protocol, name, witness.frame) for _, protocol, name in sides]
-    for (word, *_), own, other in zip(sides, read, reversed(read), strict=True):
-        heading = f"{word} {'sends' if (word == 'Old') is witness.old_sends else 'reads'}"
-        yield Reading(heading, tuple((cells, cells not in other) for cells in own))
+    sides = ((comparison.old, old), (comparison.new, new))
+    senders = [_sender(protocol, name, witness.frame) for protocol, name in sides]
+    before, after = (
+        _rows(protocol, sender, witness.frame)
+        for (protocol, _), sender in zip(sides, senders, strict=True)
+    )
+    verbs = ("sends", "reads") if witness.old_sends else ("reads", "sends")
+    return (
+        _reading(f"Old {verbs[0]}", senders[0], before, after),
+        _reading(f"New {verbs[1]}", senders[1], after, before),
+    )
 
 
-def _rows(protocol: Protocol, endpoint: str, frame: bytes) -> list[Cells]:
-    sender = _sender(protocol, endpoint, frame)
+def _reading(
+    heading: str, sender: Sender | None, own: Sequence[Cells], other: Sequence[Cells]
+) -> Reading:
+    rows = tuple((cells, cells not in other) for cells in own)
+    return Reading(heading, None if sender is None else sender.endpoint, rows)
+
+
+def _rows(protocol: Protocol, sender: Sender | None, frame: bytes) -> list[Cells]:
     return [] if sender is None else [*map(_cells, annotate(protocol, sender.name, frame))]
 
 

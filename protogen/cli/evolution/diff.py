@@ -37,12 +37,11 @@ def diff(
     """
     from protogen.cli.evolution.versions import compared
     from protogen.evolution.findings import findings
-    from protogen.evolution.page import Section, page, section
     from protogen.evolution.report import as_json, markdown
 
     changed = False
     reports: list[dict[str, Any]] = []
-    pages: list[Section] = []
+    pages: list[tuple[str, str | tuple[Comparison, list[Finding]]]] = []
     out = console()
     with compared(versions or (), against, open_project()) as schemas:
         for name, before, after in schemas.pairs:
@@ -51,7 +50,7 @@ def diff(
                 words = "is new" if before is None else "is gone"
                 reports.append({"schema": name, "text": words})
                 if format == "html":
-                    pages.append(Section(name, f"{name} {words}"))
+                    pages.append((name, f"{name} {words}"))
                 elif format != "json":
                     out.print(f"{name} {words}")
                 continue
@@ -60,7 +59,7 @@ def diff(
             if format == "json":
                 reports.append({"schema": name} | as_json(comparison, found))
             elif format == "html":
-                pages.append(section(name, comparison, found))
+                pages.append((name, (comparison, found)))
             elif format == "markdown":
                 typer.echo(markdown(comparison, found))
             else:
@@ -68,6 +67,8 @@ def diff(
     if format == "json":
         echo_json(reports)
     elif format == "html":
+        from protogen.evolution.page import page
+
         typer.echo(page(pages), nl=False)
     return FINDINGS if changed else CLEAN
 

@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
-from importlib.resources import files
 from pathlib import PurePosixPath
 
-from protogen.errors import UserError
 from protogen.model.protocol import Protocol
 from protogen.targets.banner import MARKDOWN, banner
+from protogen.targets.html.bench import page_script
 from protogen.targets.html.plans import plans
 from protogen.targets.html.reference import reference
-from protogen.targets.html.script import bundled
 from protogen.targets.html.search import entries
-from protogen.targets.html.shell import PACKAGE, data, printed
+from protogen.targets.html.shell import data, printed
 from protogen.targets.output import File
-from protogen.targets.typescript.emit import emit as emit_typescript
-
-_BUILT = PurePosixPath("dist")
 
 
 def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
@@ -36,44 +30,14 @@ def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
 
 
 def page_text(protocol: Protocol) -> str:
-    """A protocol's page without its banner."""
+    """A protocol's page without its banner; without a codec, it has the reference alone."""
     body, headings = reference(protocol)
     return printed(
         "page",
-        _script(protocol),
+        page_script(protocol),
         protocol=protocol,
         body=body,
         headings=headings,
         plans=data(plans(protocol)),
         entries=data(entries(protocol)),
-    )
-
-
-def _script(protocol: Protocol) -> str | None:
-    """The bench and the codec of the protocol; None where the TypeScript target has no codec.
-
-    Then there is the reference alone.
-    """
-    try:
-        printed_codec = emit_typescript([protocol])
-    except UserError:
-        return None
-    modules = dict(_page_modules())
-    codec = ""
-    for file in printed_codec:
-        if file.path.suffix == ".js" and file.path.is_relative_to(_BUILT):
-            place = file.path.relative_to(_BUILT)
-            modules[f"codec/{place}"] = file.text
-            codec = str(place) if len(place.parts) == 1 else codec
-    modules["codec.js"] = modules.pop(f"codec/{codec}").replace('"./runtime/', '"./codec/runtime/')
-    return bundled(modules, "main.js", {"codec.js": ("protocol",)})
-
-
-@cache
-def _page_modules() -> tuple[tuple[str, str], ...]:
-    folder = files(PACKAGE) / "page"
-    return tuple(
-        (item.name, item.read_text(encoding="utf-8"))
-        for item in sorted(folder.iterdir(), key=lambda item: item.name)
-        if item.name.endswith(".js")
     )

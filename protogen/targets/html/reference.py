@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -31,8 +32,13 @@ def reference(protocol: Protocol) -> tuple[Markup, tuple[Heading, ...]]:
     tokens = parser.parse(page_text(protocol))
     headings = tuple(_name_headings(tokens))
     text = parser.renderer.render(tokens, parser.options, {"drawings": iter(drawings(protocol))})
-    shown = _CODE_CELL.sub(r'<td class="c">\1', text)
+    shown = _CODE_CELL.sub(r"<td class=c>\1", text)
     return Markup(shown), headings  # noqa: S704 - made by a parser that passes no HTML.
+
+
+def inline(text: str) -> Markup:
+    """A line of Markdown without its links, which lead to places of its own page."""
+    return Markup(_inline_parser().renderInline(text))  # noqa: S704 - made by a parser that passes no HTML.
 
 
 class Heading:
@@ -42,6 +48,14 @@ class Heading:
         self.level = level
         self.anchor = anchor
         self.text = text
+
+
+@cache
+def _inline_parser() -> MarkdownIt:
+    parser = _parser()
+    renderer: Any = parser.renderer
+    renderer.rules |= {name: lambda *_: "" for name in ("link_open", "link_close", "anchor")}
+    return parser
 
 
 def _parser() -> MarkdownIt:

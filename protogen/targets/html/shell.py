@@ -17,11 +17,12 @@ from protogen.targets.printing import environment
 PACKAGE = "protogen.targets.html"
 _BREAKS = re.compile(r"\s*\n\s*")
 _STYLES = ("page", "frames", "bench", "print")
+_COMPARISON_STYLES = ("page", "frames", "bench", "comparison", "print")
 
 
 def printed(template: str, script: str | None = None, **values: Any) -> str:
     """A page: a template with these values, the style, and a script if it has one."""
-    style = _style()
+    style = _style(_COMPARISON_STYLES if template == "comparison" else _STYLES)
     safe = None if script is None else _without_ends(script)
     found = environment(PACKAGE, autoescape=True).get_template(f"{template}.html.j2")
     text: str = found.render(
@@ -55,7 +56,7 @@ def _without_ends(script: str) -> str:
 
 
 @cache
-def _style() -> str:
+def _style(names: tuple[str, ...]) -> str:
     folder = files(PACKAGE) / "page"
-    text = "".join((folder / f"{name}.css").read_text(encoding="utf-8") for name in _STYLES)
+    text = "".join((folder / f"{name}.css").read_text(encoding="utf-8") for name in names)
     return _BREAKS.sub("", text)

@@ -1,14 +1,11 @@
-/** The bench's side that decodes: bytes as runs of colour, and the rows of each event. */
-import { cellsOf } from "./api.js";
+/** The bench's side that decodes: bytes of any dress, and what each event says. */
 import { by, h, later, options, show } from "./dom.js";
-import { titleOf } from "./explain.js";
+import { eventView } from "./event_view.js";
 import { InputError, piecesOf } from "./input.js";
 import { fromHex, hexOf } from "./octets.js";
 import { eventsOf, takesAll } from "./streams.js";
 
-const COLOURS = 6;
 const PAGE = 50;
-const HEADS = ["offset", "wire", "unstuffed", "name", "type", "raw", "meaning"];
 
 export class DecodeView {
   constructor(explainer, onChange) {
@@ -38,9 +35,10 @@ export class DecodeView {
     if (chosen) this.set(hexOf(fromHex(chosen.hex)), chosen.sender);
   }
 
-  /** Show these bytes of an endpoint. */
-  set(text, endpoint) {
+  /** Show these bytes of an endpoint; `told` has what they do not say. */
+  set(text, endpoint, told = new Map()) {
     by("bytes").value = text;
+    for (const [name, field] of this.told) field.value = told.get(`@${name}`) ?? field.value;
     if (endpoint) by("sender").value = endpoint;
     this.update();
   }
@@ -60,7 +58,7 @@ export class DecodeView {
       if (!(error instanceof InputError || error instanceof RangeError)) throw error;
       by("note").textContent = error.message;
     }
-    this.onChange(text, endpoint);
+    this.onChange(text, endpoint, Object.fromEntries(this.told.map(([name, field]) => [`@${name}`, field.value])));
   }
 
   /** Identities that the bytes do not say: numbers, or several for frames that follow each other. */
@@ -84,15 +82,7 @@ export class DecodeView {
   }
 
   event(event, time) {
-    const rows = this.explainer.rows(event);
-    const isStuffed = this.explainer.senderOf(event).isStuffed;
-    const title = titleOf(event, rows);
-    return h(
-      "article",
-      { className: `event ${event.kind}`, "aria-label": title },
-      h("h3", {}, `${time === null ? "" : `${time / 1e9} s, `}${title}`),
-      ...linked(runs(rows, isStuffed), table(event, rows, isStuffed)),
-    );
+    return eventView(this.explainer, event, time);
   }
 }
 
@@ -105,76 +95,4 @@ function summary(found, size, form) {
   ];
   const said = kinds.filter(([number]) => number).map(([number, word]) => `${number} ${word}${number === 1 ? "" : "s"}`);
   return `${size} byte${size === 1 ? "" : "s"} of ${form}: ${said.join(", ")}`;
-}
-
-/** A run for each row that has bytes: what is on the wire and, where it differs, unstuffed. */
-function runs(rows, isStuffed) {
-  const found = rows.map((item, index) => {
-    if (!item.wire.length) return null;
-    const wire = hexOf(item.wire);
-    const plain = hexOf(item.bytes);
-    return h(
-      "button",
-      {
-        type: "button",
-        className: `run c${index % COLOURS}${item.fault ? " wrong" : ""}`,
-        "data-row": String(index),
-        tabIndex: -1,
-      },
-      h("span", { className: "wire" }, wire),
-      isStuffed && plain !== wire ? h("span", { className: "plain" }, plain || "no byte") : null,
-      h("span", { className: "name" }, `${item.fault ? "! " : ""}${item.path || item.meaning || "?"}`),
-    );
-  });
-  return h("div", { className: "runs", role: "group", "aria-label": "Bytes" }, found);
-}
-
-function table(event, rows, isStuffed) {
-  const keep = (cells) => (isStuffed ? cells : [...cells.slice(0, 2), ...cells.slice(3)]);
-  const heads = keep(HEADS).map((name) => h("th", { scope: "col" }, name));
-  const lines = rows.map((item, index) => {
-    const cells = cellsOf(event, item);
-    const fault = cells.pop();
-    const own = keep(cells).map((cell) => h("td", {}, cell));
-    if (fault) own[own.length - 1].append(" ", h("span", { className: "fault" }, fault));
-    return h("tr", { "data-row": String(index), "data-inside": Boolean(item.bits) }, own);
-  });
-  const found = h("table", { className: "cells" }, h("thead", {}, h("tr", {}, heads)), h("tbody", {}, lines));
-  return h("div", { className: "wide", tabIndex: 0, role: "group", "aria-label": "Rows" }, found);
-}
-
-/** Light up the row of a run and the run of a row; arrows go from run to run. */
-function linked(bytes, rows) {
-  const runsOf = [...bytes.children];
-  if (runsOf[0]) runsOf[0].tabIndex = 0;
-  const lines = [...rows.querySelectorAll("tbody tr")];
-  const light = (index) => {
-    // What is some bits has no bytes of its own: they are those of the run in front of it.
-    let own = index;
-    while (lines[own]?.dataset.inside !== undefined) own--;
-    for (const item of [...runsOf, ...lines]) {
-      const { row } = item.dataset;
-      if (row !== undefined) item.classList.toggle("lit", row === String(index) || row === String(own));
-    }
-  };
-  const onPoint = (event) => {
-    const { row } = event.target.closest("[data-row]")?.dataset ?? {};
-    if (row !== undefined) light(Number(row));
-  };
-  for (const holder of [bytes, rows]) {
-    holder.addEventListener("pointerover", onPoint);
-    holder.addEventListener("focusin", onPoint);
-    holder.addEventListener("click", onPoint);
-  }
-  bytes.addEventListener("keydown", (event) => {
-    const step = { ArrowRight: 1, ArrowLeft: -1, ArrowDown: 1, ArrowUp: -1 }[event.key];
-    const at = runsOf.indexOf(document.activeElement);
-    const next = runsOf[at + (step ?? 0)];
-    if (!step || at < 0 || !next) return;
-    event.preventDefault();
-    runsOf[at].tabIndex = -1;
-    next.tabIndex = 0;
-    next.focus();
-  });
-  return [bytes, rows];
 }

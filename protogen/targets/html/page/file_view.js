@@ -5,6 +5,7 @@ import { piecesOf, InputError } from "./input.js";
 import { hexOf } from "./octets.js";
 import { Plot } from "./plot.js";
 import { scaled } from "./readings.js";
+import { endpointOf } from "./streams.js";
 import { keyOf } from "./values.js";
 
 const MOST_BYTES = 50 * 1024 * 1024;
@@ -42,7 +43,9 @@ export class FileView {
       by("progress").textContent = `${file.name} has more than 50 MB.`;
       return;
     }
+    by("progress").textContent = `Reading ${file.name}`;
     const bytes = new Uint8Array(await file.arrayBuffer());
+    await new Promise((resolve) => setTimeout(resolve));
     try {
       this.input = piecesIn(bytes, this.endpoints);
     } catch (error) {
@@ -61,8 +64,9 @@ export class FileView {
     const decoders = new Map();
     const size = pieces.reduce((sum, item) => sum + item.bytes.length, 0);
     let [done, since] = [0, 0];
-    for (const { bytes, time, name } of pieces) {
-      const own = this.endpoints.includes(name) ? name : chosen;
+    for (const item of pieces) {
+      const { bytes, time } = item;
+      const own = endpointOf(item, chosen, this.endpoints);
       if (!decoders.has(own)) decoders.set(own, new this.explainer.codec.Decoder(own));
       for (let at = 0; at < bytes.length; at += CHUNK) {
         for (const event of decoders.get(own).feed(bytes.subarray(at, at + CHUNK))) take(event, time);

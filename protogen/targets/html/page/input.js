@@ -13,11 +13,19 @@ const piece = (bytes, time = null, name = "") => ({ bytes, time, name });
 
 /** What a text holds: its form in words, its pieces, and notes on lines that were left out. */
 export function piecesOf(text, names) {
-  for (const read of [quotedBytes, cArray, candump, saleae, sigrok, timedLines]) {
+  for (const read of [quotedBytes, cArray, dump, candump, saleae, sigrok, timedLines]) {
     const found = read(text, names);
-    if (found) return found;
+    if (found) return directed(found);
   }
   return { form: "hex", pieces: [piece(parseHex(text))], notes: [] };
+}
+
+/** The directions of a log tell senders apart where there are both, else nothing. */
+function directed(found) {
+  const named = (name) => found.pieces.some((item) => item.name === name);
+  if (named("TX") && named("RX")) found.notes.unshift("TX is what the side chosen sends, RX what the other sends");
+  else for (const item of found.pieces) if (/^[RT]X$/.test(item.name)) item.name = "";
+  return found;
 }
 
 // --- hex -----------------------------------------------------------------------------------------
@@ -58,6 +66,24 @@ function odd(text, at, all) {
   const next = text[at + all.length];
   if (next !== undefined && !/[\s,;:#\\0-9A-Fa-f]/.test(next)) return stranger(text, at + all.length);
   return placed(text, at, `\`${all.slice(-20)}\` has an odd number of hex digits`);
+}
+
+const DUMP_LINE = /^([0-9A-Fa-f]{6,16})(:?)\s+([^|]*)(\|.*)?$/;
+
+/** Lines of `xxd` and `hexdump -C`: an offset, bytes, and characters. The offsets have to fit. */
+function dump(text) {
+  const bytes = [];
+  for (const line of text.split("\n").map((item) => item.trim())) {
+    const [, at, colon, rest, bar] = DUMP_LINE.exec(line) ?? [];
+    // The last line of `hexdump -C` is the size alone.
+    if (at === undefined && line && parseInt(line, 16) !== bytes.length) return null;
+    if (at === undefined) continue;
+    const digits = (bar ? rest : rest.split(/\s{2,}/)[0]).replace(/\s/g, "");
+    const isDump = (colon || bar) && parseInt(at, 16) === bytes.length && /^(?:[0-9A-Fa-f]{2})+$/.test(digits);
+    if (!isDump) return null;
+    for (const byte of fromHex(digits)) bytes.push(byte);
+  }
+  return bytes.length ? { form: "a dump", pieces: [piece(Uint8Array.from(bytes))], notes: [] } : null;
 }
 
 // --- arrays and texts of programs ----------------------------------------------------------------
@@ -139,7 +165,7 @@ const TIME = new RegExp(
 /** Lines of any program: a time, words such as a sender or `TX:`, and hex. */
 function timedLines(text, names) {
   const first = text.split("\n").find((line) => line.trim() && !line.trim().startsWith("#"));
-  if (!first || !(TIME.test(first) || hasName(first, names))) return null;
+  if (!first || !(TIME.test(first) || hasName(first, [...names, "TX", "RX", "tx", "rx"]))) return null;
   let [days, last] = [0, 0];
   return linesOf(text, "a log", (line) => {
     const time = TIME.exec(line);
@@ -157,10 +183,14 @@ function timedLines(text, names) {
         when = days * 86400e9 + clock;
       }
     }
-    const word = found[1].match(/\w+/g)?.find((item) => names.includes(item)) ?? "";
+    const words = found[1].match(/\w+/g) ?? [];
+    const word = words.find((item) => names.includes(item)) ?? directionIn(words.join(" "));
     return piece(compact(found[2].replace(/0x|,/g, "")), when, word);
   });
 }
+
+/** `TX` or `RX`, as a log says who sent a line. */
+const directionIn = (text) => /\b[RT]X\b/i.exec(text)?.[0].toUpperCase() ?? "";
 
 const hasName = (line, names) => names.some((name) => new RegExp(`^\\s*${name}\\b\\W+[0-9A-Fa-f]{2}`).test(line));
 
@@ -196,11 +226,11 @@ function byteIn(cell) {
 
 /** Lines of sigrok-cli: `uart-1: 55`, or with the direction, `uart-1: TX data: 55`. */
 function sigrok(text) {
-  const line = /^(?:(\d+)-\d+\s+)?(\w+-\d+):(?:\s*(?:[RT]X)(?: data)?:)?\s*([0-9A-Fa-f]{2})$/i;
+  const line = /^(?:(\d+)-\d+\s+)?(\w+-\d+):(?:\s*([RT]X)(?: data)?:)?\s*([0-9A-Fa-f]{2})$/i;
   const first = text.split("\n").find((item) => item.trim());
   if (!first || !line.test(first.trim())) return null;
   return linesOf(text, "an export of sigrok", (item) => {
     const found = line.exec(item);
-    return found ? piece(compact(found[3]), null, found[2]) : undefined;
+    return found ? piece(compact(found[4]), null, directionIn(found[3] ?? "") || found[2]) : undefined;
   });
 }

@@ -20,8 +20,10 @@ by("outline").open = globalThis.innerWidth >= 900;
 startSearch(JSON.parse(by("entries").textContent));
 const tabs = new Tabs(["decode", "encode", "file"]);
 let isRestoring = false;
-const decode = new DecodeView(explainer, (text, endpoint) => {
-  if (!isRestoring && text.length < 4000) keep({ d: endpoint || "any", hex: text.replace(/\s+/g, " ").trim() });
+const decode = new DecodeView(explainer, (text, endpoint, told) => {
+  // What is too long for an address is left out of it; lines of a log stay lines.
+  const hex = text.length < 4000 ? text.replace(/[^\S\n]+/g, " ").trim() : "";
+  if (!isRestoring) keep({ d: endpoint || "any", hex, ...told });
 });
 
 isRestoring = true;
@@ -44,7 +46,7 @@ function restore() {
   const side = state.get("d");
   if (side !== null) {
     tabs.open("decode");
-    decode.set(state.get("hex") ?? "", side === "any" ? "" : side);
+    decode.set(state.get("hex") ?? "", side === "any" ? "" : side, state);
   }
   const message = state.get("m");
   if (message !== null) {

@@ -1,7 +1,10 @@
 /** Pieces of input through decoders: one for each direction, as far as names tell them apart. */
 
-/** The endpoint of each piece, or the one that was chosen. */
-const endpointOf = (item, chosen, endpoints) => (endpoints.includes(item.name) ? item.name : chosen);
+/** The endpoint of each piece: that which it names, of `TX` the one chosen, of `RX` the other. */
+export function endpointOf({ name }, chosen, endpoints) {
+  if (endpoints.includes(name)) return name;
+  return name === "RX" && chosen && endpoints.length === 2 ? endpoints.find((item) => item !== chosen) : chosen;
+}
 
 /** The events of all pieces in the order in which they end, each with the time of its last piece. */
 export function eventsOf(codec, pieces, chosen, endpoints, told = {}) {
@@ -9,12 +12,14 @@ export function eventsOf(codec, pieces, chosen, endpoints, told = {}) {
   const found = [];
   for (const item of pieces) {
     const name = endpointOf(item, chosen, endpoints);
-    if (!decoders.has(name)) {
-      decoders.set(name, new codec.Decoder(name || undefined));
-      decoders.get(name).tell(tellable(codec, name, told));
+    // Two directions are two streams, also where either side may have sent them.
+    const key = name || item.name;
+    if (!decoders.has(key)) {
+      decoders.set(key, new codec.Decoder(name || undefined));
+      decoders.get(key).tell(tellable(codec, name, told));
     }
     const { time } = item;
-    for (const event of decoders.get(name).feed(item.bytes)) found.push({ event, time });
+    for (const event of decoders.get(key).feed(item.bytes)) found.push({ event, time });
   }
   for (const decoder of decoders.values()) {
     for (const event of decoder.flush()) found.push({ event, time: null });
