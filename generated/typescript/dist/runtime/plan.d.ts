@@ -163,6 +163,8 @@ export interface Sizes {
 }
 /** Values of parts of the frame that are fields of a message, by the names of the parts. */
 export type HeldParts = Readonly<Record<string, Value>>;
+/** What an object has of its own by a name: every object inherits a `constructor`, for example. */
+export declare function ownOf<T>(given: Readonly<Record<string, T>>, name: string): T | undefined;
 /** None of them. */
 export declare const NO_PARTS: HeldParts;
 /** A message: how its payload is read and written. */

@@ -1,7 +1,7 @@
 /** Reads the values of a payload, one after another. Generated functions call it. */
 import { equal } from "./bytes.js";
 import { Fault, joined, spelled } from "./errors.js";
-import { NO_PARTS } from "./plan.js";
+import { NO_PARTS, ownOf } from "./plan.js";
 /** Form of a text whose bytes are its characters, with NUL as padding. */
 export const PLAIN_TEXT = { padding: 0, bits: 8, shift: 0, add: 0 };
 const WORD = new DataView(new ArrayBuffer(8));
@@ -73,7 +73,7 @@ export class Reader {
         return this.heldPart(name, step);
     }
     heldPart(name, step) {
-        const value = this.held[name];
+        const value = ownOf(this.held, name);
         if (value === undefined)
             throw this.fault(step, "value", `is ${name} of the frame: give it`);
         return value;

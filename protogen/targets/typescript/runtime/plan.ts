@@ -176,6 +176,11 @@ export interface Sizes {
 /** Values of parts of the frame that are fields of a message, by the names of the parts. */
 export type HeldParts = Readonly<Record<string, Value>>;
 
+/** What an object has of its own by a name: every object inherits a `constructor`, for example. */
+export function ownOf<T>(given: Readonly<Record<string, T>>, name: string): T | undefined {
+  return Object.prototype.hasOwnProperty.call(given, name) ? given[name] : undefined;
+}
+
 /** None of them. */
 export const NO_PARTS: HeldParts = {};
 

@@ -3,7 +3,7 @@
 import { equal } from "./bytes.js";
 import { Fault, joined, spelled } from "./errors.js";
 import type { Value } from "./numbers.js";
-import { NO_PARTS, type HeldParts } from "./plan.js";
+import { NO_PARTS, ownOf, type HeldParts } from "./plan.js";
 
 /** Name of a field, or index of an element. */
 export type Step = string | number;
@@ -111,7 +111,7 @@ export class Reader {
   }
 
   private heldPart(name: string, step: Step): Value {
-    const value = this.held[name];
+    const value = ownOf(this.held, name);
     if (value === undefined) throw this.fault(step, "value", `is ${name} of the frame: give it`);
     return value;
   }

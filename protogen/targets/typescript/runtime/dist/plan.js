@@ -1,4 +1,8 @@
 /** What a generated module says of a sender: its frame, as the compiler worked it out. */
+/** What an object has of its own by a name: every object inherits a `constructor`, for example. */
+export function ownOf(given, name) {
+    return Object.prototype.hasOwnProperty.call(given, name) ? given[name] : undefined;
+}
 /** None of them. */
 export const NO_PARTS = {};
 /** The place in the content of a frame with such a payload. */
