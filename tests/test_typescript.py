@@ -77,12 +77,17 @@ class TestSources:
         """`npx tsc -p protogen/targets/typescript/runtime` was run after the last change."""
         folder = RUNTIME / "dist"
         engine.run_tool("tsc", "-p", RUNTIME, "--outDir", tmp_path, folder=tmp_path)
-        made = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()}
-        assert made == {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()}
+        assert texts_in(tmp_path) == texts_in(folder)
 
     def test_of_the_runtime_are_short(self) -> None:
         sizes = {path.name: len(path.read_text().splitlines()) for path in RUNTIME.glob("*.ts")}
         assert {name for name, size in sizes.items() if size > LONGEST} == set()
+
+
+def texts_in(folder: Path) -> dict[Path, str]:
+    """The files of a folder, by their paths in it."""
+    paths = (path for path in folder.rglob("*") if path.is_file())
+    return {path.relative_to(folder): path.read_text(encoding="utf-8") for path in paths}
 
 
 def compile_strictly(sources: Path, target: Path) -> None:

@@ -27,10 +27,9 @@ export const PowerCode = {
 };
 
 function readSonar(r) {
-  const count = 5;
   const distances = [];
   r.enter("distances");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 5; i++) {
     distances.push(r.u8(i));
   }
   r.leave();
@@ -190,12 +189,11 @@ export const planOfGpsPosition = { name: "gps_position", identities: [[[71, 71]]
 
 function readLaser(r) {
   const readings = [];
-  while (r.left > 0) {
-    r.count(readings.length + 1, 0, 512, "fill", "readings");
-    r.enter("readings");
-    readings.push(r.u8(readings.length));
-    r.leave();
+  r.enter("readings");
+  for (let i = 0, here = -1; (here = r.next(here, i, 0, 512)) >= 0; i++) {
+    readings.push(r.u8(i));
   }
+  r.leave();
   return { message: "laser", readings };
 }
 
@@ -245,7 +243,7 @@ export function gpsPositionLongitudeFromDeg(value) {
 
 /** Distance; the metres times 50 in cm. */
 export function laserReadingsCm(record) {
-  return record.readings.map((raw) => rt.physical(raw, 2n, 0n, 1n));
+  return rt.physical(record.readings, 2n, 0n, 1n);
 }
 
 /** The raw `readings` nearest to a value in cm. */
@@ -257,48 +255,48 @@ function hostFrame() {
   return {
     sender: "host",
     form: "",
+    headSize: 1,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    startIsUnique: false,
+    endIsUnique: true,
+    sharesDelimiter: false,
+    markSize: 0,
+    endsIdle: false,
+    least: 2,
+    greatest: 1027,
+    givenUpAt: 1027,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "after_end",
+    end: rt.hex("0d"),
     parts: [
       { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0d"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
     firstStuffed: 0,
     lastStuffed: 1,
     behindRegion: 0,
-    least: 2,
-    greatest: 1027,
-    givenUpAt: 1027,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[77, 77]]], messages: [planOfMotor, planOfDrive], fixed: null, greatest: 2, carried: [{ least: 1, greatest: 1, step: 0 }, { least: 2, greatest: 2, step: 0 }] },
       { identities: [[[83, 83]]], messages: [planOfSteering], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
@@ -315,48 +313,48 @@ function robotFrame() {
   return {
     sender: "robot",
     form: "",
+    headSize: 1,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    startIsUnique: false,
+    endIsUnique: true,
+    sharesDelimiter: false,
+    markSize: 0,
+    endsIdle: false,
+    least: 2,
+    greatest: 1027,
+    givenUpAt: 1027,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "after_end",
+    end: rt.hex("0d"),
     parts: [
       { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0d"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
     firstStuffed: 0,
     lastStuffed: 1,
     behindRegion: 0,
-    least: 2,
-    greatest: 1027,
-    givenUpAt: 1027,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[83, 83]]], messages: [planOfSonar], fixed: 5, greatest: 5, carried: [{ least: 5, greatest: 5, step: 0 }] },
       { identities: [[[71, 71]]], messages: [planOfGps], fixed: null, greatest: 126, carried: [{ least: 0, greatest: 126, step: 1 }] },
@@ -374,34 +372,34 @@ const protocol = /* @__PURE__ */ new rt.Protocol([hostFrame, robotFrame], [["hos
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder extends rt.Decoder {
-  constructor(sender) {
-    super(protocol.senders(sender));
-  }
+    constructor(sender) {
+        super(protocol.senders(sender));
+    }
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export class Encoder extends rt.Encoder {
-  constructor(sender) {
-    super(protocol, sender);
-  }
+    constructor(sender) {
+        super(protocol, sender);
+    }
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */
 export function decode(frame, options = {}) {
-  return protocol.decode(frame, options);
+    return protocol.decode(frame, options);
 }
 
 /** The frame of a message. Throws an EncodeError. */
 export function encode(message, options = {}) {
-  return protocol.encode(message, options);
+    return protocol.encode(message, options);
 }
 
 /** A stream of bytes into one of events. */
 export function decoderStream(sender) {
-  return rt.streamOf(new Decoder(sender));
+    return rt.streamOf(new Decoder(sender));
 }
 
 /** The events of chunks, as they come in. */
 export function events(chunks, sender) {
-  return rt.eventsOf(new Decoder(sender), chunks);
+    return rt.eventsOf(new Decoder(sender), chunks);
 }

@@ -318,22 +318,39 @@ function pcFrame() {
   return {
     sender: "pc",
     form: "",
+    headSize: 4,
+    tailSize: 1,
+    tailSizeEmpty: 1,
+    identityIsEarly: true,
+    startWords: [rt.hex("55")],
+    startBytes: rt.hex("55"),
+    startIsUnique: true,
+    endIsUnique: false,
+    sharesDelimiter: false,
+    markSize: 1,
+    endsIdle: false,
+    least: 5,
+    greatest: 252,
+    givenUpAt: 252,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "word",
+    end: rt.hex(""),
     parts: [
       { kind: "literal", name: "sync", size: 1, bytes: rt.hex("55") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 2, base: 2, optional: 0, least: 2, greatest: 124, overWire: false, isFurther: false, regionEnd: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 2, base: 2, optional: 0, greatest: 124, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
       { kind: "number", name: "counter", size: 1, part: { kind: "value", name: "counter", number: rt.number(8, "little"), slot: 0, least: 0, greatest: 255, default: null, isCounter: true, values: null, between: null, isHeld: false } },
       { kind: "number", name: "command", size: 1, part: { kind: "identity", name: "command", number: rt.number(8, "little"), slot: 1 } },
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
     payloadIndex: 4,
-    headSize: 4,
-    tailSize: 1,
-    tailSizeEmpty: 1,
     slots: 3,
     identity: [1],
     lastIdentity: 1,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
@@ -341,32 +358,15 @@ function pcFrame() {
       { name: "command", key: "command", slot: 1 },
     ],
     sums: [
-      { name: "crc", number: rt.number(8, "little"), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
+      { name: "crc", number: rt.number(8, "little"), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: false, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
     ],
-    start: "word",
-    startWords: [rt.hex("55")],
-    startBytes: rt.hex("55"),
-    startIsUnique: true,
-    end: rt.hex(""),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
     firstStuffed: 1,
     lastStuffed: 5,
     behindRegion: 0,
-    least: 5,
-    greatest: 252,
-    givenUpAt: 252,
     greatestPayload: 122,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[83, 83]]], messages: [planOfStop], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
       { identities: [[[82, 82]]], messages: [planOfReset], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
@@ -386,22 +386,39 @@ function espFrame() {
   return {
     sender: "esp",
     form: "",
+    headSize: 4,
+    tailSize: 1,
+    tailSizeEmpty: 1,
+    identityIsEarly: true,
+    startWords: [rt.hex("55")],
+    startBytes: rt.hex("55"),
+    startIsUnique: true,
+    endIsUnique: false,
+    sharesDelimiter: false,
+    markSize: 1,
+    endsIdle: false,
+    least: 5,
+    greatest: 252,
+    givenUpAt: 252,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "word",
+    end: rt.hex(""),
     parts: [
       { kind: "literal", name: "sync", size: 1, bytes: rt.hex("55") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 2, base: 2, optional: 0, least: 2, greatest: 124, overWire: false, isFurther: false, regionEnd: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 2, base: 2, optional: 0, greatest: 124, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
       { kind: "number", name: "counter", size: 1, part: { kind: "value", name: "counter", number: rt.number(8, "little"), slot: 0, least: 0, greatest: 255, default: null, isCounter: true, values: null, between: null, isHeld: false } },
       { kind: "number", name: "command", size: 1, part: { kind: "identity", name: "command", number: rt.number(8, "little"), slot: 1 } },
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
     payloadIndex: 4,
-    headSize: 4,
-    tailSize: 1,
-    tailSizeEmpty: 1,
     slots: 3,
     identity: [1],
     lastIdentity: 1,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
@@ -409,32 +426,15 @@ function espFrame() {
       { name: "command", key: "command", slot: 1 },
     ],
     sums: [
-      { name: "crc", number: rt.number(8, "little"), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
+      { name: "crc", number: rt.number(8, "little"), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: false, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
     ],
-    start: "word",
-    startWords: [rt.hex("55")],
-    startBytes: rt.hex("55"),
-    startIsUnique: true,
-    end: rt.hex(""),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
     firstStuffed: 1,
     lastStuffed: 5,
     behindRegion: 0,
-    least: 5,
-    greatest: 252,
-    givenUpAt: 252,
     greatestPayload: 122,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[65, 65]]], messages: [planOfAck], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
       { identities: [[[78, 78]]], messages: [planOfNack], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
@@ -450,34 +450,34 @@ const protocol = /* @__PURE__ */ new rt.Protocol([pcFrame, espFrame], [["pc", "e
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder extends rt.Decoder {
-  constructor(sender) {
-    super(protocol.senders(sender));
-  }
+    constructor(sender) {
+        super(protocol.senders(sender));
+    }
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export class Encoder extends rt.Encoder {
-  constructor(sender) {
-    super(protocol, sender);
-  }
+    constructor(sender) {
+        super(protocol, sender);
+    }
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */
 export function decode(frame, options = {}) {
-  return protocol.decode(frame, options);
+    return protocol.decode(frame, options);
 }
 
 /** The frame of a message. Throws an EncodeError. */
 export function encode(message, options = {}) {
-  return protocol.encode(message, options);
+    return protocol.encode(message, options);
 }
 
 /** A stream of bytes into one of events. */
 export function decoderStream(sender) {
-  return rt.streamOf(new Decoder(sender));
+    return rt.streamOf(new Decoder(sender));
 }
 
 /** The events of chunks, as they come in. */
 export function events(chunks, sender) {
-  return rt.eventsOf(new Decoder(sender), chunks);
+    return rt.eventsOf(new Decoder(sender), chunks);
 }

@@ -326,17 +326,16 @@ function readSonarData(r) {
   const retval = r.u32be("retval");
   const timestamp = r.u32be("timestamp");
   const readings = [];
-  while (r.left > 0) {
-    r.count(readings.length + 1, 0, 82, "fill", "readings");
-    r.enter("readings");
-    r.enter(readings.length);
+  r.enter("readings");
+  for (let i = 0, here = -1; (here = r.next(here, i, 0, 82)) >= 0; i++) {
+    r.enter(i);
     const cluster = r.u8("cluster");
     const distance = r.u16be("distance");
     const value = { cluster, distance };
     r.leave();
     readings.push(value);
-    r.leave();
   }
+  r.leave();
   return { message: "sonar_data", retval, timestamp, readings };
 }
 
@@ -500,23 +499,40 @@ function linuxFrame() {
   return {
     sender: "linux",
     form: "",
+    headSize: 6,
+    tailSize: 1,
+    tailSizeEmpty: 1,
+    identityIsEarly: true,
+    startWords: [rt.hex("1b02")],
+    startBytes: rt.hex("1b02"),
+    startIsUnique: true,
+    endIsUnique: true,
+    sharesDelimiter: false,
+    markSize: 2,
+    endsIdle: false,
+    least: 9,
+    greatest: 780,
+    givenUpAt: 780,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "word",
+    end: rt.hex("1b03"),
     parts: [
       { kind: "literal", name: "start", size: 2, bytes: rt.hex("1b02") },
       { kind: "number", name: "class", size: 1, part: { kind: "identity", name: "class", number: rt.number(8, "little"), slot: 0 } },
       { kind: "number", name: "number", size: 1, part: { kind: "value", name: "number", number: rt.number(8, "little"), slot: 1, least: 0, greatest: 255, default: 0, isCounter: false, values: null, between: null, isHeld: false } },
       { kind: "number", name: "subclass", size: 1, part: { kind: "identity", name: "subclass", number: rt.number(8, "little"), slot: 2 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 3, base: 0, optional: 0, least: 0, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 3, base: 0, optional: 0, greatest: 255, isFurther: false, least: 0, overWire: false, regionEnd: 0 } },
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
     payloadIndex: 5,
-    headSize: 6,
-    tailSize: 1,
-    tailSizeEmpty: 1,
     slots: 4,
     identity: [0, 2],
     lastIdentity: 2,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
@@ -525,32 +541,15 @@ function linuxFrame() {
       { name: "subclass", key: "subclass", slot: 2 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
+      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: false, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
     ],
-    start: "word",
-    startWords: [rt.hex("1b02")],
-    startBytes: rt.hex("1b02"),
-    startIsUnique: true,
-    end: rt.hex("1b03"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 2,
-    endsIdle: false,
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
     firstStuffed: 1,
     lastStuffed: 6,
     behindRegion: 0,
-    least: 9,
-    greatest: 780,
-    givenUpAt: 780,
     greatestPayload: 255,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[1, 1]], [[1, 1]]], messages: [planOfRequestSystemStatus], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
       { identities: [[[2, 2]], [[0, 0]]], messages: [planOfAxisGetSystem], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
@@ -573,23 +572,40 @@ function flexFrame() {
   return {
     sender: "flex",
     form: "",
+    headSize: 6,
+    tailSize: 1,
+    tailSizeEmpty: 1,
+    identityIsEarly: true,
+    startWords: [rt.hex("1b02")],
+    startBytes: rt.hex("1b02"),
+    startIsUnique: true,
+    endIsUnique: true,
+    sharesDelimiter: false,
+    markSize: 2,
+    endsIdle: false,
+    least: 10,
+    greatest: 780,
+    givenUpAt: 780,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "word",
+    end: rt.hex("1b03"),
     parts: [
       { kind: "literal", name: "start", size: 2, bytes: rt.hex("1b02") },
       { kind: "number", name: "class", size: 1, part: { kind: "identity", name: "class", number: rt.number(8, "little"), slot: 0 } },
       { kind: "number", name: "number", size: 1, part: { kind: "value", name: "number", number: rt.number(8, "little"), slot: 1, least: 0, greatest: 255, default: 0, isCounter: false, values: null, between: null, isHeld: false } },
       { kind: "number", name: "subclass", size: 1, part: { kind: "identity", name: "subclass", number: rt.number(8, "little"), slot: 2 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 3, base: 0, optional: 0, least: 0, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 3, base: 0, optional: 0, greatest: 255, isFurther: false, least: 0, overWire: false, regionEnd: 0 } },
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
     payloadIndex: 5,
-    headSize: 6,
-    tailSize: 1,
-    tailSizeEmpty: 1,
     slots: 4,
     identity: [0, 2],
     lastIdentity: 2,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
@@ -598,32 +614,15 @@ function flexFrame() {
       { name: "subclass", key: "subclass", slot: 2 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
+      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: false, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
     ],
-    start: "word",
-    startWords: [rt.hex("1b02")],
-    startBytes: rt.hex("1b02"),
-    startIsUnique: true,
-    end: rt.hex("1b03"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 2,
-    endsIdle: false,
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
     firstStuffed: 1,
     lastStuffed: 6,
     behindRegion: 0,
-    least: 10,
-    greatest: 780,
-    givenUpAt: 780,
     greatestPayload: 255,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[1, 1]], [[1, 1]]], messages: [planOfSystemStatus], fixed: 9, greatest: 9, carried: [{ least: 9, greatest: 9, step: 0 }] },
       { identities: [[[1, 1]], [[0, 0]]], messages: [planOfLcdDump], fixed: null, greatest: 255, carried: [{ least: 6, greatest: 255, step: 1 }] },
@@ -648,34 +647,34 @@ const protocol = /* @__PURE__ */ new rt.Protocol([linuxFrame, flexFrame], [["lin
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder extends rt.Decoder {
-  constructor(sender) {
-    super(protocol.senders(sender));
-  }
+    constructor(sender) {
+        super(protocol.senders(sender));
+    }
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export class Encoder extends rt.Encoder {
-  constructor(sender) {
-    super(protocol, sender);
-  }
+    constructor(sender) {
+        super(protocol, sender);
+    }
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */
 export function decode(frame, options = {}) {
-  return protocol.decode(frame, options);
+    return protocol.decode(frame, options);
 }
 
 /** The frame of a message. Throws an EncodeError. */
 export function encode(message, options = {}) {
-  return protocol.encode(message, options);
+    return protocol.encode(message, options);
 }
 
 /** A stream of bytes into one of events. */
 export function decoderStream(sender) {
-  return rt.streamOf(new Decoder(sender));
+    return rt.streamOf(new Decoder(sender));
 }
 
 /** The events of chunks, as they come in. */
 export function events(chunks, sender) {
-  return rt.eventsOf(new Decoder(sender), chunks);
+    return rt.eventsOf(new Decoder(sender), chunks);
 }

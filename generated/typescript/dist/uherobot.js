@@ -29,10 +29,9 @@ export const MotorsServosLedsLeds = {
 function readMotorsServosLeds(r) {
   const motor_1 = r.i16be("motor_1");
   const motor_2 = r.i16be("motor_2");
-  const count = 8;
   const servos = [];
   r.enter("servos");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 8; i++) {
     servos.push(r.u16be(i));
   }
   r.leave();
@@ -58,10 +57,9 @@ export const planOfMotorsServosLeds = { name: "motors_servos_leds", identities: 
 function readMotorsTwoServos(r) {
   const motor_1 = r.i16be("motor_1");
   const motor_2 = r.i16be("motor_2");
-  const count = 2;
   const servos = [];
   r.enter("servos");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 2; i++) {
     servos.push(r.u16be(i));
   }
   r.leave();
@@ -136,50 +134,50 @@ function daemonFrame() {
   return {
     sender: "daemon",
     form: "",
+    headSize: 3,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [rt.hex("62")],
+    startBytes: rt.hex("62"),
+    startIsUnique: true,
+    endIsUnique: true,
+    sharesDelimiter: false,
+    markSize: 1,
+    endsIdle: false,
+    least: 14,
+    greatest: 512,
+    givenUpAt: 512,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "word",
+    end: rt.hex("65"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, least: 2, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
       { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8, "little"), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
-    headSize: 3,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
       { name: "type", key: "type", slot: 0 },
     ],
     sums: [],
-    start: "word",
-    startWords: [rt.hex("62")],
-    startBytes: rt.hex("62"),
-    startIsUnique: true,
-    end: rt.hex("65"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
     behindRegion: 0,
-    least: 14,
-    greatest: 512,
-    givenUpAt: 512,
     greatestPayload: 253,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[0, 0]]], messages: [planOfMotorsServosLeds], fixed: 21, greatest: 21, carried: [{ least: 21, greatest: 21, step: 0 }] },
       { identities: [[[1, 1]]], messages: [planOfMotorsTwoServos], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
@@ -193,50 +191,50 @@ function boardFrame() {
   return {
     sender: "board",
     form: "",
+    headSize: 3,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [rt.hex("62")],
+    startBytes: rt.hex("62"),
+    startIsUnique: true,
+    endIsUnique: true,
+    sharesDelimiter: false,
+    markSize: 1,
+    endsIdle: false,
+    least: 18,
+    greatest: 512,
+    givenUpAt: 512,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "word",
+    end: rt.hex("65"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, least: 2, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
       { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8, "little"), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
-    headSize: 3,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
       { name: "type", key: "type", slot: 0 },
     ],
     sums: [],
-    start: "word",
-    startWords: [rt.hex("62")],
-    startBytes: rt.hex("62"),
-    startIsUnique: true,
-    end: rt.hex("65"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
     behindRegion: 0,
-    least: 18,
-    greatest: 512,
-    givenUpAt: 512,
     greatestPayload: 253,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[1, 1]]], messages: [planOfStatus], fixed: 6, greatest: 6, carried: [{ least: 6, greatest: 6, step: 0 }] },
     ],
@@ -248,34 +246,34 @@ const protocol = /* @__PURE__ */ new rt.Protocol([daemonFrame, boardFrame], [["d
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder extends rt.Decoder {
-  constructor(sender) {
-    super(protocol.senders(sender));
-  }
+    constructor(sender) {
+        super(protocol.senders(sender));
+    }
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export class Encoder extends rt.Encoder {
-  constructor(sender) {
-    super(protocol, sender);
-  }
+    constructor(sender) {
+        super(protocol, sender);
+    }
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */
 export function decode(frame, options = {}) {
-  return protocol.decode(frame, options);
+    return protocol.decode(frame, options);
 }
 
 /** The frame of a message. Throws an EncodeError. */
 export function encode(message, options = {}) {
-  return protocol.encode(message, options);
+    return protocol.encode(message, options);
 }
 
 /** A stream of bytes into one of events. */
 export function decoderStream(sender) {
-  return rt.streamOf(new Decoder(sender));
+    return rt.streamOf(new Decoder(sender));
 }
 
 /** The events of chunks, as they come in. */
 export function events(chunks, sender) {
-  return rt.eventsOf(new Decoder(sender), chunks);
+    return rt.eventsOf(new Decoder(sender), chunks);
 }

@@ -213,12 +213,6 @@ export interface Senders {
   readonly robot: { readonly message: RobotMessage; readonly parts: RobotParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = 
   | Sonar
@@ -238,18 +232,9 @@ export type MessageInput =
   | Laser
   | Command;
 
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
-
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
 }
-
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 function readSonar(r: rt.Reader): Sonar {
   const data = r.rest(0, 128, false, "data");
@@ -421,12 +406,11 @@ export const planOfPower: rt.MessagePlan<Power> = { name: "power", identities: [
 
 function readLaser(r: rt.Reader): Laser {
   const readings = [];
-  while (r.left > 0) {
-    r.count(readings.length + 1, 0, 512, "fill", "readings");
-    r.enter("readings");
-    readings.push(r.u8(readings.length));
-    r.leave();
+  r.enter("readings");
+  for (let i = 0, here = -1; (here = r.next(here, i, 0, 512)) >= 0; i++) {
+    readings.push(r.u8(i));
   }
+  r.leave();
   return { message: "laser", readings };
 }
 
@@ -466,7 +450,7 @@ export function reflexReflexNumber(record: Pick<Reflex, "reflex">): number {
 
 /** Distance; the metres times 50 in cm. */
 export function laserReadingsCm(record: Pick<Laser, "readings">): number[] {
-  return record.readings.map((raw) => rt.physical(raw, 2n, 0n, 1n));
+  return rt.physical(record.readings, 2n, 0n, 1n);
 }
 
 /** The raw `readings` nearest to a value in cm. */
@@ -478,51 +462,51 @@ function hostFrame(): rt.Frame {
   return {
     sender: "host",
     form: "",
+    headSize: 1,
+    tailSize: 1,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    startIsUnique: false,
+    endIsUnique: false,
+    sharesDelimiter: false,
+    markSize: 0,
+    endsIdle: false,
+    least: 2,
+    greatest: 515,
+    givenUpAt: 515,
+    sevenBit: false,
+    rescans: true,
+    takesWhole: true,
+    cutAmbiguous: true,
+    isCut: false,
+    start: "after_end",
+    end: rt.hex("0a"),
     parts: [
       { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 1,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: true, isBits: false, lowest: 0, greatest: 255 },
+      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
     ],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0a"),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
     transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
-    least: 2,
-    greatest: 515,
-    givenUpAt: 515,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: true,
-    takesWhole: true,
-    cutAmbiguous: true,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[77, 77]]], messages: [planOfMotor], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
       { identities: [[[83, 83]]], messages: [planOfSteering], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
@@ -539,51 +523,51 @@ function robotFrame(): rt.Frame {
   return {
     sender: "robot",
     form: "",
+    headSize: 1,
+    tailSize: 1,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    startIsUnique: false,
+    endIsUnique: false,
+    sharesDelimiter: false,
+    markSize: 0,
+    endsIdle: false,
+    least: 2,
+    greatest: 515,
+    givenUpAt: 515,
+    sevenBit: false,
+    rescans: true,
+    takesWhole: true,
+    cutAmbiguous: true,
+    isCut: false,
+    start: "after_end",
+    end: rt.hex("0a"),
     parts: [
       { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 1,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: true, isBits: false, lowest: 0, greatest: 255 },
+      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
     ],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0a"),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
     transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
-    least: 2,
-    greatest: 515,
-    givenUpAt: 515,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: true,
-    takesWhole: true,
-    cutAmbiguous: true,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[83, 83]]], messages: [planOfSonar], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
       { identities: [[[71, 71]]], messages: [planOfGps], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
@@ -601,6 +585,21 @@ function robotFrame(): rt.Frame {
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([hostFrame, robotFrame], [["host", "robot"]]);
+
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {

@@ -282,12 +282,6 @@ export interface Senders {
   readonly robot: { readonly message: RobotMessage; readonly parts: RobotParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = 
   | Sonar
@@ -303,24 +297,14 @@ export type MessageInput =
   | Laser
   | ShutdownInput;
 
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
-
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
 }
 
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
-
 function readSonar(r: rt.Reader): Sonar {
-  const count = 5;
   const distances = [];
   r.enter("distances");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 5; i++) {
     distances.push(r.u8(i));
   }
   r.leave();
@@ -480,12 +464,11 @@ export const planOfGpsPosition: rt.MessagePlan<GpsPosition> = { name: "gps_posit
 
 function readLaser(r: rt.Reader): Laser {
   const readings = [];
-  while (r.left > 0) {
-    r.count(readings.length + 1, 0, 512, "fill", "readings");
-    r.enter("readings");
-    readings.push(r.u8(readings.length));
-    r.leave();
+  r.enter("readings");
+  for (let i = 0, here = -1; (here = r.next(here, i, 0, 512)) >= 0; i++) {
+    readings.push(r.u8(i));
   }
+  r.leave();
   return { message: "laser", readings };
 }
 
@@ -535,7 +518,7 @@ export function gpsPositionLongitudeFromDeg(value: number): number {
 
 /** Distance; the metres times 50 in cm. */
 export function laserReadingsCm(record: Pick<Laser, "readings">): number[] {
-  return record.readings.map((raw) => rt.physical(raw, 2n, 0n, 1n));
+  return rt.physical(record.readings, 2n, 0n, 1n);
 }
 
 /** The raw `readings` nearest to a value in cm. */
@@ -547,48 +530,48 @@ function hostFrame(): rt.Frame {
   return {
     sender: "host",
     form: "",
+    headSize: 1,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    startIsUnique: false,
+    endIsUnique: true,
+    sharesDelimiter: false,
+    markSize: 0,
+    endsIdle: false,
+    least: 2,
+    greatest: 1027,
+    givenUpAt: 1027,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "after_end",
+    end: rt.hex("0d"),
     parts: [
       { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0d"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
     firstStuffed: 0,
     lastStuffed: 1,
     behindRegion: 0,
-    least: 2,
-    greatest: 1027,
-    givenUpAt: 1027,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[77, 77]]], messages: [planOfMotor, planOfDrive], fixed: null, greatest: 2, carried: [{ least: 1, greatest: 1, step: 0 }, { least: 2, greatest: 2, step: 0 }] },
       { identities: [[[83, 83]]], messages: [planOfSteering], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
@@ -605,48 +588,48 @@ function robotFrame(): rt.Frame {
   return {
     sender: "robot",
     form: "",
+    headSize: 1,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    startIsUnique: false,
+    endIsUnique: true,
+    sharesDelimiter: false,
+    markSize: 0,
+    endsIdle: false,
+    least: 2,
+    greatest: 1027,
+    givenUpAt: 1027,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "after_end",
+    end: rt.hex("0d"),
     parts: [
       { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0d"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
     firstStuffed: 0,
     lastStuffed: 1,
     behindRegion: 0,
-    least: 2,
-    greatest: 1027,
-    givenUpAt: 1027,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[83, 83]]], messages: [planOfSonar], fixed: 5, greatest: 5, carried: [{ least: 5, greatest: 5, step: 0 }] },
       { identities: [[[71, 71]]], messages: [planOfGps], fixed: null, greatest: 126, carried: [{ least: 0, greatest: 126, step: 1 }] },
@@ -661,6 +644,21 @@ function robotFrame(): rt.Frame {
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([hostFrame, robotFrame], [["host", "robot"]]);
+
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {

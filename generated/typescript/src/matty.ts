@@ -183,28 +183,13 @@ export interface Senders {
   readonly esp: { readonly message: EspMessage; readonly parts: EspParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = Stop | Reset | Mode | Go | Limits | Timing | GpsMode | Ack | Nack | Status | Gps;
-
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
 
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
   readonly counter?: number | undefined;
 }
-
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 function readStop(r: rt.Reader): Stop {
   return { message: "stop" };
@@ -396,22 +381,39 @@ function pcFrame(): rt.Frame {
   return {
     sender: "pc",
     form: "",
+    headSize: 4,
+    tailSize: 1,
+    tailSizeEmpty: 1,
+    identityIsEarly: true,
+    startWords: [rt.hex("55")],
+    startBytes: rt.hex("55"),
+    startIsUnique: true,
+    endIsUnique: false,
+    sharesDelimiter: false,
+    markSize: 1,
+    endsIdle: false,
+    least: 5,
+    greatest: 250,
+    givenUpAt: 250,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "word",
+    end: rt.hex(""),
     parts: [
       { kind: "literal", name: "sync", size: 1, bytes: rt.hex("55") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 2, base: 2, optional: 0, least: 2, greatest: 123, overWire: false, isFurther: false, regionEnd: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 2, base: 2, optional: 0, greatest: 123, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
       { kind: "number", name: "counter", size: 1, part: { kind: "value", name: "counter", number: rt.number(8, "little"), slot: 0, least: 0, greatest: 255, default: null, isCounter: true, values: null, between: null, isHeld: false } },
       { kind: "number", name: "command", size: 1, part: { kind: "identity", name: "command", number: rt.number(8, "little"), slot: 1 } },
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
     payloadIndex: 4,
-    headSize: 4,
-    tailSize: 1,
-    tailSizeEmpty: 1,
     slots: 3,
     identity: [1],
     lastIdentity: 1,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
@@ -419,32 +421,15 @@ function pcFrame(): rt.Frame {
       { name: "command", key: "command", slot: 1 },
     ],
     sums: [
-      { name: "crc", number: rt.number(8, "little"), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
+      { name: "crc", number: rt.number(8, "little"), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: false, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
     ],
-    start: "word",
-    startWords: [rt.hex("55")],
-    startBytes: rt.hex("55"),
-    startIsUnique: true,
-    end: rt.hex(""),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
     firstStuffed: 1,
     lastStuffed: 5,
     behindRegion: 0,
-    least: 5,
-    greatest: 250,
-    givenUpAt: 250,
     greatestPayload: 121,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[83, 83]]], messages: [planOfStop], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
       { identities: [[[82, 82]]], messages: [planOfReset], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
@@ -462,22 +447,39 @@ function espFrame(): rt.Frame {
   return {
     sender: "esp",
     form: "",
+    headSize: 4,
+    tailSize: 1,
+    tailSizeEmpty: 1,
+    identityIsEarly: true,
+    startWords: [rt.hex("55")],
+    startBytes: rt.hex("55"),
+    startIsUnique: true,
+    endIsUnique: false,
+    sharesDelimiter: false,
+    markSize: 1,
+    endsIdle: false,
+    least: 5,
+    greatest: 250,
+    givenUpAt: 250,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "word",
+    end: rt.hex(""),
     parts: [
       { kind: "literal", name: "sync", size: 1, bytes: rt.hex("55") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 2, base: 2, optional: 0, least: 2, greatest: 123, overWire: false, isFurther: false, regionEnd: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 2, base: 2, optional: 0, greatest: 123, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
       { kind: "number", name: "counter", size: 1, part: { kind: "value", name: "counter", number: rt.number(8, "little"), slot: 0, least: 0, greatest: 255, default: null, isCounter: true, values: null, between: null, isHeld: false } },
       { kind: "number", name: "command", size: 1, part: { kind: "identity", name: "command", number: rt.number(8, "little"), slot: 1 } },
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
     payloadIndex: 4,
-    headSize: 4,
-    tailSize: 1,
-    tailSizeEmpty: 1,
     slots: 3,
     identity: [1],
     lastIdentity: 1,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
@@ -485,32 +487,15 @@ function espFrame(): rt.Frame {
       { name: "command", key: "command", slot: 1 },
     ],
     sums: [
-      { name: "crc", number: rt.number(8, "little"), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
+      { name: "crc", number: rt.number(8, "little"), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: false, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
     ],
-    start: "word",
-    startWords: [rt.hex("55")],
-    startBytes: rt.hex("55"),
-    startIsUnique: true,
-    end: rt.hex(""),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
     firstStuffed: 1,
     lastStuffed: 5,
     behindRegion: 0,
-    least: 5,
-    greatest: 250,
-    givenUpAt: 250,
     greatestPayload: 121,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[65, 65]]], messages: [planOfAck], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
       { identities: [[[78, 78]]], messages: [planOfNack], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
@@ -522,6 +507,21 @@ function espFrame(): rt.Frame {
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([pcFrame, espFrame], [["pc", "esp"]]);
+
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {

@@ -376,12 +376,6 @@ export interface Senders {
   readonly brain: { readonly message: BrainMessage; readonly parts: BrainParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = 
   | MoveManual
@@ -399,18 +393,9 @@ export type MessageInput =
   | MotorControllerMessage
   | DebugNumbers;
 
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
-
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
 }
-
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 function readMoveManual(r: rt.Reader): MoveManual {
   const speed = r.sint(1, 7, true, 128, "speed");
@@ -465,10 +450,9 @@ function writeIncreasePhaseAngle(w: rt.Writer, m: IncreasePhaseAngleInput): void
 export const planOfIncreasePhaseAngle: rt.MessagePlan<IncreasePhaseAngle> = { name: "increase_phase_angle", identities: [[[210, 210]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readIncreasePhaseAngle, write: writeIncreasePhaseAngle };
 
 function readMaintenance(r: rt.Reader): Maintenance {
-  const count = 3;
   const magic = [];
   r.enter("magic");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 3; i++) {
     magic.push(r.uint(1, 7, true, 128, i));
   }
   r.leave();
@@ -501,19 +485,19 @@ function writeMaintenance(w: rt.Writer, m: MaintenanceInput): void {
   w.leave();
   const operation = w.int(m.operation, 0, 127, "operation");
   w.uint(operation, 1, 7, true, 128);
-  const value = m.argument;
+  const argument = m.argument;
   const selector = operation;
   if (selector === 82) {
-    w.nothing(value, "argument");
+    w.nothing(argument, "argument");
   }
   else if (selector === 83) {
-    const run_motor_controller_flasher = w.record(value, "argument");
+    const run_motor_controller_flasher = w.record(argument, "argument");
     w.enter("argument");
     w.uint(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), 1, 7, true, 128);
     w.leave();
   }
   else {
-    w.octets(value, 0, 1, true, "argument");
+    w.octets(argument, 0, 1, true, "argument");
   }
 }
 
@@ -576,10 +560,9 @@ export const planOfCompass: rt.MessagePlan<Compass> = { name: "compass", identit
 
 function readLidar(r: rt.Reader): Lidar {
   const status = r.uint(1, 7, true, 128, "status");
-  const count = 360;
   const distances = [];
   r.enter("distances");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 360; i++) {
     distances.push(r.uint(2, 14, true, 128, i));
   }
   r.leave();
@@ -601,10 +584,9 @@ export const planOfLidar: rt.MessagePlan<Lidar> = { name: "lidar", identities: [
 
 function readSonar(r: rt.Reader): Sonar {
   const status = r.uint(1, 7, true, 128, "status");
-  const count = 3;
   const distances = [];
   r.enter("distances");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 3; i++) {
     distances.push(r.uint(2, 14, true, 128, i));
   }
   r.leave();
@@ -700,48 +682,48 @@ function hostFrame(): rt.Frame {
   return {
     sender: "host",
     form: "",
+    headSize: 1,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [rt.hex("80"), rt.hex("81"), rt.hex("82"), rt.hex("83"), rt.hex("84"), rt.hex("85"), rt.hex("86"), rt.hex("87"), rt.hex("88"), rt.hex("89"), rt.hex("8a"), rt.hex("8b"), rt.hex("8c"), rt.hex("8d"), rt.hex("8e"), rt.hex("8f"), rt.hex("90"), rt.hex("91"), rt.hex("92"), rt.hex("93"), rt.hex("94"), rt.hex("95"), rt.hex("96"), rt.hex("97"), rt.hex("98"), rt.hex("99"), rt.hex("9a"), rt.hex("9b"), rt.hex("9c"), rt.hex("9d"), rt.hex("9e"), rt.hex("9f"), rt.hex("a0"), rt.hex("a1"), rt.hex("a2"), rt.hex("a3"), rt.hex("a4"), rt.hex("a5"), rt.hex("a6"), rt.hex("a7"), rt.hex("a8"), rt.hex("a9"), rt.hex("aa"), rt.hex("ab"), rt.hex("ac"), rt.hex("ad"), rt.hex("ae"), rt.hex("af"), rt.hex("b0"), rt.hex("b1"), rt.hex("b2"), rt.hex("b3"), rt.hex("b4"), rt.hex("b5"), rt.hex("b6"), rt.hex("b7"), rt.hex("b8"), rt.hex("b9"), rt.hex("ba"), rt.hex("bb"), rt.hex("bc"), rt.hex("bd"), rt.hex("be"), rt.hex("bf"), rt.hex("c0"), rt.hex("c1"), rt.hex("c2"), rt.hex("c3"), rt.hex("c4"), rt.hex("c5"), rt.hex("c6"), rt.hex("c7"), rt.hex("c8"), rt.hex("c9"), rt.hex("ca"), rt.hex("cb"), rt.hex("cc"), rt.hex("cd"), rt.hex("ce"), rt.hex("cf"), rt.hex("d0"), rt.hex("d1"), rt.hex("d2"), rt.hex("d3"), rt.hex("d4"), rt.hex("d5"), rt.hex("d6"), rt.hex("d7"), rt.hex("d8"), rt.hex("d9"), rt.hex("da"), rt.hex("db"), rt.hex("dc"), rt.hex("dd"), rt.hex("de"), rt.hex("df"), rt.hex("e0"), rt.hex("e1"), rt.hex("e2"), rt.hex("e3"), rt.hex("e4"), rt.hex("e5"), rt.hex("e6"), rt.hex("e7"), rt.hex("e8"), rt.hex("e9"), rt.hex("ea"), rt.hex("eb"), rt.hex("ec"), rt.hex("ed"), rt.hex("ee"), rt.hex("ef"), rt.hex("f0"), rt.hex("f1"), rt.hex("f2"), rt.hex("f3"), rt.hex("f4"), rt.hex("f5"), rt.hex("f6"), rt.hex("f7"), rt.hex("f8"), rt.hex("f9"), rt.hex("fa"), rt.hex("fb"), rt.hex("fc"), rt.hex("fd"), rt.hex("fe")],
+    startBytes: rt.hex(""),
+    startIsUnique: true,
+    endIsUnique: true,
+    sharesDelimiter: false,
+    markSize: 0,
+    endsIdle: false,
+    least: 3,
+    greatest: 7,
+    givenUpAt: 7,
+    sevenBit: true,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "word",
+    end: rt.hex("ff"),
     parts: [
       { kind: "number", name: "start", size: 1, part: { kind: "identity", name: "start", number: rt.number(8, "little"), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
       { name: "start", key: "start", slot: 0 },
     ],
     sums: [],
-    start: "word",
-    startWords: [rt.hex("80"), rt.hex("81"), rt.hex("82"), rt.hex("83"), rt.hex("84"), rt.hex("85"), rt.hex("86"), rt.hex("87"), rt.hex("88"), rt.hex("89"), rt.hex("8a"), rt.hex("8b"), rt.hex("8c"), rt.hex("8d"), rt.hex("8e"), rt.hex("8f"), rt.hex("90"), rt.hex("91"), rt.hex("92"), rt.hex("93"), rt.hex("94"), rt.hex("95"), rt.hex("96"), rt.hex("97"), rt.hex("98"), rt.hex("99"), rt.hex("9a"), rt.hex("9b"), rt.hex("9c"), rt.hex("9d"), rt.hex("9e"), rt.hex("9f"), rt.hex("a0"), rt.hex("a1"), rt.hex("a2"), rt.hex("a3"), rt.hex("a4"), rt.hex("a5"), rt.hex("a6"), rt.hex("a7"), rt.hex("a8"), rt.hex("a9"), rt.hex("aa"), rt.hex("ab"), rt.hex("ac"), rt.hex("ad"), rt.hex("ae"), rt.hex("af"), rt.hex("b0"), rt.hex("b1"), rt.hex("b2"), rt.hex("b3"), rt.hex("b4"), rt.hex("b5"), rt.hex("b6"), rt.hex("b7"), rt.hex("b8"), rt.hex("b9"), rt.hex("ba"), rt.hex("bb"), rt.hex("bc"), rt.hex("bd"), rt.hex("be"), rt.hex("bf"), rt.hex("c0"), rt.hex("c1"), rt.hex("c2"), rt.hex("c3"), rt.hex("c4"), rt.hex("c5"), rt.hex("c6"), rt.hex("c7"), rt.hex("c8"), rt.hex("c9"), rt.hex("ca"), rt.hex("cb"), rt.hex("cc"), rt.hex("cd"), rt.hex("ce"), rt.hex("cf"), rt.hex("d0"), rt.hex("d1"), rt.hex("d2"), rt.hex("d3"), rt.hex("d4"), rt.hex("d5"), rt.hex("d6"), rt.hex("d7"), rt.hex("d8"), rt.hex("d9"), rt.hex("da"), rt.hex("db"), rt.hex("dc"), rt.hex("dd"), rt.hex("de"), rt.hex("df"), rt.hex("e0"), rt.hex("e1"), rt.hex("e2"), rt.hex("e3"), rt.hex("e4"), rt.hex("e5"), rt.hex("e6"), rt.hex("e7"), rt.hex("e8"), rt.hex("e9"), rt.hex("ea"), rt.hex("eb"), rt.hex("ec"), rt.hex("ed"), rt.hex("ee"), rt.hex("ef"), rt.hex("f0"), rt.hex("f1"), rt.hex("f2"), rt.hex("f3"), rt.hex("f4"), rt.hex("f5"), rt.hex("f6"), rt.hex("f7"), rt.hex("f8"), rt.hex("f9"), rt.hex("fa"), rt.hex("fb"), rt.hex("fc"), rt.hex("fd"), rt.hex("fe")],
-    startBytes: rt.hex(""),
-    startIsUnique: true,
-    end: rt.hex("ff"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
     transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
-    least: 3,
-    greatest: 7,
-    givenUpAt: 7,
     greatestPayload: 5,
-    sevenBit: true,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[128, 128]]], messages: [planOfMoveManual], fixed: 2, greatest: 2, carried: [{ least: 2, greatest: 2, step: 0 }] },
       { identities: [[[129, 129]]], messages: [planOfMoveRelativeTwostep], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
@@ -757,48 +739,48 @@ function brainFrame(): rt.Frame {
   return {
     sender: "brain",
     form: "",
+    headSize: 1,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [rt.hex("80"), rt.hex("81"), rt.hex("82"), rt.hex("83"), rt.hex("84"), rt.hex("85"), rt.hex("86"), rt.hex("87"), rt.hex("88"), rt.hex("89"), rt.hex("8a"), rt.hex("8b"), rt.hex("8c"), rt.hex("8d"), rt.hex("8e"), rt.hex("8f"), rt.hex("90"), rt.hex("91"), rt.hex("92"), rt.hex("93"), rt.hex("94"), rt.hex("95"), rt.hex("96"), rt.hex("97"), rt.hex("98"), rt.hex("99"), rt.hex("9a"), rt.hex("9b"), rt.hex("9c"), rt.hex("9d"), rt.hex("9e"), rt.hex("9f"), rt.hex("a0"), rt.hex("a1"), rt.hex("a2"), rt.hex("a3"), rt.hex("a4"), rt.hex("a5"), rt.hex("a6"), rt.hex("a7"), rt.hex("a8"), rt.hex("a9"), rt.hex("aa"), rt.hex("ab"), rt.hex("ac"), rt.hex("ad"), rt.hex("ae"), rt.hex("af"), rt.hex("b0"), rt.hex("b1"), rt.hex("b2"), rt.hex("b3"), rt.hex("b4"), rt.hex("b5"), rt.hex("b6"), rt.hex("b7"), rt.hex("b8"), rt.hex("b9"), rt.hex("ba"), rt.hex("bb"), rt.hex("bc"), rt.hex("bd"), rt.hex("be"), rt.hex("bf"), rt.hex("c0"), rt.hex("c1"), rt.hex("c2"), rt.hex("c3"), rt.hex("c4"), rt.hex("c5"), rt.hex("c6"), rt.hex("c7"), rt.hex("c8"), rt.hex("c9"), rt.hex("ca"), rt.hex("cb"), rt.hex("cc"), rt.hex("cd"), rt.hex("ce"), rt.hex("cf"), rt.hex("d0"), rt.hex("d1"), rt.hex("d2"), rt.hex("d3"), rt.hex("d4"), rt.hex("d5"), rt.hex("d6"), rt.hex("d7"), rt.hex("d8"), rt.hex("d9"), rt.hex("da"), rt.hex("db"), rt.hex("dc"), rt.hex("dd"), rt.hex("de"), rt.hex("df"), rt.hex("e0"), rt.hex("e1"), rt.hex("e2"), rt.hex("e3"), rt.hex("e4"), rt.hex("e5"), rt.hex("e6"), rt.hex("e7"), rt.hex("e8"), rt.hex("e9"), rt.hex("ea"), rt.hex("eb"), rt.hex("ec"), rt.hex("ed"), rt.hex("ee"), rt.hex("ef"), rt.hex("f0"), rt.hex("f1"), rt.hex("f2"), rt.hex("f3"), rt.hex("f4"), rt.hex("f5"), rt.hex("f6"), rt.hex("f7"), rt.hex("f8"), rt.hex("f9"), rt.hex("fa"), rt.hex("fb"), rt.hex("fc"), rt.hex("fd"), rt.hex("fe")],
+    startBytes: rt.hex(""),
+    startIsUnique: true,
+    endIsUnique: false,
+    sharesDelimiter: false,
+    markSize: 0,
+    endsIdle: false,
+    least: 3,
+    greatest: 722,
+    givenUpAt: 722,
+    sevenBit: true,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "word",
+    end: rt.hex(""),
     parts: [
       { kind: "number", name: "start", size: 1, part: { kind: "identity", name: "start", number: rt.number(8, "little"), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
       { name: "start", key: "start", slot: 0 },
     ],
     sums: [],
-    start: "word",
-    startWords: [rt.hex("80"), rt.hex("81"), rt.hex("82"), rt.hex("83"), rt.hex("84"), rt.hex("85"), rt.hex("86"), rt.hex("87"), rt.hex("88"), rt.hex("89"), rt.hex("8a"), rt.hex("8b"), rt.hex("8c"), rt.hex("8d"), rt.hex("8e"), rt.hex("8f"), rt.hex("90"), rt.hex("91"), rt.hex("92"), rt.hex("93"), rt.hex("94"), rt.hex("95"), rt.hex("96"), rt.hex("97"), rt.hex("98"), rt.hex("99"), rt.hex("9a"), rt.hex("9b"), rt.hex("9c"), rt.hex("9d"), rt.hex("9e"), rt.hex("9f"), rt.hex("a0"), rt.hex("a1"), rt.hex("a2"), rt.hex("a3"), rt.hex("a4"), rt.hex("a5"), rt.hex("a6"), rt.hex("a7"), rt.hex("a8"), rt.hex("a9"), rt.hex("aa"), rt.hex("ab"), rt.hex("ac"), rt.hex("ad"), rt.hex("ae"), rt.hex("af"), rt.hex("b0"), rt.hex("b1"), rt.hex("b2"), rt.hex("b3"), rt.hex("b4"), rt.hex("b5"), rt.hex("b6"), rt.hex("b7"), rt.hex("b8"), rt.hex("b9"), rt.hex("ba"), rt.hex("bb"), rt.hex("bc"), rt.hex("bd"), rt.hex("be"), rt.hex("bf"), rt.hex("c0"), rt.hex("c1"), rt.hex("c2"), rt.hex("c3"), rt.hex("c4"), rt.hex("c5"), rt.hex("c6"), rt.hex("c7"), rt.hex("c8"), rt.hex("c9"), rt.hex("ca"), rt.hex("cb"), rt.hex("cc"), rt.hex("cd"), rt.hex("ce"), rt.hex("cf"), rt.hex("d0"), rt.hex("d1"), rt.hex("d2"), rt.hex("d3"), rt.hex("d4"), rt.hex("d5"), rt.hex("d6"), rt.hex("d7"), rt.hex("d8"), rt.hex("d9"), rt.hex("da"), rt.hex("db"), rt.hex("dc"), rt.hex("dd"), rt.hex("de"), rt.hex("df"), rt.hex("e0"), rt.hex("e1"), rt.hex("e2"), rt.hex("e3"), rt.hex("e4"), rt.hex("e5"), rt.hex("e6"), rt.hex("e7"), rt.hex("e8"), rt.hex("e9"), rt.hex("ea"), rt.hex("eb"), rt.hex("ec"), rt.hex("ed"), rt.hex("ee"), rt.hex("ef"), rt.hex("f0"), rt.hex("f1"), rt.hex("f2"), rt.hex("f3"), rt.hex("f4"), rt.hex("f5"), rt.hex("f6"), rt.hex("f7"), rt.hex("f8"), rt.hex("f9"), rt.hex("fa"), rt.hex("fb"), rt.hex("fc"), rt.hex("fd"), rt.hex("fe")],
-    startBytes: rt.hex(""),
-    startIsUnique: true,
-    end: rt.hex(""),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
     transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
-    least: 3,
-    greatest: 722,
-    givenUpAt: 722,
     greatestPayload: 721,
-    sevenBit: true,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[128, 128]]], messages: [planOfGyro], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
       { identities: [[[129, 129]]], messages: [planOfXcel], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
@@ -815,6 +797,21 @@ function brainFrame(): rt.Frame {
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([hostFrame, brainFrame], []);
+
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {

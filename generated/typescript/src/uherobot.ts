@@ -96,35 +96,19 @@ export interface Senders {
   readonly board: { readonly message: BoardMessage; readonly parts: BoardParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = MotorsServosLeds | MotorsTwoServos | MotorTest | Status;
-
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
 
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
 }
 
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
-
 function readMotorsServosLeds(r: rt.Reader): MotorsServosLeds {
   const motor_1 = r.i16be("motor_1");
   const motor_2 = r.i16be("motor_2");
-  const count = 8;
   const servos = [];
   r.enter("servos");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 8; i++) {
     servos.push(r.u16be(i));
   }
   r.leave();
@@ -150,10 +134,9 @@ export const planOfMotorsServosLeds: rt.MessagePlan<MotorsServosLeds> = { name: 
 function readMotorsTwoServos(r: rt.Reader): MotorsTwoServos {
   const motor_1 = r.i16be("motor_1");
   const motor_2 = r.i16be("motor_2");
-  const count = 2;
   const servos = [];
   r.enter("servos");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 2; i++) {
     servos.push(r.u16be(i));
   }
   r.leave();
@@ -228,50 +211,50 @@ function daemonFrame(): rt.Frame {
   return {
     sender: "daemon",
     form: "",
+    headSize: 3,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [rt.hex("62")],
+    startBytes: rt.hex("62"),
+    startIsUnique: true,
+    endIsUnique: true,
+    sharesDelimiter: false,
+    markSize: 1,
+    endsIdle: false,
+    least: 14,
+    greatest: 512,
+    givenUpAt: 512,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "word",
+    end: rt.hex("65"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, least: 2, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
       { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8, "little"), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
-    headSize: 3,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
       { name: "type", key: "type", slot: 0 },
     ],
     sums: [],
-    start: "word",
-    startWords: [rt.hex("62")],
-    startBytes: rt.hex("62"),
-    startIsUnique: true,
-    end: rt.hex("65"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
     behindRegion: 0,
-    least: 14,
-    greatest: 512,
-    givenUpAt: 512,
     greatestPayload: 253,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[0, 0]]], messages: [planOfMotorsServosLeds], fixed: 21, greatest: 21, carried: [{ least: 21, greatest: 21, step: 0 }] },
       { identities: [[[1, 1]]], messages: [planOfMotorsTwoServos], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
@@ -285,50 +268,50 @@ function boardFrame(): rt.Frame {
   return {
     sender: "board",
     form: "",
+    headSize: 3,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [rt.hex("62")],
+    startBytes: rt.hex("62"),
+    startIsUnique: true,
+    endIsUnique: true,
+    sharesDelimiter: false,
+    markSize: 1,
+    endsIdle: false,
+    least: 18,
+    greatest: 512,
+    givenUpAt: 512,
+    sevenBit: false,
+    rescans: false,
+    takesWhole: true,
+    cutAmbiguous: false,
+    isCut: false,
+    start: "word",
+    end: rt.hex("65"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, least: 2, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
       { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8, "little"), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
-    headSize: 3,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
     told: [],
     virtual: [],
     shown: [
       { name: "type", key: "type", slot: 0 },
     ],
     sums: [],
-    start: "word",
-    startWords: [rt.hex("62")],
-    startBytes: rt.hex("62"),
-    startIsUnique: true,
-    end: rt.hex("65"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
     behindRegion: 0,
-    least: 18,
-    greatest: 512,
-    givenUpAt: 512,
     greatestPayload: 253,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
     isBounded: false,
     kept: null,
-    isCut: false,
     groups: [
       { identities: [[[1, 1]]], messages: [planOfStatus], fixed: 6, greatest: 6, carried: [{ least: 6, greatest: 6, step: 0 }] },
     ],
@@ -337,6 +320,21 @@ function boardFrame(): rt.Frame {
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([daemonFrame, boardFrame], [["daemon", "board"]]);
+
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 from protogen.model.payload_plan import Reference
 from protogen.targets.naming import NameTable, Thing
+from protogen.targets.typescript.literals import Code
 from protogen.targets.typescript.names import Names, locals_table
 
 
@@ -17,13 +18,13 @@ class Constants:
         self._names = names
         self._made: dict[tuple[str, str], str] = {}
 
-    def add(self, word: str, type_: str, value: str) -> str:
+    def add(self, word: str, type_: str, value: str) -> Code:
         """The name of a constant with this value."""
         found = self._made.get((type_, value))
         if found is None:
             found = self._names.module.add(f"{word}_{len(self._made) + 1}", Thing(value))
             self._made[type_, value] = found
-        return found
+        return Code(found)
 
     def __iter__(self) -> Iterator[tuple[str, str, str]]:
         """The name, the type and the value of each."""
@@ -56,10 +57,10 @@ class Scope:
         self._depth -= 1
         self.line(tail)
 
-    def variable(self, word: str) -> str:
+    def variable(self, word: str) -> Code:
         """A new variable, called like this if nothing else is."""
         self._count += 1
-        return self._locals.add(word or "value", Thing("variable", ("local", self._count)))
+        return Code(self._locals.add(word or "value", Thing("variable", ("local", self._count))))
 
     def know(self, level: int, name: str, expression: str) -> None:
         """Keep where an earlier number is."""

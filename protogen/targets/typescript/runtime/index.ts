@@ -15,6 +15,7 @@ export {
   readNumeral,
   writeDigits,
   writeNumeral,
+  type Digits,
   type Numeral,
 } from "./numerals.js";
 export { bitsNumber, characters, digits, number, type Value } from "./numbers.js";
