@@ -44,7 +44,7 @@ function writeSonar(w, m) {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar = { name: "sonar", identities: [[[83, 83]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar = { name: "sonar", identities: [[[83, 83]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readSonar, write: writeSonar };
 
 function readGps(r) {
   const data = r.rest(0, 128, false, "data");
@@ -56,7 +56,7 @@ function writeGps(w, m) {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps = { name: "gps", identities: [[[71, 71]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readGps, write: writeGps };
+export const planOfGps = { name: "gps", identities: [[[71, 71]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readGps, write: writeGps };
 
 function readBump(r) {
   const data = r.rest(0, 128, false, "data");
@@ -68,7 +68,7 @@ function writeBump(w, m) {
 }
 
 /** Plan of Bump, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBump = { name: "bump", identities: [[[66, 66]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readBump, write: writeBump };
+export const planOfBump = { name: "bump", identities: [[[66, 66]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readBump, write: writeBump };
 
 function readOdometry(r) {
   const data = r.rest(0, 128, false, "data");
@@ -80,7 +80,7 @@ function writeOdometry(w, m) {
 }
 
 /** Plan of Odometry, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOdometry = { name: "odometry", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readOdometry, write: writeOdometry };
+export const planOfOdometry = { name: "odometry", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readOdometry, write: writeOdometry };
 
 function readSpeed(r) {
   const data = r.rest(0, 128, false, "data");
@@ -92,7 +92,7 @@ function writeSpeed(w, m) {
 }
 
 /** Plan of Speed, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSpeed = { name: "speed", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readSpeed, write: writeSpeed };
+export const planOfSpeed = { name: "speed", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readSpeed, write: writeSpeed };
 
 function readWheelSlip(r) {
   const data = r.rest(0, 128, false, "data");
@@ -104,7 +104,7 @@ function writeWheelSlip(w, m) {
 }
 
 /** Plan of WheelSlip, for `readPayload` and `writePayload` of the runtime. */
-export const planOfWheelSlip = { name: "wheel_slip", identities: [[[87, 87]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readWheelSlip, write: writeWheelSlip };
+export const planOfWheelSlip = { name: "wheel_slip", identities: [[[87, 87]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readWheelSlip, write: writeWheelSlip };
 
 function readBattery(r) {
   const data = r.rest(0, 128, false, "data");
@@ -116,7 +116,7 @@ function writeBattery(w, m) {
 }
 
 /** Plan of Battery, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBattery = { name: "battery", identities: [[[98, 98]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readBattery, write: writeBattery };
+export const planOfBattery = { name: "battery", identities: [[[98, 98]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readBattery, write: writeBattery };
 
 function readReflexSettings(r) {
   const data = r.rest(0, 128, false, "data");
@@ -128,7 +128,7 @@ function writeReflexSettings(w, m) {
 }
 
 /** Plan of ReflexSettings, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReflexSettings = { name: "reflex_settings", identities: [[[82, 82]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readReflexSettings, write: writeReflexSettings };
+export const planOfReflexSettings = { name: "reflex_settings", identities: [[[82, 82]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readReflexSettings, write: writeReflexSettings };
 
 function readHardwareStatus(r) {
   const data = r.rest(0, 128, false, "data");
@@ -140,7 +140,7 @@ function writeHardwareStatus(w, m) {
 }
 
 /** Plan of HardwareStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfHardwareStatus = { name: "hardware_status", identities: [[[72, 72]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readHardwareStatus, write: writeHardwareStatus };
+export const planOfHardwareStatus = { name: "hardware_status", identities: [[[72, 72]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readHardwareStatus, write: writeHardwareStatus };
 
 function readMotor(r) {
   const s = r.u8("s");
@@ -152,7 +152,7 @@ function writeMotor(w, m) {
 }
 
 /** Plan of Motor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor = { name: "motor", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMotor, write: writeMotor };
+export const planOfMotor = { name: "motor", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readMotor, write: writeMotor };
 
 function readSteering(r) {
   const s = r.u8("s");
@@ -164,7 +164,7 @@ function writeSteering(w, m) {
 }
 
 /** Plan of Steering, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSteering = { name: "steering", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readSteering, write: writeSteering };
+export const planOfSteering = { name: "steering", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readSteering, write: writeSteering };
 
 function readReflex(r) {
   const reflex = r.u8("reflex");
@@ -176,7 +176,7 @@ function writeReflex(w, m) {
 }
 
 /** Plan of Reflex, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReflex = { name: "reflex", identities: [[[82, 82]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readReflex, write: writeReflex };
+export const planOfReflex = { name: "reflex", identities: [[[82, 82]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readReflex, write: writeReflex };
 
 function readPowerDown(r) {
   const code = r.constant(r.u8("code"), 3, "code");
@@ -188,7 +188,7 @@ function writePowerDown(w, m) {
 }
 
 /** Plan of PowerDown, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPowerDown = { name: "power_down", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readPowerDown, write: writePowerDown };
+export const planOfPowerDown = { name: "power_down", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readPowerDown, write: writePowerDown };
 
 function readPower(r) {
   const code = r.u8("code");
@@ -200,7 +200,7 @@ function writePower(w, m) {
 }
 
 /** Plan of Power, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPower = { name: "power", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readPower, write: writePower };
+export const planOfPower = { name: "power", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readPower, write: writePower };
 
 function readLaser(r) {
   const readings = [];
@@ -222,7 +222,7 @@ function writeLaser(w, m) {
 }
 
 /** Plan of Laser, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLaser = { name: "laser", identities: [[[76, 76]]], sizes: { least: 0, greatest: 512, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readLaser, write: writeLaser };
+export const planOfLaser = { name: "laser", identities: [[[76, 76]]], sizes: { least: 0, greatest: 512, step: 1 }, known: null, read: readLaser, write: writeLaser };
 
 function readCommand(r) {
   const data = r.rest(0, 128, false, "data");
@@ -234,7 +234,7 @@ function writeCommand(w, m) {
 }
 
 /** Plan of Command, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCommand = { name: "command", identities: [[[67, 67]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readCommand, write: writeCommand };
+export const planOfCommand = { name: "command", identities: [[[67, 67]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readCommand, write: writeCommand };
 
 /** What to do with the reflex; bits 6 to 7 of reflex. */
 export function reflexReflexCommand(record) {

@@ -59,7 +59,7 @@ function writeStop(w, m) {
 }
 
 /** Plan of Stop, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStop = { name: "stop", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readStop, write: writeStop };
+export const planOfStop = { name: "stop", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readStop, write: writeStop };
 
 function readReset(r) {
   return { message: "reset" };
@@ -68,7 +68,7 @@ function readReset(r) {
 function writeReset(w, m) {}
 
 /** Plan of Reset, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReset = { name: "reset", identities: [[[82, 82]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readReset, write: writeReset };
+export const planOfReset = { name: "reset", identities: [[[82, 82]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readReset, write: writeReset };
 
 function readMode(r) {
   const mode = r.u8("mode");
@@ -80,7 +80,7 @@ function writeMode(w, m) {
 }
 
 /** Plan of Mode, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMode = { name: "mode", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMode, write: writeMode };
+export const planOfMode = { name: "mode", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readMode, write: writeMode };
 
 function readGo(r) {
   const speed = r.i16("speed");
@@ -94,7 +94,7 @@ function writeGo(w, m) {
 }
 
 /** Plan of Go, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGo = { name: "go", identities: [[[71, 71]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readGo, write: writeGo };
+export const planOfGo = { name: "go", identities: [[[71, 71]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readGo, write: writeGo };
 
 function readLimits(r) {
   const max_speed = r.i16("max_speed");
@@ -108,7 +108,7 @@ function writeLimits(w, m) {
 }
 
 /** Plan of Limits, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLimits = { name: "limits", identities: [[[76, 76]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readLimits, write: writeLimits };
+export const planOfLimits = { name: "limits", identities: [[[76, 76]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readLimits, write: writeLimits };
 
 function readTiming(r) {
   const period = r.u16("period");
@@ -122,7 +122,7 @@ function writeTiming(w, m) {
 }
 
 /** Plan of Timing, for `readPayload` and `writePayload` of the runtime. */
-export const planOfTiming = { name: "timing", identities: [[[84, 84]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readTiming, write: writeTiming };
+export const planOfTiming = { name: "timing", identities: [[[84, 84]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readTiming, write: writeTiming };
 
 function readGpsMode(r) {
   const mode = r.u8("mode");
@@ -134,7 +134,7 @@ function writeGpsMode(w, m) {
 }
 
 /** Plan of GpsMode, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGpsMode = { name: "gps_mode", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readGpsMode, write: writeGpsMode };
+export const planOfGpsMode = { name: "gps_mode", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readGpsMode, write: writeGpsMode };
 
 function readVersionQuery(r) {
   return { message: "version_query" };
@@ -143,7 +143,7 @@ function readVersionQuery(r) {
 function writeVersionQuery(w, m) {}
 
 /** Plan of VersionQuery, for `readPayload` and `writePayload` of the runtime. */
-export const planOfVersionQuery = { name: "version_query", identities: [[[86, 86]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readVersionQuery, write: writeVersionQuery };
+export const planOfVersionQuery = { name: "version_query", identities: [[[86, 86]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readVersionQuery, write: writeVersionQuery };
 
 function readLed(r) {
   const index = r.u8("index");
@@ -157,7 +157,7 @@ function writeLed(w, m) {
 }
 
 /** Plan of Led, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLed = { name: "led", identities: [[[68, 68]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readLed, write: writeLed };
+export const planOfLed = { name: "led", identities: [[[68, 68]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readLed, write: writeLed };
 
 function readAck(r) {
   return { message: "ack" };
@@ -166,7 +166,7 @@ function readAck(r) {
 function writeAck(w, m) {}
 
 /** Plan of Ack, for `readPayload` and `writePayload` of the runtime. */
-export const planOfAck = { name: "ack", identities: [[[65, 65]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readAck, write: writeAck };
+export const planOfAck = { name: "ack", identities: [[[65, 65]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readAck, write: writeAck };
 
 function readNack(r) {
   return { message: "nack" };
@@ -175,7 +175,7 @@ function readNack(r) {
 function writeNack(w, m) {}
 
 /** Plan of Nack, for `readPayload` and `writePayload` of the runtime. */
-export const planOfNack = { name: "nack", identities: [[[78, 78]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readNack, write: writeNack };
+export const planOfNack = { name: "nack", identities: [[[78, 78]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readNack, write: writeNack };
 
 function readStatus(r) {
   const status = r.u8("status");
@@ -226,7 +226,7 @@ function writeStatus(w, m) {
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStatus = { name: "status", identities: [[[73, 73]]], sizes: { least: 24, greatest: 24, step: 0 }, known: 24, tellsItsEnd: false, held: [], read: readStatus, write: writeStatus };
+export const planOfStatus = { name: "status", identities: [[[73, 73]]], sizes: { least: 24, greatest: 24, step: 0 }, known: 24, read: readStatus, write: writeStatus };
 
 function readGps(r) {
   const nmea = rt.latin1(r.rest(0, 121, false, "nmea"));
@@ -238,7 +238,7 @@ function writeGps(w, m) {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps = { name: "gps", identities: [[[80, 80]]], sizes: { least: 0, greatest: 121, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readGps, write: writeGps };
+export const planOfGps = { name: "gps", identities: [[[80, 80]]], sizes: { least: 0, greatest: 121, step: 1 }, known: null, read: readGps, write: writeGps };
 
 function readVersion(r) {
   const serial_number = r.u8("serial_number");
@@ -252,7 +252,7 @@ function writeVersion(w, m) {
 }
 
 /** Plan of Version, for `readPayload` and `writePayload` of the runtime. */
-export const planOfVersion = { name: "version", identities: [[[86, 86]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readVersion, write: writeVersion };
+export const planOfVersion = { name: "version", identities: [[[86, 86]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, read: readVersion, write: writeVersion };
 
 /** Wanted angle of the joint in deg. */
 export function goSteerDeg(record) {

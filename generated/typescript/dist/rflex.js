@@ -68,7 +68,7 @@ function readRequestSystemStatus(r) {
 function writeRequestSystemStatus(w, m) {}
 
 /** Plan of RequestSystemStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfRequestSystemStatus = { name: "request_system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readRequestSystemStatus, write: writeRequestSystemStatus };
+export const planOfRequestSystemStatus = { name: "request_system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readRequestSystemStatus, write: writeRequestSystemStatus };
 
 function readSystemStatus(r) {
   const timestamp = r.u32be("timestamp");
@@ -84,7 +84,7 @@ function writeSystemStatus(w, m) {
 }
 
 /** Plan of SystemStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSystemStatus = { name: "system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, tellsItsEnd: false, held: [], read: readSystemStatus, write: writeSystemStatus };
+export const planOfSystemStatus = { name: "system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, read: readSystemStatus, write: writeSystemStatus };
 
 function readMotor00(r) {
   const unknown_ = r.u8("unknown");
@@ -96,7 +96,7 @@ function writeMotor00(w, m) {
 }
 
 /** Plan of Motor00, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor00 = { name: "motor_00", identities: [[[2, 2]], [[0, 0]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMotor00, write: writeMotor00 };
+export const planOfMotor00 = { name: "motor_00", identities: [[[2, 2]], [[0, 0]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readMotor00, write: writeMotor00 };
 
 function readMotorCommand(r) {
   const axis = r.u8("axis");
@@ -116,7 +116,7 @@ function writeMotorCommand(w, m) {
 }
 
 /** Plan of MotorCommand, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorCommand = { name: "motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 14, greatest: 14, step: 0 }, known: 14, tellsItsEnd: false, held: [], read: readMotorCommand, write: writeMotorCommand };
+export const planOfMotorCommand = { name: "motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 14, greatest: 14, step: 0 }, known: 14, read: readMotorCommand, write: writeMotorCommand };
 
 function readConfirmMotorCommand(r) {
   const unknown_ = r.u32be("unknown");
@@ -132,7 +132,7 @@ function writeConfirmMotorCommand(w, m) {
 }
 
 /** Plan of ConfirmMotorCommand, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmMotorCommand = { name: "confirm_motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, tellsItsEnd: false, held: [], read: readConfirmMotorCommand, write: writeConfirmMotorCommand };
+export const planOfConfirmMotorCommand = { name: "confirm_motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, read: readConfirmMotorCommand, write: writeConfirmMotorCommand };
 
 function readMotor0a(r) {
   return { message: "motor_0a" };
@@ -141,7 +141,7 @@ function readMotor0a(r) {
 function writeMotor0a(w, m) {}
 
 /** Plan of Motor0a, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor0a = { name: "motor_0a", identities: [[[2, 2]], [[10, 10]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readMotor0a, write: writeMotor0a };
+export const planOfMotor0a = { name: "motor_0a", identities: [[[2, 2]], [[10, 10]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readMotor0a, write: writeMotor0a };
 
 function readMotor0c(r) {
   return { message: "motor_0c" };
@@ -150,7 +150,7 @@ function readMotor0c(r) {
 function writeMotor0c(w, m) {}
 
 /** Plan of Motor0c, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor0c = { name: "motor_0c", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readMotor0c, write: writeMotor0c };
+export const planOfMotor0c = { name: "motor_0c", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readMotor0c, write: writeMotor0c };
 
 function readMotor0cAnswer(r) {
   const unknown_ = r.u32be("unknown");
@@ -164,7 +164,7 @@ function writeMotor0cAnswer(w, m) {
 }
 
 /** Plan of Motor0cAnswer, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor0cAnswer = { name: "motor_0c_answer", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readMotor0cAnswer, write: writeMotor0cAnswer };
+export const planOfMotor0cAnswer = { name: "motor_0c_answer", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readMotor0cAnswer, write: writeMotor0cAnswer };
 
 function readReadMotor(r) {
   const unknown_ = r.u32be("unknown");
@@ -197,7 +197,7 @@ function writeReadMotor(w, m) {
 }
 
 /** Plan of ReadMotor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReadMotor = { name: "read_motor", identities: [[[2, 2]], [[33, 33]]], sizes: { least: 25, greatest: 25, step: 0 }, known: 25, tellsItsEnd: false, held: [], read: readReadMotor, write: writeReadMotor };
+export const planOfReadMotor = { name: "read_motor", identities: [[[2, 2]], [[33, 33]]], sizes: { least: 25, greatest: 25, step: 0 }, known: 25, read: readReadMotor, write: writeReadMotor };
 
 function readStartStopMotorPackets(r) {
   const timestamp = r.u32be("timestamp");
@@ -211,7 +211,7 @@ function writeStartStopMotorPackets(w, m) {
 }
 
 /** Plan of StartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStartStopMotorPackets = { name: "start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readStartStopMotorPackets, write: writeStartStopMotorPackets };
+export const planOfStartStopMotorPackets = { name: "start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readStartStopMotorPackets, write: writeStartStopMotorPackets };
 
 function readConfirmStartStopMotorPackets(r) {
   const unknown_ = r.u32be("unknown");
@@ -225,7 +225,7 @@ function writeConfirmStartStopMotorPackets(w, m) {
 }
 
 /** Plan of ConfirmStartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmStartStopMotorPackets = { name: "confirm_start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readConfirmStartStopMotorPackets, write: writeConfirmStartStopMotorPackets };
+export const planOfConfirmStartStopMotorPackets = { name: "confirm_start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readConfirmStartStopMotorPackets, write: writeConfirmStartStopMotorPackets };
 
 function readRequestJoystickData(r) {
   return { message: "request_joystick_data" };
@@ -234,7 +234,7 @@ function readRequestJoystickData(r) {
 function writeRequestJoystickData(w, m) {}
 
 /** Plan of RequestJoystickData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfRequestJoystickData = { name: "request_joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readRequestJoystickData, write: writeRequestJoystickData };
+export const planOfRequestJoystickData = { name: "request_joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readRequestJoystickData, write: writeRequestJoystickData };
 
 function readJoystickData(r) {
   const timestamp = r.u32be("timestamp");
@@ -252,7 +252,7 @@ function writeJoystickData(w, m) {
 }
 
 /** Plan of JoystickData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfJoystickData = { name: "joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, tellsItsEnd: false, held: [], read: readJoystickData, write: writeJoystickData };
+export const planOfJoystickData = { name: "joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, read: readJoystickData, write: writeJoystickData };
 
 function readStartStopSonarPackets(r) {
   const frequency = r.u32be("frequency");
@@ -276,7 +276,7 @@ function writeStartStopSonarPackets(w, m) {
 }
 
 /** Plan of StartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStartStopSonarPackets = { name: "start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, tellsItsEnd: false, held: [], read: readStartStopSonarPackets, write: writeStartStopSonarPackets };
+export const planOfStartStopSonarPackets = { name: "start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, read: readStartStopSonarPackets, write: writeStartStopSonarPackets };
 
 function readConfirmStartStopSonarPackets(r) {
   const unknown_ = r.u32be("unknown");
@@ -290,7 +290,7 @@ function writeConfirmStartStopSonarPackets(w, m) {
 }
 
 /** Plan of ConfirmStartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmStartStopSonarPackets = { name: "confirm_start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readConfirmStartStopSonarPackets, write: writeConfirmStartStopSonarPackets };
+export const planOfConfirmStartStopSonarPackets = { name: "confirm_start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readConfirmStartStopSonarPackets, write: writeConfirmStartStopSonarPackets };
 
 function readSonarData(r) {
   const unknown_ = r.u32be("unknown");
@@ -325,7 +325,7 @@ function writeSonarData(w, m) {
 }
 
 /** Plan of SonarData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonarData = { name: "sonar_data", identities: [[[4, 4]], [[2, 2]]], sizes: { least: 8, greatest: 254, step: 3 }, known: null, tellsItsEnd: false, held: [], read: readSonarData, write: writeSonarData };
+export const planOfSonarData = { name: "sonar_data", identities: [[[4, 4]], [[2, 2]]], sizes: { least: 8, greatest: 254, step: 3 }, known: null, read: readSonarData, write: writeSonarData };
 
 function readInitializeDigitalIo(r) {
   const unknown_ = r.u32be("unknown");
@@ -337,7 +337,7 @@ function writeInitializeDigitalIo(w, m) {
 }
 
 /** Plan of InitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
-export const planOfInitializeDigitalIo = { name: "initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readInitializeDigitalIo, write: writeInitializeDigitalIo };
+export const planOfInitializeDigitalIo = { name: "initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readInitializeDigitalIo, write: writeInitializeDigitalIo };
 
 function readConfirmInitializeDigitalIo(r) {
   const unknown_ = r.u32be("unknown");
@@ -351,7 +351,7 @@ function writeConfirmInitializeDigitalIo(w, m) {
 }
 
 /** Plan of ConfirmInitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmInitializeDigitalIo = { name: "confirm_initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readConfirmInitializeDigitalIo, write: writeConfirmInitializeDigitalIo };
+export const planOfConfirmInitializeDigitalIo = { name: "confirm_initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readConfirmInitializeDigitalIo, write: writeConfirmInitializeDigitalIo };
 
 function readChangedBumpers(r) {
   const timestamp = r.u32be("timestamp");
@@ -367,7 +367,7 @@ function writeChangedBumpers(w, m) {
 }
 
 /** Plan of ChangedBumpers, for `readPayload` and `writePayload` of the runtime. */
-export const planOfChangedBumpers = { name: "changed_bumpers", identities: [[[5, 5]], [[1, 1]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readChangedBumpers, write: writeChangedBumpers };
+export const planOfChangedBumpers = { name: "changed_bumpers", identities: [[[5, 5]], [[1, 1]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readChangedBumpers, write: writeChangedBumpers };
 
 function readCheckIoChanged(r) {
   const timestamp = r.u32be("timestamp");
@@ -379,7 +379,7 @@ function writeCheckIoChanged(w, m) {
 }
 
 /** Plan of CheckIoChanged, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCheckIoChanged = { name: "check_io_changed", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readCheckIoChanged, write: writeCheckIoChanged };
+export const planOfCheckIoChanged = { name: "check_io_changed", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readCheckIoChanged, write: writeCheckIoChanged };
 
 function readCheckIoChangedAnswer(r) {
   const unknown_ = r.u32be("unknown");
@@ -400,7 +400,7 @@ function writeCheckIoChangedAnswer(w, m) {
 }
 
 /** Plan of CheckIoChangedAnswer, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCheckIoChangedAnswer = { name: "check_io_changed_answer", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 12, greatest: 12, step: 0 }, known: 12, tellsItsEnd: false, held: [], read: readCheckIoChangedAnswer, write: writeCheckIoChangedAnswer };
+export const planOfCheckIoChangedAnswer = { name: "check_io_changed_answer", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 12, greatest: 12, step: 0 }, known: 12, read: readCheckIoChangedAnswer, write: writeCheckIoChangedAnswer };
 
 function readChangedByte(r) {
   const timestamp = r.u32be("timestamp");
@@ -416,7 +416,7 @@ function writeChangedByte(w, m) {
 }
 
 /** Plan of ChangedByte, for `readPayload` and `writePayload` of the runtime. */
-export const planOfChangedByte = { name: "changed_byte", identities: [[[5, 5]], [[3, 3]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readChangedByte, write: writeChangedByte };
+export const planOfChangedByte = { name: "changed_byte", identities: [[[5, 5]], [[3, 3]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readChangedByte, write: writeChangedByte };
 
 function linuxFrame() {
   return {

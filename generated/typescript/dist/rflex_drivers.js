@@ -69,7 +69,7 @@ function readRequestSystemStatus(r) {
 function writeRequestSystemStatus(w, m) {}
 
 /** Plan of RequestSystemStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfRequestSystemStatus = { name: "request_system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readRequestSystemStatus, write: writeRequestSystemStatus };
+export const planOfRequestSystemStatus = { name: "request_system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readRequestSystemStatus, write: writeRequestSystemStatus };
 
 function readSystemStatus(r) {
   const timestamp = r.u32be("timestamp");
@@ -85,7 +85,7 @@ function writeSystemStatus(w, m) {
 }
 
 /** Plan of SystemStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSystemStatus = { name: "system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, tellsItsEnd: false, held: [], read: readSystemStatus, write: writeSystemStatus };
+export const planOfSystemStatus = { name: "system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, read: readSystemStatus, write: writeSystemStatus };
 
 function readLcdDump(r) {
   const timestamp = r.u32be("timestamp");
@@ -98,14 +98,14 @@ function readLcdDump(r) {
 function writeLcdDump(w, m) {
   w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
   w.u8(w.int(m.row, 0, 255, "row"));
-  const byte_count = w.int(m.byte_count ?? (rt.sizeOf(m.pixels)), 0, 255, "byte_count");
+  const byte_count = w.int(m.byte_count ?? rt.counted(m.pixels, 1, 0, 1), 0, 255, "byte_count");
   w.u8(byte_count);
   const count = byte_count;
   w.octets(m.pixels, count, count, false, "pixels");
 }
 
 /** Plan of LcdDump, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLcdDump = { name: "lcd_dump", identities: [[[1, 1]], [[0, 0]]], sizes: { least: 6, greatest: 255, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readLcdDump, write: writeLcdDump };
+export const planOfLcdDump = { name: "lcd_dump", identities: [[[1, 1]], [[0, 0]]], sizes: { least: 6, greatest: 255, step: 1 }, known: null, read: readLcdDump, write: writeLcdDump };
 
 function readAxisGetSystem(r) {
   const axis = r.u8("axis");
@@ -117,7 +117,7 @@ function writeAxisGetSystem(w, m) {
 }
 
 /** Plan of AxisGetSystem, for `readPayload` and `writePayload` of the runtime. */
-export const planOfAxisGetSystem = { name: "axis_get_system", identities: [[[2, 2]], [[0, 0]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readAxisGetSystem, write: writeAxisGetSystem };
+export const planOfAxisGetSystem = { name: "axis_get_system", identities: [[[2, 2]], [[0, 0]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readAxisGetSystem, write: writeAxisGetSystem };
 
 function readMotorCommand(r) {
   const axis = r.u8("axis");
@@ -137,7 +137,7 @@ function writeMotorCommand(w, m) {
 }
 
 /** Plan of MotorCommand, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorCommand = { name: "motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 14, greatest: 14, step: 0 }, known: 14, tellsItsEnd: false, held: [], read: readMotorCommand, write: writeMotorCommand };
+export const planOfMotorCommand = { name: "motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 14, greatest: 14, step: 0 }, known: 14, read: readMotorCommand, write: writeMotorCommand };
 
 function readConfirmMotorCommand(r) {
   const retval = r.u32be("retval");
@@ -153,7 +153,7 @@ function writeConfirmMotorCommand(w, m) {
 }
 
 /** Plan of ConfirmMotorCommand, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmMotorCommand = { name: "confirm_motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, tellsItsEnd: false, held: [], read: readConfirmMotorCommand, write: writeConfirmMotorCommand };
+export const planOfConfirmMotorCommand = { name: "confirm_motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, read: readConfirmMotorCommand, write: writeConfirmMotorCommand };
 
 function readSetDefaults(r) {
   return { message: "set_defaults" };
@@ -162,7 +162,7 @@ function readSetDefaults(r) {
 function writeSetDefaults(w, m) {}
 
 /** Plan of SetDefaults, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSetDefaults = { name: "set_defaults", identities: [[[2, 2]], [[10, 10]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readSetDefaults, write: writeSetDefaults };
+export const planOfSetDefaults = { name: "set_defaults", identities: [[[2, 2]], [[10, 10]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readSetDefaults, write: writeSetDefaults };
 
 function readBrakeSet(r) {
   return { message: "brake_set" };
@@ -171,7 +171,7 @@ function readBrakeSet(r) {
 function writeBrakeSet(w, m) {}
 
 /** Plan of BrakeSet, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBrakeSet = { name: "brake_set", identities: [[[2, 2]], [[11, 11]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readBrakeSet, write: writeBrakeSet };
+export const planOfBrakeSet = { name: "brake_set", identities: [[[2, 2]], [[11, 11]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readBrakeSet, write: writeBrakeSet };
 
 function readBrakeRelease(r) {
   return { message: "brake_release" };
@@ -180,7 +180,7 @@ function readBrakeRelease(r) {
 function writeBrakeRelease(w, m) {}
 
 /** Plan of BrakeRelease, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBrakeRelease = { name: "brake_release", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readBrakeRelease, write: writeBrakeRelease };
+export const planOfBrakeRelease = { name: "brake_release", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readBrakeRelease, write: writeBrakeRelease };
 
 function readBrakeReleaseAnswer(r) {
   const retval = r.u32be("retval");
@@ -194,7 +194,7 @@ function writeBrakeReleaseAnswer(w, m) {
 }
 
 /** Plan of BrakeReleaseAnswer, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBrakeReleaseAnswer = { name: "brake_release_answer", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readBrakeReleaseAnswer, write: writeBrakeReleaseAnswer };
+export const planOfBrakeReleaseAnswer = { name: "brake_release_answer", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readBrakeReleaseAnswer, write: writeBrakeReleaseAnswer };
 
 function readReadMotor(r) {
   const retval = r.u32be("retval");
@@ -227,7 +227,7 @@ function writeReadMotor(w, m) {
 }
 
 /** Plan of ReadMotor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReadMotor = { name: "read_motor", identities: [[[2, 2]], [[33, 33]]], sizes: { least: 25, greatest: 25, step: 0 }, known: 25, tellsItsEnd: false, held: [], read: readReadMotor, write: writeReadMotor };
+export const planOfReadMotor = { name: "read_motor", identities: [[[2, 2]], [[33, 33]]], sizes: { least: 25, greatest: 25, step: 0 }, known: 25, read: readReadMotor, write: writeReadMotor };
 
 function readStartStopMotorPackets(r) {
   const period = r.u32be("period");
@@ -241,7 +241,7 @@ function writeStartStopMotorPackets(w, m) {
 }
 
 /** Plan of StartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStartStopMotorPackets = { name: "start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readStartStopMotorPackets, write: writeStartStopMotorPackets };
+export const planOfStartStopMotorPackets = { name: "start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readStartStopMotorPackets, write: writeStartStopMotorPackets };
 
 function readConfirmStartStopMotorPackets(r) {
   const retval = r.u32be("retval");
@@ -255,7 +255,7 @@ function writeConfirmStartStopMotorPackets(w, m) {
 }
 
 /** Plan of ConfirmStartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmStartStopMotorPackets = { name: "confirm_start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readConfirmStartStopMotorPackets, write: writeConfirmStartStopMotorPackets };
+export const planOfConfirmStartStopMotorPackets = { name: "confirm_start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readConfirmStartStopMotorPackets, write: writeConfirmStartStopMotorPackets };
 
 function readRequestJoystickData(r) {
   return { message: "request_joystick_data" };
@@ -264,7 +264,7 @@ function readRequestJoystickData(r) {
 function writeRequestJoystickData(w, m) {}
 
 /** Plan of RequestJoystickData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfRequestJoystickData = { name: "request_joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readRequestJoystickData, write: writeRequestJoystickData };
+export const planOfRequestJoystickData = { name: "request_joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readRequestJoystickData, write: writeRequestJoystickData };
 
 function readJoystickData(r) {
   const timestamp = r.u32be("timestamp");
@@ -282,7 +282,7 @@ function writeJoystickData(w, m) {
 }
 
 /** Plan of JoystickData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfJoystickData = { name: "joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, tellsItsEnd: false, held: [], read: readJoystickData, write: writeJoystickData };
+export const planOfJoystickData = { name: "joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, read: readJoystickData, write: writeJoystickData };
 
 function readStartStopSonarPackets(r) {
   const echo_delay = r.u32be("echo_delay");
@@ -306,7 +306,7 @@ function writeStartStopSonarPackets(w, m) {
 }
 
 /** Plan of StartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStartStopSonarPackets = { name: "start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, tellsItsEnd: false, held: [], read: readStartStopSonarPackets, write: writeStartStopSonarPackets };
+export const planOfStartStopSonarPackets = { name: "start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, read: readStartStopSonarPackets, write: writeStartStopSonarPackets };
 
 function readConfirmStartStopSonarPackets(r) {
   const retval = r.u32be("retval");
@@ -320,7 +320,7 @@ function writeConfirmStartStopSonarPackets(w, m) {
 }
 
 /** Plan of ConfirmStartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmStartStopSonarPackets = { name: "confirm_start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readConfirmStartStopSonarPackets, write: writeConfirmStartStopSonarPackets };
+export const planOfConfirmStartStopSonarPackets = { name: "confirm_start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readConfirmStartStopSonarPackets, write: writeConfirmStartStopSonarPackets };
 
 function readSonarData(r) {
   const retval = r.u32be("retval");
@@ -355,7 +355,7 @@ function writeSonarData(w, m) {
 }
 
 /** Plan of SonarData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonarData = { name: "sonar_data", identities: [[[4, 4]], [[2, 2]]], sizes: { least: 8, greatest: 254, step: 3 }, known: null, tellsItsEnd: false, held: [], read: readSonarData, write: writeSonarData };
+export const planOfSonarData = { name: "sonar_data", identities: [[[4, 4]], [[2, 2]]], sizes: { least: 8, greatest: 254, step: 3 }, known: null, read: readSonarData, write: writeSonarData };
 
 function readInitializeDigitalIo(r) {
   const period = r.u32be("period");
@@ -367,7 +367,7 @@ function writeInitializeDigitalIo(w, m) {
 }
 
 /** Plan of InitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
-export const planOfInitializeDigitalIo = { name: "initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readInitializeDigitalIo, write: writeInitializeDigitalIo };
+export const planOfInitializeDigitalIo = { name: "initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readInitializeDigitalIo, write: writeInitializeDigitalIo };
 
 function readConfirmInitializeDigitalIo(r) {
   const retval = r.u32be("retval");
@@ -381,7 +381,7 @@ function writeConfirmInitializeDigitalIo(w, m) {
 }
 
 /** Plan of ConfirmInitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmInitializeDigitalIo = { name: "confirm_initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readConfirmInitializeDigitalIo, write: writeConfirmInitializeDigitalIo };
+export const planOfConfirmInitializeDigitalIo = { name: "confirm_initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readConfirmInitializeDigitalIo, write: writeConfirmInitializeDigitalIo };
 
 function readChangedBumpers(r) {
   const timestamp = r.u32be("timestamp");
@@ -397,7 +397,7 @@ function writeChangedBumpers(w, m) {
 }
 
 /** Plan of ChangedBumpers, for `readPayload` and `writePayload` of the runtime. */
-export const planOfChangedBumpers = { name: "changed_bumpers", identities: [[[5, 5]], [[1, 1]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readChangedBumpers, write: writeChangedBumpers };
+export const planOfChangedBumpers = { name: "changed_bumpers", identities: [[[5, 5]], [[1, 1]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readChangedBumpers, write: writeChangedBumpers };
 
 function readCheckIoChanged(r) {
   const timestamp = r.u32be("timestamp");
@@ -409,7 +409,7 @@ function writeCheckIoChanged(w, m) {
 }
 
 /** Plan of CheckIoChanged, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCheckIoChanged = { name: "check_io_changed", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readCheckIoChanged, write: writeCheckIoChanged };
+export const planOfCheckIoChanged = { name: "check_io_changed", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readCheckIoChanged, write: writeCheckIoChanged };
 
 function readCheckIoChangedAnswer(r) {
   const retval = r.u32be("retval");
@@ -425,7 +425,7 @@ function writeCheckIoChangedAnswer(w, m) {
 }
 
 /** Plan of CheckIoChangedAnswer, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCheckIoChangedAnswer = { name: "check_io_changed_answer", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 12, greatest: 12, step: 0 }, known: 12, tellsItsEnd: false, held: [], read: readCheckIoChangedAnswer, write: writeCheckIoChangedAnswer };
+export const planOfCheckIoChangedAnswer = { name: "check_io_changed_answer", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 12, greatest: 12, step: 0 }, known: 12, read: readCheckIoChangedAnswer, write: writeCheckIoChangedAnswer };
 
 function readChangedByte(r) {
   const timestamp = r.u32be("timestamp");
@@ -441,7 +441,7 @@ function writeChangedByte(w, m) {
 }
 
 /** Plan of ChangedByte, for `readPayload` and `writePayload` of the runtime. */
-export const planOfChangedByte = { name: "changed_byte", identities: [[[5, 5]], [[3, 3]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readChangedByte, write: writeChangedByte };
+export const planOfChangedByte = { name: "changed_byte", identities: [[[5, 5]], [[3, 3]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readChangedByte, write: writeChangedByte };
 
 function readIrRun(r) {
   const unknown_1 = r.u32be("unknown_1");
@@ -471,7 +471,7 @@ function writeIrRun(w, m) {
 }
 
 /** Plan of IrRun, for `readPayload` and `writePayload` of the runtime. */
-export const planOfIrRun = { name: "ir_run", identities: [[[6, 6]], [[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, tellsItsEnd: false, held: [], read: readIrRun, write: writeIrRun };
+export const planOfIrRun = { name: "ir_run", identities: [[[6, 6]], [[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, read: readIrRun, write: writeIrRun };
 
 function readIrReport(r) {
   const data = r.rest(0, 255, false, "data");
@@ -483,7 +483,7 @@ function writeIrReport(w, m) {
 }
 
 /** Plan of IrReport, for `readPayload` and `writePayload` of the runtime. */
-export const planOfIrReport = { name: "ir_report", identities: [[[6, 6]], [[1, 1]]], sizes: { least: 1, greatest: 255, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readIrReport, write: writeIrReport };
+export const planOfIrReport = { name: "ir_report", identities: [[[6, 6]], [[1, 1]]], sizes: { least: 1, greatest: 255, step: 1 }, known: null, read: readIrReport, write: writeIrReport };
 
 /** To be corrected by the power offset of each robot; see the decision battery_scale in V. */
 export function systemStatusBatteryVoltageV(record) {

@@ -74,7 +74,7 @@ function writeMoveManual(w, m) {
 }
 
 /** Plan of MoveManual, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveManual = { name: "move_manual", identities: [[[128, 128]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readMoveManual, write: writeMoveManual };
+export const planOfMoveManual = { name: "move_manual", identities: [[[128, 128]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, read: readMoveManual, write: writeMoveManual };
 
 function readMoveRelativeTwostep(r) {
   const angle = r.sint(2, 14, true, 128, "angle");
@@ -88,7 +88,7 @@ function writeMoveRelativeTwostep(w, m) {
 }
 
 /** Plan of MoveRelativeTwostep, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveRelativeTwostep = { name: "move_relative_twostep", identities: [[[129, 129]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readMoveRelativeTwostep, write: writeMoveRelativeTwostep };
+export const planOfMoveRelativeTwostep = { name: "move_relative_twostep", identities: [[[129, 129]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readMoveRelativeTwostep, write: writeMoveRelativeTwostep };
 
 function readMoveRelativeArc(r) {
   const angle = r.sint(2, 14, true, 128, "angle");
@@ -102,7 +102,7 @@ function writeMoveRelativeArc(w, m) {
 }
 
 /** Plan of MoveRelativeArc, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveRelativeArc = { name: "move_relative_arc", identities: [[[130, 130]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readMoveRelativeArc, write: writeMoveRelativeArc };
+export const planOfMoveRelativeArc = { name: "move_relative_arc", identities: [[[130, 130]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readMoveRelativeArc, write: writeMoveRelativeArc };
 
 function readMaintenance(r) {
   const magic = [];
@@ -176,7 +176,7 @@ function writeMaintenance(w, m) {
 }
 
 /** Plan of Maintenance, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMaintenance = { name: "maintenance", identities: [[[254, 254]]], sizes: { least: 4, greatest: 7, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readMaintenance, write: writeMaintenance };
+export const planOfMaintenance = { name: "maintenance", identities: [[[254, 254]]], sizes: { least: 4, greatest: 7, step: 1 }, known: null, read: readMaintenance, write: writeMaintenance };
 
 function readGyro(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -194,7 +194,7 @@ function writeGyro(w, m) {
 }
 
 /** Plan of Gyro, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGyro = { name: "gyro", identities: [[[128, 128]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readGyro, write: writeGyro };
+export const planOfGyro = { name: "gyro", identities: [[[128, 128]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readGyro, write: writeGyro };
 
 function readXcel(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -212,7 +212,7 @@ function writeXcel(w, m) {
 }
 
 /** Plan of Xcel, for `readPayload` and `writePayload` of the runtime. */
-export const planOfXcel = { name: "xcel", identities: [[[129, 129]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readXcel, write: writeXcel };
+export const planOfXcel = { name: "xcel", identities: [[[129, 129]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readXcel, write: writeXcel };
 
 function readCompass(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -230,7 +230,7 @@ function writeCompass(w, m) {
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCompass = { name: "compass", identities: [[[130, 130]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readCompass, write: writeCompass };
+export const planOfCompass = { name: "compass", identities: [[[130, 130]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readCompass, write: writeCompass };
 
 function readOptflow(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -248,7 +248,7 @@ function writeOptflow(w, m) {
 }
 
 /** Plan of Optflow, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOptflow = { name: "optflow", identities: [[[131, 131]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, tellsItsEnd: false, held: [], read: readOptflow, write: writeOptflow };
+export const planOfOptflow = { name: "optflow", identities: [[[131, 131]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, read: readOptflow, write: writeOptflow };
 
 function readLidar(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -272,7 +272,7 @@ function writeLidar(w, m) {
 }
 
 /** Plan of Lidar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLidar = { name: "lidar", identities: [[[132, 132]]], sizes: { least: 721, greatest: 721, step: 0 }, known: 721, tellsItsEnd: false, held: [], read: readLidar, write: writeLidar };
+export const planOfLidar = { name: "lidar", identities: [[[132, 132]]], sizes: { least: 721, greatest: 721, step: 0 }, known: 721, read: readLidar, write: writeLidar };
 
 function readSonar(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -296,7 +296,7 @@ function writeSonar(w, m) {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar = { name: "sonar", identities: [[[133, 133]]], sizes: { least: 15, greatest: 15, step: 0 }, known: 15, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar = { name: "sonar", identities: [[[133, 133]]], sizes: { least: 15, greatest: 15, step: 0 }, known: 15, read: readSonar, write: writeSonar };
 
 function readFacing(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -312,7 +312,7 @@ function writeFacing(w, m) {
 }
 
 /** Plan of Facing, for `readPayload` and `writePayload` of the runtime. */
-export const planOfFacing = { name: "facing", identities: [[[160, 160]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, tellsItsEnd: false, held: [], read: readFacing, write: writeFacing };
+export const planOfFacing = { name: "facing", identities: [[[160, 160]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, read: readFacing, write: writeFacing };
 
 /** How far to turn in deg. */
 export function moveRelativeTwostepAngleDeg(record) {

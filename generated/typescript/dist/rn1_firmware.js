@@ -66,7 +66,7 @@ function writeMoveManual(w, m) {
 }
 
 /** Plan of MoveManual, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveManual = { name: "move_manual", identities: [[[128, 128]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readMoveManual, write: writeMoveManual };
+export const planOfMoveManual = { name: "move_manual", identities: [[[128, 128]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, read: readMoveManual, write: writeMoveManual };
 
 function readMoveRelativeTwostep(r) {
   const angle = r.sint(2, 14, false, 128, "angle");
@@ -80,7 +80,7 @@ function writeMoveRelativeTwostep(w, m) {
 }
 
 /** Plan of MoveRelativeTwostep, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveRelativeTwostep = { name: "move_relative_twostep", identities: [[[129, 129]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readMoveRelativeTwostep, write: writeMoveRelativeTwostep };
+export const planOfMoveRelativeTwostep = { name: "move_relative_twostep", identities: [[[129, 129]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readMoveRelativeTwostep, write: writeMoveRelativeTwostep };
 
 function readDecreasePhaseAngle(r) {
   const ignored = r.uint(1, 7, true, 128, "ignored");
@@ -92,7 +92,7 @@ function writeDecreasePhaseAngle(w, m) {
 }
 
 /** Plan of DecreasePhaseAngle, for `readPayload` and `writePayload` of the runtime. */
-export const planOfDecreasePhaseAngle = { name: "decrease_phase_angle", identities: [[[209, 209]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readDecreasePhaseAngle, write: writeDecreasePhaseAngle };
+export const planOfDecreasePhaseAngle = { name: "decrease_phase_angle", identities: [[[209, 209]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readDecreasePhaseAngle, write: writeDecreasePhaseAngle };
 
 function readIncreasePhaseAngle(r) {
   const ignored = r.uint(1, 7, true, 128, "ignored");
@@ -104,7 +104,7 @@ function writeIncreasePhaseAngle(w, m) {
 }
 
 /** Plan of IncreasePhaseAngle, for `readPayload` and `writePayload` of the runtime. */
-export const planOfIncreasePhaseAngle = { name: "increase_phase_angle", identities: [[[210, 210]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readIncreasePhaseAngle, write: writeIncreasePhaseAngle };
+export const planOfIncreasePhaseAngle = { name: "increase_phase_angle", identities: [[[210, 210]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readIncreasePhaseAngle, write: writeIncreasePhaseAngle };
 
 function readMaintenance(r) {
   const magic = [];
@@ -159,7 +159,7 @@ function writeMaintenance(w, m) {
 }
 
 /** Plan of Maintenance, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMaintenance = { name: "maintenance", identities: [[[254, 254]]], sizes: { least: 4, greatest: 5, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readMaintenance, write: writeMaintenance };
+export const planOfMaintenance = { name: "maintenance", identities: [[[254, 254]]], sizes: { least: 4, greatest: 5, step: 1 }, known: null, read: readMaintenance, write: writeMaintenance };
 
 function readGyro(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -177,7 +177,7 @@ function writeGyro(w, m) {
 }
 
 /** Plan of Gyro, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGyro = { name: "gyro", identities: [[[128, 128]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readGyro, write: writeGyro };
+export const planOfGyro = { name: "gyro", identities: [[[128, 128]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readGyro, write: writeGyro };
 
 function readXcel(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -195,7 +195,7 @@ function writeXcel(w, m) {
 }
 
 /** Plan of Xcel, for `readPayload` and `writePayload` of the runtime. */
-export const planOfXcel = { name: "xcel", identities: [[[129, 129]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readXcel, write: writeXcel };
+export const planOfXcel = { name: "xcel", identities: [[[129, 129]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readXcel, write: writeXcel };
 
 function readCompass(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -213,7 +213,7 @@ function writeCompass(w, m) {
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCompass = { name: "compass", identities: [[[130, 130]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readCompass, write: writeCompass };
+export const planOfCompass = { name: "compass", identities: [[[130, 130]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readCompass, write: writeCompass };
 
 function readLidar(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -237,7 +237,7 @@ function writeLidar(w, m) {
 }
 
 /** Plan of Lidar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLidar = { name: "lidar", identities: [[[132, 132]]], sizes: { least: 721, greatest: 721, step: 0 }, known: 721, tellsItsEnd: false, held: [], read: readLidar, write: writeLidar };
+export const planOfLidar = { name: "lidar", identities: [[[132, 132]]], sizes: { least: 721, greatest: 721, step: 0 }, known: 721, read: readLidar, write: writeLidar };
 
 function readSonar(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -261,7 +261,7 @@ function writeSonar(w, m) {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar = { name: "sonar", identities: [[[133, 133]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar = { name: "sonar", identities: [[[133, 133]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readSonar, write: writeSonar };
 
 function readFacing(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -277,7 +277,7 @@ function writeFacing(w, m) {
 }
 
 /** Plan of Facing, for `readPayload` and `writePayload` of the runtime. */
-export const planOfFacing = { name: "facing", identities: [[[160, 160]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, tellsItsEnd: false, held: [], read: readFacing, write: writeFacing };
+export const planOfFacing = { name: "facing", identities: [[[160, 160]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, read: readFacing, write: writeFacing };
 
 function readOptflowIntegral(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -293,7 +293,7 @@ function writeOptflowIntegral(w, m) {
 }
 
 /** Plan of OptflowIntegral, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOptflowIntegral = { name: "optflow_integral", identities: [[[161, 161]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, tellsItsEnd: false, held: [], read: readOptflowIntegral, write: writeOptflowIntegral };
+export const planOfOptflowIntegral = { name: "optflow_integral", identities: [[[161, 161]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, read: readOptflowIntegral, write: writeOptflowIntegral };
 
 function readMotorControllerMessage(r) {
   const last_msg = r.uint(2, 14, false, 128, "last_msg");
@@ -305,7 +305,7 @@ function writeMotorControllerMessage(w, m) {
 }
 
 /** Plan of MotorControllerMessage, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorControllerMessage = { name: "motor_controller_message", identities: [[[209, 209]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readMotorControllerMessage, write: writeMotorControllerMessage };
+export const planOfMotorControllerMessage = { name: "motor_controller_message", identities: [[[209, 209]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, read: readMotorControllerMessage, write: writeMotorControllerMessage };
 
 function readDebugNumbers(r) {
   const dbg1 = r.sint(5, 35, false, 128, "dbg1");
@@ -323,7 +323,7 @@ function writeDebugNumbers(w, m) {
 }
 
 /** Plan of DebugNumbers, for `readPayload` and `writePayload` of the runtime. */
-export const planOfDebugNumbers = { name: "debug_numbers", identities: [[[210, 210]]], sizes: { least: 20, greatest: 20, step: 0 }, known: 20, tellsItsEnd: false, held: [], read: readDebugNumbers, write: writeDebugNumbers };
+export const planOfDebugNumbers = { name: "debug_numbers", identities: [[[210, 210]]], sizes: { least: 20, greatest: 20, step: 0 }, known: 20, read: readDebugNumbers, write: writeDebugNumbers };
 
 /** How far to turn in deg. */
 export function moveRelativeTwostepAngleDeg(record) {

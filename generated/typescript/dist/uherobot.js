@@ -52,7 +52,7 @@ function writeMotorsServosLeds(w, m) {
 }
 
 /** Plan of MotorsServosLeds, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsServosLeds = { name: "motors_servos_leds", identities: [[[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, tellsItsEnd: false, held: [], read: readMotorsServosLeds, write: writeMotorsServosLeds };
+export const planOfMotorsServosLeds = { name: "motors_servos_leds", identities: [[[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, read: readMotorsServosLeds, write: writeMotorsServosLeds };
 
 function readMotorsTwoServos(r) {
   const motor_1 = r.i16be("motor_1");
@@ -78,7 +78,7 @@ function writeMotorsTwoServos(w, m) {
 }
 
 /** Plan of MotorsTwoServos, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsTwoServos = { name: "motors_two_servos", identities: [[[1, 1]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readMotorsTwoServos, write: writeMotorsTwoServos };
+export const planOfMotorsTwoServos = { name: "motors_two_servos", identities: [[[1, 1]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readMotorsTwoServos, write: writeMotorsTwoServos };
 
 function readMotorTest(r) {
   const motor_1 = r.i16be("motor_1");
@@ -92,7 +92,7 @@ function writeMotorTest(w, m) {
 }
 
 /** Plan of MotorTest, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorTest = { name: "motor_test", identities: [[[3, 3]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readMotorTest, write: writeMotorTest };
+export const planOfMotorTest = { name: "motor_test", identities: [[[3, 3]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readMotorTest, write: writeMotorTest };
 
 function readStatus(r) {
   const voltage = r.i16be("voltage");
@@ -108,7 +108,7 @@ function writeStatus(w, m) {
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStatus = { name: "status", identities: [[[1, 1]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, tellsItsEnd: false, held: [], read: readStatus, write: writeStatus };
+export const planOfStatus = { name: "status", identities: [[[1, 1]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, read: readStatus, write: writeStatus };
 
 /** Voltage in V. */
 export function statusVoltageV(record) {

@@ -56,7 +56,7 @@ function writeMotorsServosLeds(w, m) {
 }
 
 /** Plan of MotorsServosLeds, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsServosLeds = { name: "motors_servos_leds", identities: [[[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, tellsItsEnd: false, held: [], read: readMotorsServosLeds, write: writeMotorsServosLeds };
+export const planOfMotorsServosLeds = { name: "motors_servos_leds", identities: [[[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, read: readMotorsServosLeds, write: writeMotorsServosLeds };
 
 function readStatus(r) {
   const reserved = r.i16be("reserved");
@@ -86,7 +86,7 @@ function writeStatus(w, m) {
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStatus = { name: "status", identities: [[[1, 1]]], sizes: { least: 12, greatest: 12, step: 0 }, known: 12, tellsItsEnd: false, held: [], read: readStatus, write: writeStatus };
+export const planOfStatus = { name: "status", identities: [[[1, 1]]], sizes: { least: 12, greatest: 12, step: 0 }, known: 12, read: readStatus, write: writeStatus };
 
 /** Drive of the right motor in percent. */
 export function motorsServosLedsRightMotorPercent(record) {

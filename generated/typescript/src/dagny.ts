@@ -246,7 +246,7 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar: rt.MessagePlan<Sonar> = { name: "sonar", identities: [[[83, 83]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar: rt.MessagePlan<Sonar> = { name: "sonar", identities: [[[83, 83]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readSonar, write: writeSonar };
 
 function readGps(r: rt.Reader): Gps {
   const data = r.rest(0, 128, false, "data");
@@ -258,7 +258,7 @@ function writeGps(w: rt.Writer, m: Gps): void {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps: rt.MessagePlan<Gps> = { name: "gps", identities: [[[71, 71]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readGps, write: writeGps };
+export const planOfGps: rt.MessagePlan<Gps> = { name: "gps", identities: [[[71, 71]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readGps, write: writeGps };
 
 function readBump(r: rt.Reader): Bump {
   const data = r.rest(0, 128, false, "data");
@@ -270,7 +270,7 @@ function writeBump(w: rt.Writer, m: Bump): void {
 }
 
 /** Plan of Bump, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBump: rt.MessagePlan<Bump> = { name: "bump", identities: [[[66, 66]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readBump, write: writeBump };
+export const planOfBump: rt.MessagePlan<Bump> = { name: "bump", identities: [[[66, 66]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readBump, write: writeBump };
 
 function readOdometry(r: rt.Reader): Odometry {
   const data = r.rest(0, 128, false, "data");
@@ -282,7 +282,7 @@ function writeOdometry(w: rt.Writer, m: Odometry): void {
 }
 
 /** Plan of Odometry, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOdometry: rt.MessagePlan<Odometry> = { name: "odometry", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readOdometry, write: writeOdometry };
+export const planOfOdometry: rt.MessagePlan<Odometry> = { name: "odometry", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readOdometry, write: writeOdometry };
 
 function readSpeed(r: rt.Reader): Speed {
   const data = r.rest(0, 128, false, "data");
@@ -294,7 +294,7 @@ function writeSpeed(w: rt.Writer, m: Speed): void {
 }
 
 /** Plan of Speed, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSpeed: rt.MessagePlan<Speed> = { name: "speed", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readSpeed, write: writeSpeed };
+export const planOfSpeed: rt.MessagePlan<Speed> = { name: "speed", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readSpeed, write: writeSpeed };
 
 function readWheelSlip(r: rt.Reader): WheelSlip {
   const data = r.rest(0, 128, false, "data");
@@ -306,7 +306,7 @@ function writeWheelSlip(w: rt.Writer, m: WheelSlip): void {
 }
 
 /** Plan of WheelSlip, for `readPayload` and `writePayload` of the runtime. */
-export const planOfWheelSlip: rt.MessagePlan<WheelSlip> = { name: "wheel_slip", identities: [[[87, 87]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readWheelSlip, write: writeWheelSlip };
+export const planOfWheelSlip: rt.MessagePlan<WheelSlip> = { name: "wheel_slip", identities: [[[87, 87]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readWheelSlip, write: writeWheelSlip };
 
 function readBattery(r: rt.Reader): Battery {
   const data = r.rest(0, 128, false, "data");
@@ -318,7 +318,7 @@ function writeBattery(w: rt.Writer, m: Battery): void {
 }
 
 /** Plan of Battery, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBattery: rt.MessagePlan<Battery> = { name: "battery", identities: [[[98, 98]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readBattery, write: writeBattery };
+export const planOfBattery: rt.MessagePlan<Battery> = { name: "battery", identities: [[[98, 98]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readBattery, write: writeBattery };
 
 function readReflexSettings(r: rt.Reader): ReflexSettings {
   const data = r.rest(0, 128, false, "data");
@@ -330,7 +330,7 @@ function writeReflexSettings(w: rt.Writer, m: ReflexSettings): void {
 }
 
 /** Plan of ReflexSettings, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReflexSettings: rt.MessagePlan<ReflexSettings> = { name: "reflex_settings", identities: [[[82, 82]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readReflexSettings, write: writeReflexSettings };
+export const planOfReflexSettings: rt.MessagePlan<ReflexSettings> = { name: "reflex_settings", identities: [[[82, 82]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readReflexSettings, write: writeReflexSettings };
 
 function readHardwareStatus(r: rt.Reader): HardwareStatus {
   const data = r.rest(0, 128, false, "data");
@@ -342,7 +342,7 @@ function writeHardwareStatus(w: rt.Writer, m: HardwareStatus): void {
 }
 
 /** Plan of HardwareStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfHardwareStatus: rt.MessagePlan<HardwareStatus> = { name: "hardware_status", identities: [[[72, 72]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readHardwareStatus, write: writeHardwareStatus };
+export const planOfHardwareStatus: rt.MessagePlan<HardwareStatus> = { name: "hardware_status", identities: [[[72, 72]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readHardwareStatus, write: writeHardwareStatus };
 
 function readMotor(r: rt.Reader): Motor {
   const s = r.u8("s");
@@ -354,7 +354,7 @@ function writeMotor(w: rt.Writer, m: Motor): void {
 }
 
 /** Plan of Motor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor: rt.MessagePlan<Motor> = { name: "motor", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMotor, write: writeMotor };
+export const planOfMotor: rt.MessagePlan<Motor> = { name: "motor", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readMotor, write: writeMotor };
 
 function readSteering(r: rt.Reader): Steering {
   const s = r.u8("s");
@@ -366,7 +366,7 @@ function writeSteering(w: rt.Writer, m: Steering): void {
 }
 
 /** Plan of Steering, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSteering: rt.MessagePlan<Steering> = { name: "steering", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readSteering, write: writeSteering };
+export const planOfSteering: rt.MessagePlan<Steering> = { name: "steering", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readSteering, write: writeSteering };
 
 function readReflex(r: rt.Reader): Reflex {
   const reflex = r.u8("reflex");
@@ -378,7 +378,7 @@ function writeReflex(w: rt.Writer, m: Reflex): void {
 }
 
 /** Plan of Reflex, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReflex: rt.MessagePlan<Reflex> = { name: "reflex", identities: [[[82, 82]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readReflex, write: writeReflex };
+export const planOfReflex: rt.MessagePlan<Reflex> = { name: "reflex", identities: [[[82, 82]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readReflex, write: writeReflex };
 
 function readPowerDown(r: rt.Reader): PowerDown {
   const code = r.constant(r.u8("code"), 3, "code");
@@ -390,7 +390,7 @@ function writePowerDown(w: rt.Writer, m: PowerDownInput): void {
 }
 
 /** Plan of PowerDown, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPowerDown: rt.MessagePlan<PowerDown> = { name: "power_down", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readPowerDown, write: writePowerDown };
+export const planOfPowerDown: rt.MessagePlan<PowerDown> = { name: "power_down", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readPowerDown, write: writePowerDown };
 
 function readPower(r: rt.Reader): Power {
   const code = r.u8("code");
@@ -402,7 +402,7 @@ function writePower(w: rt.Writer, m: Power): void {
 }
 
 /** Plan of Power, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPower: rt.MessagePlan<Power> = { name: "power", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readPower, write: writePower };
+export const planOfPower: rt.MessagePlan<Power> = { name: "power", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readPower, write: writePower };
 
 function readLaser(r: rt.Reader): Laser {
   const readings = [];
@@ -424,7 +424,7 @@ function writeLaser(w: rt.Writer, m: Laser): void {
 }
 
 /** Plan of Laser, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLaser: rt.MessagePlan<Laser> = { name: "laser", identities: [[[76, 76]]], sizes: { least: 0, greatest: 512, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readLaser, write: writeLaser };
+export const planOfLaser: rt.MessagePlan<Laser> = { name: "laser", identities: [[[76, 76]]], sizes: { least: 0, greatest: 512, step: 1 }, known: null, read: readLaser, write: writeLaser };
 
 function readCommand(r: rt.Reader): Command {
   const data = r.rest(0, 128, false, "data");
@@ -436,7 +436,7 @@ function writeCommand(w: rt.Writer, m: Command): void {
 }
 
 /** Plan of Command, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCommand: rt.MessagePlan<Command> = { name: "command", identities: [[[67, 67]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readCommand, write: writeCommand };
+export const planOfCommand: rt.MessagePlan<Command> = { name: "command", identities: [[[67, 67]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readCommand, write: writeCommand };
 
 /** What to do with the reflex; bits 6 to 7 of reflex. */
 export function reflexReflexCommand(record: Pick<Reflex, "reflex">): ReflexReflexCommand | (number & {}) {

@@ -321,7 +321,7 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar: rt.MessagePlan<Sonar> = { name: "sonar", identities: [[[83, 83]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar: rt.MessagePlan<Sonar> = { name: "sonar", identities: [[[83, 83]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, read: readSonar, write: writeSonar };
 
 function readGps(r: rt.Reader): Gps {
   const nmea = rt.latin1(r.rest(0, 126, false, "nmea"));
@@ -333,7 +333,7 @@ function writeGps(w: rt.Writer, m: Gps): void {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps: rt.MessagePlan<Gps> = { name: "gps", identities: [[[71, 71]]], sizes: { least: 0, greatest: 126, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readGps, write: writeGps };
+export const planOfGps: rt.MessagePlan<Gps> = { name: "gps", identities: [[[71, 71]]], sizes: { least: 0, greatest: 126, step: 1 }, known: null, read: readGps, write: writeGps };
 
 function readOdometry(r: rt.Reader): Odometry {
   const right_count = r.u16("right_count");
@@ -366,7 +366,7 @@ function writeOdometry(w: rt.Writer, m: Odometry): void {
 }
 
 /** Plan of Odometry, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOdometry: rt.MessagePlan<Odometry> = { name: "odometry", identities: [[[79, 79]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, tellsItsEnd: false, held: [], read: readOdometry, write: writeOdometry };
+export const planOfOdometry: rt.MessagePlan<Odometry> = { name: "odometry", identities: [[[79, 79]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, read: readOdometry, write: writeOdometry };
 
 function readBattery(r: rt.Reader): Battery {
   const main_battery = r.u8("main_battery");
@@ -382,7 +382,7 @@ function writeBattery(w: rt.Writer, m: Battery): void {
 }
 
 /** Plan of Battery, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBattery: rt.MessagePlan<Battery> = { name: "battery", identities: [[[98, 98]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, tellsItsEnd: false, held: [], read: readBattery, write: writeBattery };
+export const planOfBattery: rt.MessagePlan<Battery> = { name: "battery", identities: [[[98, 98]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, read: readBattery, write: writeBattery };
 
 function readCompass(r: rt.Reader): Compass {
   const x = r.i16("x");
@@ -396,7 +396,7 @@ function writeCompass(w: rt.Writer, m: Compass): void {
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCompass: rt.MessagePlan<Compass> = { name: "compass", identities: [[[67, 67]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readCompass, write: writeCompass };
+export const planOfCompass: rt.MessagePlan<Compass> = { name: "compass", identities: [[[67, 67]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readCompass, write: writeCompass };
 
 function readMotor(r: rt.Reader): Motor {
   const speed = r.i8("speed");
@@ -408,7 +408,7 @@ function writeMotor(w: rt.Writer, m: Motor): void {
 }
 
 /** Plan of Motor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor: rt.MessagePlan<Motor> = { name: "motor", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMotor, write: writeMotor };
+export const planOfMotor: rt.MessagePlan<Motor> = { name: "motor", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readMotor, write: writeMotor };
 
 function readDrive(r: rt.Reader): Drive {
   const speed = r.i8("speed");
@@ -422,7 +422,7 @@ function writeDrive(w: rt.Writer, m: Drive): void {
 }
 
 /** Plan of Drive, for `readPayload` and `writePayload` of the runtime. */
-export const planOfDrive: rt.MessagePlan<Drive> = { name: "drive", identities: [[[77, 77]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readDrive, write: writeDrive };
+export const planOfDrive: rt.MessagePlan<Drive> = { name: "drive", identities: [[[77, 77]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, read: readDrive, write: writeDrive };
 
 function readSteering(r: rt.Reader): Steering {
   const position = r.u8("position");
@@ -434,7 +434,7 @@ function writeSteering(w: rt.Writer, m: Steering): void {
 }
 
 /** Plan of Steering, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSteering: rt.MessagePlan<Steering> = { name: "steering", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readSteering, write: writeSteering };
+export const planOfSteering: rt.MessagePlan<Steering> = { name: "steering", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readSteering, write: writeSteering };
 
 function readPower(r: rt.Reader): Power {
   const code = r.u8("code");
@@ -446,7 +446,7 @@ function writePower(w: rt.Writer, m: Power): void {
 }
 
 /** Plan of Power, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPower: rt.MessagePlan<Power> = { name: "power", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readPower, write: writePower };
+export const planOfPower: rt.MessagePlan<Power> = { name: "power", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readPower, write: writePower };
 
 function readGpsPosition(r: rt.Reader): GpsPosition {
   const latitude = r.i32("latitude");
@@ -460,7 +460,7 @@ function writeGpsPosition(w: rt.Writer, m: GpsPosition): void {
 }
 
 /** Plan of GpsPosition, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGpsPosition: rt.MessagePlan<GpsPosition> = { name: "gps_position", identities: [[[71, 71]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readGpsPosition, write: writeGpsPosition };
+export const planOfGpsPosition: rt.MessagePlan<GpsPosition> = { name: "gps_position", identities: [[[71, 71]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readGpsPosition, write: writeGpsPosition };
 
 function readLaser(r: rt.Reader): Laser {
   const readings = [];
@@ -482,7 +482,7 @@ function writeLaser(w: rt.Writer, m: Laser): void {
 }
 
 /** Plan of Laser, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLaser: rt.MessagePlan<Laser> = { name: "laser", identities: [[[76, 76]]], sizes: { least: 0, greatest: 512, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readLaser, write: writeLaser };
+export const planOfLaser: rt.MessagePlan<Laser> = { name: "laser", identities: [[[76, 76]]], sizes: { least: 0, greatest: 512, step: 1 }, known: null, read: readLaser, write: writeLaser };
 
 function readShutdown(r: rt.Reader): Shutdown {
   const confirmation = r.constant(r.text(7, rt.PLAIN_TEXT, false, "confirmation"), "ZZZZZZZ", "confirmation");
@@ -494,7 +494,7 @@ function writeShutdown(w: rt.Writer, m: ShutdownInput): void {
 }
 
 /** Plan of Shutdown, for `readPayload` and `writePayload` of the runtime. */
-export const planOfShutdown: rt.MessagePlan<Shutdown> = { name: "shutdown", identities: [[[90, 90]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readShutdown, write: writeShutdown };
+export const planOfShutdown: rt.MessagePlan<Shutdown> = { name: "shutdown", identities: [[[90, 90]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readShutdown, write: writeShutdown };
 
 /** Latitude in deg. */
 export function gpsPositionLatitudeDeg(record: Pick<GpsPosition, "latitude">): number {

@@ -266,7 +266,7 @@ function writeStop(w: rt.Writer, m: Stop): void {
 }
 
 /** Plan of Stop, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStop: rt.MessagePlan<Stop> = { name: "stop", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readStop, write: writeStop };
+export const planOfStop: rt.MessagePlan<Stop> = { name: "stop", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readStop, write: writeStop };
 
 function readReset(r: rt.Reader): Reset {
   return { message: "reset" };
@@ -275,7 +275,7 @@ function readReset(r: rt.Reader): Reset {
 function writeReset(w: rt.Writer, m: Reset): void {}
 
 /** Plan of Reset, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReset: rt.MessagePlan<Reset> = { name: "reset", identities: [[[82, 82]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readReset, write: writeReset };
+export const planOfReset: rt.MessagePlan<Reset> = { name: "reset", identities: [[[82, 82]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readReset, write: writeReset };
 
 function readMode(r: rt.Reader): Mode {
   const mode = r.u8("mode");
@@ -287,7 +287,7 @@ function writeMode(w: rt.Writer, m: Mode): void {
 }
 
 /** Plan of Mode, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMode: rt.MessagePlan<Mode> = { name: "mode", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMode, write: writeMode };
+export const planOfMode: rt.MessagePlan<Mode> = { name: "mode", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readMode, write: writeMode };
 
 function readGo(r: rt.Reader): Go {
   const speed = r.i16("speed");
@@ -301,7 +301,7 @@ function writeGo(w: rt.Writer, m: Go): void {
 }
 
 /** Plan of Go, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGo: rt.MessagePlan<Go> = { name: "go", identities: [[[71, 71]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readGo, write: writeGo };
+export const planOfGo: rt.MessagePlan<Go> = { name: "go", identities: [[[71, 71]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readGo, write: writeGo };
 
 function readLimits(r: rt.Reader): Limits {
   const max_speed = r.i16("max_speed");
@@ -315,7 +315,7 @@ function writeLimits(w: rt.Writer, m: Limits): void {
 }
 
 /** Plan of Limits, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLimits: rt.MessagePlan<Limits> = { name: "limits", identities: [[[76, 76]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readLimits, write: writeLimits };
+export const planOfLimits: rt.MessagePlan<Limits> = { name: "limits", identities: [[[76, 76]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readLimits, write: writeLimits };
 
 function readTiming(r: rt.Reader): Timing {
   const period = r.u16("period");
@@ -329,7 +329,7 @@ function writeTiming(w: rt.Writer, m: Timing): void {
 }
 
 /** Plan of Timing, for `readPayload` and `writePayload` of the runtime. */
-export const planOfTiming: rt.MessagePlan<Timing> = { name: "timing", identities: [[[84, 84]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readTiming, write: writeTiming };
+export const planOfTiming: rt.MessagePlan<Timing> = { name: "timing", identities: [[[84, 84]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readTiming, write: writeTiming };
 
 function readGpsMode(r: rt.Reader): GpsMode {
   const mode = r.u8("mode");
@@ -341,7 +341,7 @@ function writeGpsMode(w: rt.Writer, m: GpsMode): void {
 }
 
 /** Plan of GpsMode, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGpsMode: rt.MessagePlan<GpsMode> = { name: "gps_mode", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readGpsMode, write: writeGpsMode };
+export const planOfGpsMode: rt.MessagePlan<GpsMode> = { name: "gps_mode", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readGpsMode, write: writeGpsMode };
 
 function readVersionQuery(r: rt.Reader): VersionQuery {
   return { message: "version_query" };
@@ -350,7 +350,7 @@ function readVersionQuery(r: rt.Reader): VersionQuery {
 function writeVersionQuery(w: rt.Writer, m: VersionQuery): void {}
 
 /** Plan of VersionQuery, for `readPayload` and `writePayload` of the runtime. */
-export const planOfVersionQuery: rt.MessagePlan<VersionQuery> = { name: "version_query", identities: [[[86, 86]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readVersionQuery, write: writeVersionQuery };
+export const planOfVersionQuery: rt.MessagePlan<VersionQuery> = { name: "version_query", identities: [[[86, 86]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readVersionQuery, write: writeVersionQuery };
 
 function readLed(r: rt.Reader): Led {
   const index = r.u8("index");
@@ -364,7 +364,7 @@ function writeLed(w: rt.Writer, m: Led): void {
 }
 
 /** Plan of Led, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLed: rt.MessagePlan<Led> = { name: "led", identities: [[[68, 68]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readLed, write: writeLed };
+export const planOfLed: rt.MessagePlan<Led> = { name: "led", identities: [[[68, 68]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readLed, write: writeLed };
 
 function readAck(r: rt.Reader): Ack {
   return { message: "ack" };
@@ -373,7 +373,7 @@ function readAck(r: rt.Reader): Ack {
 function writeAck(w: rt.Writer, m: Ack): void {}
 
 /** Plan of Ack, for `readPayload` and `writePayload` of the runtime. */
-export const planOfAck: rt.MessagePlan<Ack> = { name: "ack", identities: [[[65, 65]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readAck, write: writeAck };
+export const planOfAck: rt.MessagePlan<Ack> = { name: "ack", identities: [[[65, 65]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readAck, write: writeAck };
 
 function readNack(r: rt.Reader): Nack {
   return { message: "nack" };
@@ -382,7 +382,7 @@ function readNack(r: rt.Reader): Nack {
 function writeNack(w: rt.Writer, m: Nack): void {}
 
 /** Plan of Nack, for `readPayload` and `writePayload` of the runtime. */
-export const planOfNack: rt.MessagePlan<Nack> = { name: "nack", identities: [[[78, 78]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readNack, write: writeNack };
+export const planOfNack: rt.MessagePlan<Nack> = { name: "nack", identities: [[[78, 78]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readNack, write: writeNack };
 
 function readStatus(r: rt.Reader): Status {
   const status = r.u8("status");
@@ -433,7 +433,7 @@ function writeStatus(w: rt.Writer, m: Status): void {
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStatus: rt.MessagePlan<Status> = { name: "status", identities: [[[73, 73]]], sizes: { least: 24, greatest: 24, step: 0 }, known: 24, tellsItsEnd: false, held: [], read: readStatus, write: writeStatus };
+export const planOfStatus: rt.MessagePlan<Status> = { name: "status", identities: [[[73, 73]]], sizes: { least: 24, greatest: 24, step: 0 }, known: 24, read: readStatus, write: writeStatus };
 
 function readGps(r: rt.Reader): Gps {
   const nmea = rt.latin1(r.rest(0, 121, false, "nmea"));
@@ -445,7 +445,7 @@ function writeGps(w: rt.Writer, m: Gps): void {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps: rt.MessagePlan<Gps> = { name: "gps", identities: [[[80, 80]]], sizes: { least: 0, greatest: 121, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readGps, write: writeGps };
+export const planOfGps: rt.MessagePlan<Gps> = { name: "gps", identities: [[[80, 80]]], sizes: { least: 0, greatest: 121, step: 1 }, known: null, read: readGps, write: writeGps };
 
 function readVersion(r: rt.Reader): Version {
   const serial_number = r.u8("serial_number");
@@ -459,7 +459,7 @@ function writeVersion(w: rt.Writer, m: Version): void {
 }
 
 /** Plan of Version, for `readPayload` and `writePayload` of the runtime. */
-export const planOfVersion: rt.MessagePlan<Version> = { name: "version", identities: [[[86, 86]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readVersion, write: writeVersion };
+export const planOfVersion: rt.MessagePlan<Version> = { name: "version", identities: [[[86, 86]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, read: readVersion, write: writeVersion };
 
 /** Wanted angle of the joint in deg. */
 export function goSteerDeg(record: Pick<Go, "steer">): number {

@@ -286,7 +286,7 @@ function writeMoveManual(w: rt.Writer, m: MoveManual): void {
 }
 
 /** Plan of MoveManual, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveManual: rt.MessagePlan<MoveManual> = { name: "move_manual", identities: [[[128, 128]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readMoveManual, write: writeMoveManual };
+export const planOfMoveManual: rt.MessagePlan<MoveManual> = { name: "move_manual", identities: [[[128, 128]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, read: readMoveManual, write: writeMoveManual };
 
 function readMoveRelativeTwostep(r: rt.Reader): MoveRelativeTwostep {
   const angle = r.sint(2, 14, true, 128, "angle");
@@ -300,7 +300,7 @@ function writeMoveRelativeTwostep(w: rt.Writer, m: MoveRelativeTwostep): void {
 }
 
 /** Plan of MoveRelativeTwostep, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveRelativeTwostep: rt.MessagePlan<MoveRelativeTwostep> = { name: "move_relative_twostep", identities: [[[129, 129]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readMoveRelativeTwostep, write: writeMoveRelativeTwostep };
+export const planOfMoveRelativeTwostep: rt.MessagePlan<MoveRelativeTwostep> = { name: "move_relative_twostep", identities: [[[129, 129]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readMoveRelativeTwostep, write: writeMoveRelativeTwostep };
 
 function readMoveRelativeArc(r: rt.Reader): MoveRelativeArc {
   const angle = r.sint(2, 14, true, 128, "angle");
@@ -314,7 +314,7 @@ function writeMoveRelativeArc(w: rt.Writer, m: MoveRelativeArc): void {
 }
 
 /** Plan of MoveRelativeArc, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveRelativeArc: rt.MessagePlan<MoveRelativeArc> = { name: "move_relative_arc", identities: [[[130, 130]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readMoveRelativeArc, write: writeMoveRelativeArc };
+export const planOfMoveRelativeArc: rt.MessagePlan<MoveRelativeArc> = { name: "move_relative_arc", identities: [[[130, 130]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readMoveRelativeArc, write: writeMoveRelativeArc };
 
 function readMaintenance(r: rt.Reader): Maintenance {
   const magic = [];
@@ -388,7 +388,7 @@ function writeMaintenance(w: rt.Writer, m: MaintenanceInput): void {
 }
 
 /** Plan of Maintenance, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMaintenance: rt.MessagePlan<Maintenance> = { name: "maintenance", identities: [[[254, 254]]], sizes: { least: 4, greatest: 7, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readMaintenance, write: writeMaintenance };
+export const planOfMaintenance: rt.MessagePlan<Maintenance> = { name: "maintenance", identities: [[[254, 254]]], sizes: { least: 4, greatest: 7, step: 1 }, known: null, read: readMaintenance, write: writeMaintenance };
 
 function readGyro(r: rt.Reader): Gyro {
   const status = r.uint(1, 7, true, 128, "status");
@@ -406,7 +406,7 @@ function writeGyro(w: rt.Writer, m: Gyro): void {
 }
 
 /** Plan of Gyro, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGyro: rt.MessagePlan<Gyro> = { name: "gyro", identities: [[[128, 128]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readGyro, write: writeGyro };
+export const planOfGyro: rt.MessagePlan<Gyro> = { name: "gyro", identities: [[[128, 128]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readGyro, write: writeGyro };
 
 function readXcel(r: rt.Reader): Xcel {
   const status = r.uint(1, 7, true, 128, "status");
@@ -424,7 +424,7 @@ function writeXcel(w: rt.Writer, m: Xcel): void {
 }
 
 /** Plan of Xcel, for `readPayload` and `writePayload` of the runtime. */
-export const planOfXcel: rt.MessagePlan<Xcel> = { name: "xcel", identities: [[[129, 129]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readXcel, write: writeXcel };
+export const planOfXcel: rt.MessagePlan<Xcel> = { name: "xcel", identities: [[[129, 129]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readXcel, write: writeXcel };
 
 function readCompass(r: rt.Reader): Compass {
   const status = r.uint(1, 7, true, 128, "status");
@@ -442,7 +442,7 @@ function writeCompass(w: rt.Writer, m: Compass): void {
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCompass: rt.MessagePlan<Compass> = { name: "compass", identities: [[[130, 130]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readCompass, write: writeCompass };
+export const planOfCompass: rt.MessagePlan<Compass> = { name: "compass", identities: [[[130, 130]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readCompass, write: writeCompass };
 
 function readOptflow(r: rt.Reader): Optflow {
   const status = r.uint(1, 7, true, 128, "status");
@@ -460,7 +460,7 @@ function writeOptflow(w: rt.Writer, m: Optflow): void {
 }
 
 /** Plan of Optflow, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOptflow: rt.MessagePlan<Optflow> = { name: "optflow", identities: [[[131, 131]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, tellsItsEnd: false, held: [], read: readOptflow, write: writeOptflow };
+export const planOfOptflow: rt.MessagePlan<Optflow> = { name: "optflow", identities: [[[131, 131]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, read: readOptflow, write: writeOptflow };
 
 function readLidar(r: rt.Reader): Lidar {
   const status = r.uint(1, 7, true, 128, "status");
@@ -484,7 +484,7 @@ function writeLidar(w: rt.Writer, m: Lidar): void {
 }
 
 /** Plan of Lidar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLidar: rt.MessagePlan<Lidar> = { name: "lidar", identities: [[[132, 132]]], sizes: { least: 721, greatest: 721, step: 0 }, known: 721, tellsItsEnd: false, held: [], read: readLidar, write: writeLidar };
+export const planOfLidar: rt.MessagePlan<Lidar> = { name: "lidar", identities: [[[132, 132]]], sizes: { least: 721, greatest: 721, step: 0 }, known: 721, read: readLidar, write: writeLidar };
 
 function readSonar(r: rt.Reader): Sonar {
   const status = r.uint(1, 7, true, 128, "status");
@@ -508,7 +508,7 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar: rt.MessagePlan<Sonar> = { name: "sonar", identities: [[[133, 133]]], sizes: { least: 15, greatest: 15, step: 0 }, known: 15, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar: rt.MessagePlan<Sonar> = { name: "sonar", identities: [[[133, 133]]], sizes: { least: 15, greatest: 15, step: 0 }, known: 15, read: readSonar, write: writeSonar };
 
 function readFacing(r: rt.Reader): Facing {
   const status = r.uint(1, 7, true, 128, "status");
@@ -524,7 +524,7 @@ function writeFacing(w: rt.Writer, m: Facing): void {
 }
 
 /** Plan of Facing, for `readPayload` and `writePayload` of the runtime. */
-export const planOfFacing: rt.MessagePlan<Facing> = { name: "facing", identities: [[[160, 160]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, tellsItsEnd: false, held: [], read: readFacing, write: writeFacing };
+export const planOfFacing: rt.MessagePlan<Facing> = { name: "facing", identities: [[[160, 160]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, read: readFacing, write: writeFacing };
 
 /** How far to turn in deg. */
 export function moveRelativeTwostepAngleDeg(record: Pick<MoveRelativeTwostep, "angle">): number {

@@ -409,7 +409,7 @@ function writeMoveManual(w: rt.Writer, m: MoveManual): void {
 }
 
 /** Plan of MoveManual, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveManual: rt.MessagePlan<MoveManual> = { name: "move_manual", identities: [[[128, 128]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readMoveManual, write: writeMoveManual };
+export const planOfMoveManual: rt.MessagePlan<MoveManual> = { name: "move_manual", identities: [[[128, 128]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, read: readMoveManual, write: writeMoveManual };
 
 function readMoveRelativeTwostep(r: rt.Reader): MoveRelativeTwostep {
   const angle = r.sint(2, 14, false, 128, "angle");
@@ -423,7 +423,7 @@ function writeMoveRelativeTwostep(w: rt.Writer, m: MoveRelativeTwostep): void {
 }
 
 /** Plan of MoveRelativeTwostep, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveRelativeTwostep: rt.MessagePlan<MoveRelativeTwostep> = { name: "move_relative_twostep", identities: [[[129, 129]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readMoveRelativeTwostep, write: writeMoveRelativeTwostep };
+export const planOfMoveRelativeTwostep: rt.MessagePlan<MoveRelativeTwostep> = { name: "move_relative_twostep", identities: [[[129, 129]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readMoveRelativeTwostep, write: writeMoveRelativeTwostep };
 
 function readDecreasePhaseAngle(r: rt.Reader): DecreasePhaseAngle {
   const ignored = r.uint(1, 7, true, 128, "ignored");
@@ -435,7 +435,7 @@ function writeDecreasePhaseAngle(w: rt.Writer, m: DecreasePhaseAngleInput): void
 }
 
 /** Plan of DecreasePhaseAngle, for `readPayload` and `writePayload` of the runtime. */
-export const planOfDecreasePhaseAngle: rt.MessagePlan<DecreasePhaseAngle> = { name: "decrease_phase_angle", identities: [[[209, 209]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readDecreasePhaseAngle, write: writeDecreasePhaseAngle };
+export const planOfDecreasePhaseAngle: rt.MessagePlan<DecreasePhaseAngle> = { name: "decrease_phase_angle", identities: [[[209, 209]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readDecreasePhaseAngle, write: writeDecreasePhaseAngle };
 
 function readIncreasePhaseAngle(r: rt.Reader): IncreasePhaseAngle {
   const ignored = r.uint(1, 7, true, 128, "ignored");
@@ -447,7 +447,7 @@ function writeIncreasePhaseAngle(w: rt.Writer, m: IncreasePhaseAngleInput): void
 }
 
 /** Plan of IncreasePhaseAngle, for `readPayload` and `writePayload` of the runtime. */
-export const planOfIncreasePhaseAngle: rt.MessagePlan<IncreasePhaseAngle> = { name: "increase_phase_angle", identities: [[[210, 210]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readIncreasePhaseAngle, write: writeIncreasePhaseAngle };
+export const planOfIncreasePhaseAngle: rt.MessagePlan<IncreasePhaseAngle> = { name: "increase_phase_angle", identities: [[[210, 210]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readIncreasePhaseAngle, write: writeIncreasePhaseAngle };
 
 function readMaintenance(r: rt.Reader): Maintenance {
   const magic = [];
@@ -502,7 +502,7 @@ function writeMaintenance(w: rt.Writer, m: MaintenanceInput): void {
 }
 
 /** Plan of Maintenance, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMaintenance: rt.MessagePlan<Maintenance> = { name: "maintenance", identities: [[[254, 254]]], sizes: { least: 4, greatest: 5, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readMaintenance, write: writeMaintenance };
+export const planOfMaintenance: rt.MessagePlan<Maintenance> = { name: "maintenance", identities: [[[254, 254]]], sizes: { least: 4, greatest: 5, step: 1 }, known: null, read: readMaintenance, write: writeMaintenance };
 
 function readGyro(r: rt.Reader): Gyro {
   const status = r.uint(1, 7, true, 128, "status");
@@ -520,7 +520,7 @@ function writeGyro(w: rt.Writer, m: Gyro): void {
 }
 
 /** Plan of Gyro, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGyro: rt.MessagePlan<Gyro> = { name: "gyro", identities: [[[128, 128]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readGyro, write: writeGyro };
+export const planOfGyro: rt.MessagePlan<Gyro> = { name: "gyro", identities: [[[128, 128]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readGyro, write: writeGyro };
 
 function readXcel(r: rt.Reader): Xcel {
   const status = r.uint(1, 7, true, 128, "status");
@@ -538,7 +538,7 @@ function writeXcel(w: rt.Writer, m: Xcel): void {
 }
 
 /** Plan of Xcel, for `readPayload` and `writePayload` of the runtime. */
-export const planOfXcel: rt.MessagePlan<Xcel> = { name: "xcel", identities: [[[129, 129]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readXcel, write: writeXcel };
+export const planOfXcel: rt.MessagePlan<Xcel> = { name: "xcel", identities: [[[129, 129]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readXcel, write: writeXcel };
 
 function readCompass(r: rt.Reader): Compass {
   const status = r.uint(1, 7, true, 128, "status");
@@ -556,7 +556,7 @@ function writeCompass(w: rt.Writer, m: Compass): void {
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCompass: rt.MessagePlan<Compass> = { name: "compass", identities: [[[130, 130]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readCompass, write: writeCompass };
+export const planOfCompass: rt.MessagePlan<Compass> = { name: "compass", identities: [[[130, 130]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readCompass, write: writeCompass };
 
 function readLidar(r: rt.Reader): Lidar {
   const status = r.uint(1, 7, true, 128, "status");
@@ -580,7 +580,7 @@ function writeLidar(w: rt.Writer, m: Lidar): void {
 }
 
 /** Plan of Lidar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLidar: rt.MessagePlan<Lidar> = { name: "lidar", identities: [[[132, 132]]], sizes: { least: 721, greatest: 721, step: 0 }, known: 721, tellsItsEnd: false, held: [], read: readLidar, write: writeLidar };
+export const planOfLidar: rt.MessagePlan<Lidar> = { name: "lidar", identities: [[[132, 132]]], sizes: { least: 721, greatest: 721, step: 0 }, known: 721, read: readLidar, write: writeLidar };
 
 function readSonar(r: rt.Reader): Sonar {
   const status = r.uint(1, 7, true, 128, "status");
@@ -604,7 +604,7 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar: rt.MessagePlan<Sonar> = { name: "sonar", identities: [[[133, 133]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar: rt.MessagePlan<Sonar> = { name: "sonar", identities: [[[133, 133]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readSonar, write: writeSonar };
 
 function readFacing(r: rt.Reader): Facing {
   const status = r.uint(1, 7, true, 128, "status");
@@ -620,7 +620,7 @@ function writeFacing(w: rt.Writer, m: FacingInput): void {
 }
 
 /** Plan of Facing, for `readPayload` and `writePayload` of the runtime. */
-export const planOfFacing: rt.MessagePlan<Facing> = { name: "facing", identities: [[[160, 160]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, tellsItsEnd: false, held: [], read: readFacing, write: writeFacing };
+export const planOfFacing: rt.MessagePlan<Facing> = { name: "facing", identities: [[[160, 160]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, read: readFacing, write: writeFacing };
 
 function readOptflowIntegral(r: rt.Reader): OptflowIntegral {
   const status = r.uint(1, 7, true, 128, "status");
@@ -636,7 +636,7 @@ function writeOptflowIntegral(w: rt.Writer, m: OptflowIntegralInput): void {
 }
 
 /** Plan of OptflowIntegral, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOptflowIntegral: rt.MessagePlan<OptflowIntegral> = { name: "optflow_integral", identities: [[[161, 161]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, tellsItsEnd: false, held: [], read: readOptflowIntegral, write: writeOptflowIntegral };
+export const planOfOptflowIntegral: rt.MessagePlan<OptflowIntegral> = { name: "optflow_integral", identities: [[[161, 161]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, read: readOptflowIntegral, write: writeOptflowIntegral };
 
 function readMotorControllerMessage(r: rt.Reader): MotorControllerMessage {
   const last_msg = r.uint(2, 14, false, 128, "last_msg");
@@ -648,7 +648,7 @@ function writeMotorControllerMessage(w: rt.Writer, m: MotorControllerMessage): v
 }
 
 /** Plan of MotorControllerMessage, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorControllerMessage: rt.MessagePlan<MotorControllerMessage> = { name: "motor_controller_message", identities: [[[209, 209]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readMotorControllerMessage, write: writeMotorControllerMessage };
+export const planOfMotorControllerMessage: rt.MessagePlan<MotorControllerMessage> = { name: "motor_controller_message", identities: [[[209, 209]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, read: readMotorControllerMessage, write: writeMotorControllerMessage };
 
 function readDebugNumbers(r: rt.Reader): DebugNumbers {
   const dbg1 = r.sint(5, 35, false, 128, "dbg1");
@@ -666,7 +666,7 @@ function writeDebugNumbers(w: rt.Writer, m: DebugNumbers): void {
 }
 
 /** Plan of DebugNumbers, for `readPayload` and `writePayload` of the runtime. */
-export const planOfDebugNumbers: rt.MessagePlan<DebugNumbers> = { name: "debug_numbers", identities: [[[210, 210]]], sizes: { least: 20, greatest: 20, step: 0 }, known: 20, tellsItsEnd: false, held: [], read: readDebugNumbers, write: writeDebugNumbers };
+export const planOfDebugNumbers: rt.MessagePlan<DebugNumbers> = { name: "debug_numbers", identities: [[[210, 210]]], sizes: { least: 20, greatest: 20, step: 0 }, known: 20, read: readDebugNumbers, write: writeDebugNumbers };
 
 /** How far to turn in deg. */
 export function moveRelativeTwostepAngleDeg(record: Pick<MoveRelativeTwostep, "angle">): number {

@@ -129,7 +129,7 @@ function writeMotorsServosLeds(w: rt.Writer, m: MotorsServosLeds): void {
 }
 
 /** Plan of MotorsServosLeds, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsServosLeds: rt.MessagePlan<MotorsServosLeds> = { name: "motors_servos_leds", identities: [[[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, tellsItsEnd: false, held: [], read: readMotorsServosLeds, write: writeMotorsServosLeds };
+export const planOfMotorsServosLeds: rt.MessagePlan<MotorsServosLeds> = { name: "motors_servos_leds", identities: [[[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, read: readMotorsServosLeds, write: writeMotorsServosLeds };
 
 function readMotorsTwoServos(r: rt.Reader): MotorsTwoServos {
   const motor_1 = r.i16be("motor_1");
@@ -155,7 +155,7 @@ function writeMotorsTwoServos(w: rt.Writer, m: MotorsTwoServos): void {
 }
 
 /** Plan of MotorsTwoServos, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsTwoServos: rt.MessagePlan<MotorsTwoServos> = { name: "motors_two_servos", identities: [[[1, 1]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readMotorsTwoServos, write: writeMotorsTwoServos };
+export const planOfMotorsTwoServos: rt.MessagePlan<MotorsTwoServos> = { name: "motors_two_servos", identities: [[[1, 1]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readMotorsTwoServos, write: writeMotorsTwoServos };
 
 function readMotorTest(r: rt.Reader): MotorTest {
   const motor_1 = r.i16be("motor_1");
@@ -169,7 +169,7 @@ function writeMotorTest(w: rt.Writer, m: MotorTest): void {
 }
 
 /** Plan of MotorTest, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorTest: rt.MessagePlan<MotorTest> = { name: "motor_test", identities: [[[3, 3]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readMotorTest, write: writeMotorTest };
+export const planOfMotorTest: rt.MessagePlan<MotorTest> = { name: "motor_test", identities: [[[3, 3]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readMotorTest, write: writeMotorTest };
 
 function readStatus(r: rt.Reader): Status {
   const voltage = r.i16be("voltage");
@@ -185,7 +185,7 @@ function writeStatus(w: rt.Writer, m: Status): void {
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStatus: rt.MessagePlan<Status> = { name: "status", identities: [[[1, 1]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, tellsItsEnd: false, held: [], read: readStatus, write: writeStatus };
+export const planOfStatus: rt.MessagePlan<Status> = { name: "status", identities: [[[1, 1]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, read: readStatus, write: writeStatus };
 
 /** Voltage in V. */
 export function statusVoltageV(record: Pick<Status, "voltage">): number {

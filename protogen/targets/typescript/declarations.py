@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import msgspec
 
 from protogen.targets.escape import tsdoc
-from protogen.targets.folding import folded
+from protogen.targets.folding import block_comment
 
 _WIDTH = 100
 
@@ -29,15 +29,8 @@ class Declaration(msgspec.Struct, frozen=True):
 def comment(paragraphs: Sequence[str], indent: str = "") -> str:
     """A comment in front of a declaration, with the line break behind it."""
     texts = [tsdoc(item) for item in paragraphs if item]
-    if not texts:
-        return ""
-    if len(texts) == 1 and len(indent) + len(texts[0]) + 7 <= _WIDTH:
-        return f"{indent}/** {texts[0]} */\n"
-    lines: list[str] = []
-    for item in texts:
-        lines += [*([""] if lines else []), *folded(item, _WIDTH - len(indent) - 3)]
-    body = "\n".join(f"{indent} * {line}".rstrip() for line in lines)
-    return f"{indent}/**\n{body}\n{indent} */\n"
+    lines = block_comment(texts, _WIDTH - len(indent)) if texts else ()
+    return "".join(f"{indent}{line}\n" for line in lines)
 
 
 def interface(name: str, members: Sequence[str], doc: str) -> Declaration:

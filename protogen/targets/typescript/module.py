@@ -19,7 +19,7 @@ from protogen.targets.typescript.declarations import (
     union,
 )
 from protogen.targets.typescript.frames import SIZES, FramePrinter, runs_of
-from protogen.targets.typescript.literals import Code, call, is_big, key, literal, told
+from protogen.targets.typescript.literals import Code, call, given, is_big, key, literal, told
 from protogen.targets.typescript.names import Names, names_of
 from protogen.targets.typescript.payloads import PayloadFunction
 from protogen.targets.typescript.scope import Constants, Scope
@@ -96,8 +96,8 @@ class Module:
             inside = f"readonly message: {names.unions[endpoint]}; readonly parts: {parts}"
             members.append(f"  readonly {key(endpoint)}: {{ {inside} }};")
         yield interface("Senders", members, comment(["What each endpoint sends."]))
-        given = union([input_name(item, names) for item in protocol.messages])
-        yield alias("MessageInput", given, comment(["What an encoder takes for a message."]))
+        taken = union([input_name(item, names) for item in protocol.messages])
+        yield alias("MessageInput", taken, comment(["What an encoder takes for a message."]))
         yield self._given_parts()
 
     def _given_parts(self) -> Declaration:
@@ -125,8 +125,8 @@ class Module:
         names, type_ = self._names, self._names.types[message.name]
         read, write, plan = names.functions[message.name]
         yield function(read, {"r": "rt.Reader"}, type_, self._body(message, reads=True))
-        given = {"w": "rt.Writer", "m": input_name(message, names)}
-        yield function(write, given, "void", self._body(message, reads=False))
+        taken = {"w": "rt.Writer", "m": input_name(message, names)}
+        yield function(write, taken, "void", self._body(message, reads=False))
         forms = self._protocol.senders_of(message)
         is_cut = any(form.plan.is_cut for form in forms)
         value = {
@@ -134,8 +134,8 @@ class Module:
             "identities": runs_of(forms[0].frame.identity, message.told_by),
             "sizes": told(message.sizes, SIZES),
             "known": message.cut_size,
-            "tellsItsEnd": is_cut and message.tells_its_end,
-            "held": [field.part for field in message.held],
+            **given(tellsItsEnd=(is_cut and message.tells_its_end) or None),
+            **given(held=[field.part for field in message.held] or None),
             "read": Code(read),
             "write": Code(write),
         }

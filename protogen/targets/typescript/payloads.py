@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from protogen.model.computed import Computed, computed
+from protogen.model.computed import computed
 from protogen.model.expressions import plain_name
 from protogen.model.messages import Message
 from protogen.model.packing import FilledPacking, Packing
@@ -117,7 +117,8 @@ class PayloadFunction:
         found = member(holder, names[step.name])
         if step.name in counts:
             item = counts[step.name]
-            return Code(f"{found} ?? {_counted(item, member(holder, names[item.field]))}")
+            counted = call("rt.counted", member(holder, names[item.field]), *item.line[1:])
+            return Code(f"{found} ?? {counted}")
         if step.field.default is not None:
             return Code(f"{found} ?? {literal(spelled(step.type, step.field.default))}")
         return found
@@ -459,14 +460,3 @@ def _form_of(type_: Text) -> Code:
     return (
         Code("rt.PLAIN_TEXT") if is_plain else literal(told(type_.form, "padding bits shift add"))
     )
-
-
-def _counted(item: Computed, value: str) -> str:
-    """The number that tells how many elements or bytes a field has."""
-    count, (_, factor, offset, size) = f"rt.sizeOf({value})", item.line
-    count = f"{count} * {size}" if size > 1 else count
-    if factor < 0:
-        count = f"{offset} - {count}"
-    elif offset:
-        count = f"{count} - {offset}" if offset > 0 else f"{count} + {-offset}"
-    return f"({count})" if abs(factor) == 1 else f"rt.floor({count}, {abs(factor)})"

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from protogen.model.computed import computed
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.messages import Message
+from protogen.model.nesting import structs_in
 from protogen.model.physical import line_of
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type
 from protogen.targets import descriptions
@@ -75,7 +76,7 @@ def _has_input(record: Struct | Message) -> bool:
     """True if an encoder takes less than a decoder gives."""
     counts = computed(record.fields)
     return any(_may_be_left_out(field) or field.name in counts for field in record.fields) or any(
-        _has_input(inner) for field in record.fields for inner in _structs(field.type)
+        _has_input(inner) for field in record.fields for inner in structs_in(field.type)
     )
 
 
@@ -83,44 +84,34 @@ def _may_be_left_out(field: Field) -> bool:
     return field.const is not None or field.default is not None or field.may_be_absent
 
 
-def _structs(type_: Type) -> Iterator[Struct]:
-    """The structs that a value of the type has directly inside."""
-    match type_:
-        case Struct():
-            yield type_
-        case Array():
-            yield from _structs(type_.element)
-        case Switch():
-            for case in type_.cases:
-                yield from _structs(case.type)
-
-
 def _record(
     item: Struct | Message, names: Names, first: Sequence[str], doc: str
 ) -> Iterator[Declaration]:
-    name, counts = names.types[item.name], computed(item.fields)
-    own = (_member(field, item.name, names, "", field.name in counts) for field in item.fields)
-    yield interface(name, [*first, *own], doc)
+    name = names.types[item.name]
+    yield interface(name, [*first, *_members(item, names, "")], doc)
     if _has_input(item):
-        taken = (
-            _member(field, item.name, names, "Input", field.name in counts) for field in item.fields
-        )
-        given = [*first, *taken]
         what = comment([f"What an encoder takes for {name}."])
-        yield interface(names.inputs[item.name], given, what)
+        yield interface(names.inputs[item.name], [*first, *_members(item, names, "Input")], what)
 
 
-def _member(field: Field, record: str, names: Names, kind: str, is_computed: bool) -> str:
-    own = key(names.records[record].fields[field.name])
-    type_ = field_type(field, names, kind)
-    if kind and (_may_be_left_out(field) or is_computed):
-        member = f"{_IN}readonly {own}?: {type_} | undefined;"
-    else:
-        member = f"{_IN}{'readonly ' if kind or field.const is not None else ''}{own}: {type_};"
-    if kind:
-        return member
-    facts = descriptions.facts_of(field, "null", is_computed=is_computed)
-    return comment(descriptions.of_field(field, facts), _IN) + member
+def _members(item: Struct | Message, names: Names, kind: str) -> Iterator[str]:
+    """The members of a record; of another kind than itself, of what an encoder takes for it."""
+    own, counts = names.records[item.name].fields, computed(item.fields)
+    for field in item.fields:
+        name, type_, is_computed = (
+            key(own[field.name]),
+            field_type(field, names, kind),
+            field.name in counts,
+        )
+        if not kind:
+            readonly = "readonly " if field.const is not None else ""
+            facts = descriptions.facts_of(field, "null", is_computed=is_computed)
+            doc = comment(descriptions.of_field(field, facts), _IN)
+            yield f"{doc}{_IN}{readonly}{name}: {type_};"
+        elif is_computed or _may_be_left_out(field):
+            yield f"{_IN}readonly {name}?: {type_} | undefined;"
+        else:
+            yield f"{_IN}readonly {name}: {type_};"
 
 
 def field_type(field: Field, names: Names, kind: str = "") -> str:

@@ -4,7 +4,7 @@ export { crc, fletcher16, sum, xor } from "./checksums.js";
 export { Decoder } from "./decoder.js";
 export { DecodeError, EncodeError } from "./errors.js";
 export { jsonLine, jsonValue } from "./json.js";
-export { bits, elements, elementsBig, floor, floorBig, modulo, moduloBig, noneOf, sizeOf } from "./formulas.js";
+export { bits, counted, elements, floor, modulo, noneOf } from "./formulas.js";
 export { readBigDigits, readBigNumeral, readDigits, readNumeral, writeDigits, writeNumeral, } from "./numerals.js";
 export { bitsNumber, characters, digits, number } from "./numbers.js";
 export { nearest, physical } from "./physical.js";

@@ -175,9 +175,9 @@ export interface MessagePlan<M = unknown> {
     /** Bytes that are known of a payload; null where its fields say how long it is. */
     readonly known: number | null;
     /** True if its size varies, and its fields say where they end. */
-    readonly tellsItsEnd: boolean;
+    readonly tellsItsEnd?: boolean;
     /** Parts of the frame that are fields; payloads have no bytes of them. */
-    readonly held: readonly string[];
+    readonly held?: readonly string[];
     readonly read: (reader: Reader) => M;
     readonly write: (writer: Writer, message: never) => void;
 }
