@@ -236,6 +236,11 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return next(item for item in every if item.part.name == part.name)
 
     @property
+    def content(self) -> tuple[Part, ...]:
+        """The parts in wire order, the payload among them, without the end."""
+        return self.frame.parts[: len(self.frame.parts) - len(self.end_literals)]
+
+    @property
     def placed(self) -> tuple[PlacedPart, ...]:
         """The parts of the head and the tail in wire order."""
         return (*self.head, *self.tail)

@@ -205,7 +205,7 @@ export const planOfPower = { name: "power", identities: [[[80, 80]]], sizes: { l
 function readLaser(r) {
   const readings = [];
   r.enter("readings");
-  for (let i = 0, here = -1; (here = r.next(here, i, 0, 512)) >= 0; i++) {
+  for (let i = 0, lastAt = -1; (lastAt = r.next(lastAt, i, 0, 512)) >= 0; i++) {
     readings.push(r.u8(i));
   }
   r.leave();
@@ -282,7 +282,7 @@ function hostFrame() {
     start: "after_end",
     end: rt.hex("0a"),
     parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
+      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
@@ -296,7 +296,7 @@ function hostFrame() {
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
     ],
     transparency: null,
     firstStuffed: -1,
@@ -306,12 +306,12 @@ function hostFrame() {
     isBounded: false,
     kept: null,
     groups: [
-      { identities: [[[77, 77]]], messages: [planOfMotor], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[83, 83]]], messages: [planOfSteering], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[82, 82]]], messages: [planOfReflex], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[80, 80]]], messages: [planOfPower], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[76, 76]]], messages: [planOfLaser], fixed: null, greatest: 512, carried: [{ least: 0, greatest: 512, step: 1 }] },
-      { identities: [[[67, 67]]], messages: [planOfCommand], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
+      rt.group([planOfMotor]),
+      rt.group([planOfSteering]),
+      rt.group([planOfReflex]),
+      rt.group([planOfPower]),
+      rt.group([planOfLaser]),
+      rt.group([planOfCommand]),
     ],
     encodeOnly: [planOfPowerDown],
   };
@@ -343,7 +343,7 @@ function robotFrame() {
     start: "after_end",
     end: rt.hex("0a"),
     parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
+      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
@@ -357,7 +357,7 @@ function robotFrame() {
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
     ],
     transparency: null,
     firstStuffed: -1,
@@ -367,16 +367,16 @@ function robotFrame() {
     isBounded: false,
     kept: null,
     groups: [
-      { identities: [[[83, 83]]], messages: [planOfSonar], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[71, 71]]], messages: [planOfGps], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[66, 66]]], messages: [planOfBump], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[79, 79]]], messages: [planOfOdometry], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[87, 87]]], messages: [planOfWheelSlip], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[98, 98]]], messages: [planOfBattery], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[82, 82]]], messages: [planOfReflexSettings], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[72, 72]]], messages: [planOfHardwareStatus], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[76, 76]]], messages: [planOfLaser], fixed: null, greatest: 512, carried: [{ least: 0, greatest: 512, step: 1 }] },
-      { identities: [[[67, 67]]], messages: [planOfCommand], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
+      rt.group([planOfSonar]),
+      rt.group([planOfGps]),
+      rt.group([planOfBump]),
+      rt.group([planOfOdometry]),
+      rt.group([planOfWheelSlip]),
+      rt.group([planOfBattery]),
+      rt.group([planOfReflexSettings]),
+      rt.group([planOfHardwareStatus]),
+      rt.group([planOfLaser]),
+      rt.group([planOfCommand]),
     ],
     encodeOnly: [planOfSpeed],
   };

@@ -190,7 +190,7 @@ export const planOfGpsPosition = { name: "gps_position", identities: [[[71, 71]]
 function readLaser(r) {
   const readings = [];
   r.enter("readings");
-  for (let i = 0, here = -1; (here = r.next(here, i, 0, 512)) >= 0; i++) {
+  for (let i = 0, lastAt = -1; (lastAt = r.next(lastAt, i, 0, 512)) >= 0; i++) {
     readings.push(r.u8(i));
   }
   r.leave();
@@ -277,7 +277,7 @@ function hostFrame() {
     start: "after_end",
     end: rt.hex("0d"),
     parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
+      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
@@ -298,12 +298,12 @@ function hostFrame() {
     isBounded: false,
     kept: null,
     groups: [
-      { identities: [[[77, 77]]], messages: [planOfMotor, planOfDrive], fixed: null, greatest: 2, carried: [{ least: 1, greatest: 1, step: 0 }, { least: 2, greatest: 2, step: 0 }] },
-      { identities: [[[83, 83]]], messages: [planOfSteering], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[80, 80]]], messages: [planOfPower], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[71, 71]]], messages: [planOfGpsPosition], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[76, 76]]], messages: [planOfLaser], fixed: null, greatest: 512, carried: [{ least: 0, greatest: 512, step: 1 }] },
-      { identities: [[[90, 90]]], messages: [planOfShutdown], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
+      rt.group([planOfMotor, planOfDrive]),
+      rt.group([planOfSteering]),
+      rt.group([planOfPower]),
+      rt.group([planOfGpsPosition]),
+      rt.group([planOfLaser]),
+      rt.group([planOfShutdown]),
     ],
     encodeOnly: [],
   };
@@ -335,7 +335,7 @@ function robotFrame() {
     start: "after_end",
     end: rt.hex("0d"),
     parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
+      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
@@ -356,13 +356,13 @@ function robotFrame() {
     isBounded: false,
     kept: null,
     groups: [
-      { identities: [[[83, 83]]], messages: [planOfSonar], fixed: 5, greatest: 5, carried: [{ least: 5, greatest: 5, step: 0 }] },
-      { identities: [[[71, 71]]], messages: [planOfGps], fixed: null, greatest: 126, carried: [{ least: 0, greatest: 126, step: 1 }] },
-      { identities: [[[79, 79]]], messages: [planOfOdometry], fixed: 13, greatest: 13, carried: [{ least: 13, greatest: 13, step: 0 }] },
-      { identities: [[[98, 98]]], messages: [planOfBattery], fixed: 6, greatest: 6, carried: [{ least: 6, greatest: 6, step: 0 }] },
-      { identities: [[[67, 67]]], messages: [planOfCompass], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[76, 76]]], messages: [planOfLaser], fixed: null, greatest: 512, carried: [{ least: 0, greatest: 512, step: 1 }] },
-      { identities: [[[90, 90]]], messages: [planOfShutdown], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
+      rt.group([planOfSonar]),
+      rt.group([planOfGps]),
+      rt.group([planOfOdometry]),
+      rt.group([planOfBattery]),
+      rt.group([planOfCompass]),
+      rt.group([planOfLaser]),
+      rt.group([planOfShutdown]),
     ],
     encodeOnly: [],
   };

@@ -297,7 +297,7 @@ function readSonarData(r) {
   const timestamp = r.u32be("timestamp");
   const readings = [];
   r.enter("readings");
-  for (let i = 0, here = -1; (here = r.next(here, i, 0, 82)) >= 0; i++) {
+  for (let i = 0, lastAt = -1; (lastAt = r.next(lastAt, i, 0, 82)) >= 0; i++) {
     r.enter(i);
     const cluster = r.u8("cluster");
     const distance = r.u16be("distance");
@@ -445,10 +445,10 @@ function linuxFrame() {
     end: rt.hex("1b03"),
     parts: [
       { kind: "literal", name: "start", size: 2, bytes: rt.hex("1b02") },
-      { kind: "number", name: "class", size: 1, part: { kind: "identity", name: "class", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "number", name: "number", size: 1, part: { kind: "value", name: "number", number: rt.number(8, "little"), slot: 1, least: 0, greatest: 255, default: 255, isCounter: false, values: null, between: null, isHeld: false } },
-      { kind: "number", name: "subclass", size: 1, part: { kind: "identity", name: "subclass", number: rt.number(8, "little"), slot: 2 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 3, base: 0, optional: 0, greatest: 255, isFurther: false, least: 0, overWire: false, regionEnd: 0 } },
+      { kind: "number", name: "class", size: 1, part: { kind: "identity", name: "class", number: rt.number(8), slot: 0 } },
+      { kind: "number", name: "number", size: 1, part: { kind: "value", name: "number", number: rt.number(8), slot: 1, least: 0, greatest: 255, default: 255, isCounter: false, values: null, between: null, isHeld: false } },
+      { kind: "number", name: "subclass", size: 1, part: { kind: "identity", name: "subclass", number: rt.number(8), slot: 2 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 3, base: 0, optional: 0, greatest: 255, isFurther: false, least: 0, overWire: false, regionEnd: 0 } },
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
@@ -464,7 +464,7 @@ function linuxFrame() {
       { name: "subclass", key: "subclass", slot: 2 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: false, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: false, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
     firstStuffed: 1,
@@ -474,16 +474,16 @@ function linuxFrame() {
     isBounded: false,
     kept: null,
     groups: [
-      { identities: [[[1, 1]], [[1, 1]]], messages: [planOfRequestSystemStatus], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[2, 2]], [[0, 0]]], messages: [planOfMotor00], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[2, 2]], [[7, 7]]], messages: [planOfMotorCommand], fixed: 14, greatest: 14, carried: [{ least: 14, greatest: 14, step: 0 }] },
-      { identities: [[[2, 2]], [[10, 10]]], messages: [planOfMotor0a], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[2, 2]], [[12, 12]]], messages: [planOfMotor0c], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[2, 2]], [[34, 34]]], messages: [planOfStartStopMotorPackets], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[3, 3]], [[0, 0]]], messages: [planOfRequestJoystickData], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[4, 4]], [[0, 0]]], messages: [planOfStartStopSonarPackets], fixed: 13, greatest: 13, carried: [{ least: 13, greatest: 13, step: 0 }] },
-      { identities: [[[5, 5]], [[0, 0]]], messages: [planOfInitializeDigitalIo], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[5, 5]], [[2, 2]]], messages: [planOfCheckIoChanged], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
+      rt.group([planOfRequestSystemStatus]),
+      rt.group([planOfMotor00]),
+      rt.group([planOfMotorCommand]),
+      rt.group([planOfMotor0a]),
+      rt.group([planOfMotor0c]),
+      rt.group([planOfStartStopMotorPackets]),
+      rt.group([planOfRequestJoystickData]),
+      rt.group([planOfStartStopSonarPackets]),
+      rt.group([planOfInitializeDigitalIo]),
+      rt.group([planOfCheckIoChanged]),
     ],
     encodeOnly: [],
   };
@@ -516,10 +516,10 @@ function flexFrame() {
     end: rt.hex("1b03"),
     parts: [
       { kind: "literal", name: "start", size: 2, bytes: rt.hex("1b02") },
-      { kind: "number", name: "class", size: 1, part: { kind: "identity", name: "class", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "number", name: "number", size: 1, part: { kind: "value", name: "number", number: rt.number(8, "little"), slot: 1, least: 0, greatest: 255, default: 255, isCounter: false, values: null, between: null, isHeld: false } },
-      { kind: "number", name: "subclass", size: 1, part: { kind: "identity", name: "subclass", number: rt.number(8, "little"), slot: 2 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 3, base: 0, optional: 0, greatest: 255, isFurther: false, least: 0, overWire: false, regionEnd: 0 } },
+      { kind: "number", name: "class", size: 1, part: { kind: "identity", name: "class", number: rt.number(8), slot: 0 } },
+      { kind: "number", name: "number", size: 1, part: { kind: "value", name: "number", number: rt.number(8), slot: 1, least: 0, greatest: 255, default: 255, isCounter: false, values: null, between: null, isHeld: false } },
+      { kind: "number", name: "subclass", size: 1, part: { kind: "identity", name: "subclass", number: rt.number(8), slot: 2 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 3, base: 0, optional: 0, greatest: 255, isFurther: false, least: 0, overWire: false, regionEnd: 0 } },
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
@@ -535,7 +535,7 @@ function flexFrame() {
       { name: "subclass", key: "subclass", slot: 2 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: false, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: false, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
     firstStuffed: 1,
@@ -545,18 +545,18 @@ function flexFrame() {
     isBounded: false,
     kept: null,
     groups: [
-      { identities: [[[1, 1]], [[1, 1]]], messages: [planOfSystemStatus], fixed: 9, greatest: 9, carried: [{ least: 9, greatest: 9, step: 0 }] },
-      { identities: [[[2, 2]], [[7, 7]]], messages: [planOfConfirmMotorCommand], fixed: 9, greatest: 9, carried: [{ least: 9, greatest: 9, step: 0 }] },
-      { identities: [[[2, 2]], [[12, 12]]], messages: [planOfMotor0cAnswer], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[2, 2]], [[33, 33]]], messages: [planOfReadMotor], fixed: 25, greatest: 25, carried: [{ least: 25, greatest: 25, step: 0 }] },
-      { identities: [[[2, 2]], [[34, 34]]], messages: [planOfConfirmStartStopMotorPackets], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[3, 3]], [[0, 0]]], messages: [planOfJoystickData], fixed: 13, greatest: 13, carried: [{ least: 13, greatest: 13, step: 0 }] },
-      { identities: [[[4, 4]], [[0, 0]]], messages: [planOfConfirmStartStopSonarPackets], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[4, 4]], [[2, 2]]], messages: [planOfSonarData], fixed: null, greatest: 254, carried: [{ least: 8, greatest: 254, step: 3 }] },
-      { identities: [[[5, 5]], [[0, 0]]], messages: [planOfConfirmInitializeDigitalIo], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[5, 5]], [[1, 1]]], messages: [planOfChangedBumpers], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[5, 5]], [[2, 2]]], messages: [planOfCheckIoChangedAnswer], fixed: 12, greatest: 12, carried: [{ least: 12, greatest: 12, step: 0 }] },
-      { identities: [[[5, 5]], [[3, 3]]], messages: [planOfChangedByte], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
+      rt.group([planOfSystemStatus]),
+      rt.group([planOfConfirmMotorCommand]),
+      rt.group([planOfMotor0cAnswer]),
+      rt.group([planOfReadMotor]),
+      rt.group([planOfConfirmStartStopMotorPackets]),
+      rt.group([planOfJoystickData]),
+      rt.group([planOfConfirmStartStopSonarPackets]),
+      rt.group([planOfSonarData]),
+      rt.group([planOfConfirmInitializeDigitalIo]),
+      rt.group([planOfChangedBumpers]),
+      rt.group([planOfCheckIoChangedAnswer]),
+      rt.group([planOfChangedByte]),
     ],
     encodeOnly: [],
   };

@@ -360,7 +360,7 @@ function hostFrame() {
     start: "word",
     end: rt.hex("ff"),
     parts: [
-      { kind: "number", name: "start", size: 1, part: { kind: "identity", name: "start", number: rt.number(8, "little"), slot: 0 } },
+      { kind: "number", name: "start", size: 1, part: { kind: "identity", name: "start", number: rt.number(8), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
@@ -381,10 +381,10 @@ function hostFrame() {
     isBounded: false,
     kept: null,
     groups: [
-      { identities: [[[128, 128]]], messages: [planOfMoveManual], fixed: 2, greatest: 2, carried: [{ least: 2, greatest: 2, step: 0 }] },
-      { identities: [[[129, 129]]], messages: [planOfMoveRelativeTwostep], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[130, 130]]], messages: [planOfMoveRelativeArc], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[254, 254]]], messages: [planOfMaintenance], fixed: null, greatest: 7, carried: [{ least: 4, greatest: 7, step: 1 }] },
+      rt.group([planOfMoveManual]),
+      rt.group([planOfMoveRelativeTwostep]),
+      rt.group([planOfMoveRelativeArc]),
+      rt.group([planOfMaintenance]),
     ],
     encodeOnly: [],
   };
@@ -416,7 +416,7 @@ function brainFrame() {
     start: "word",
     end: rt.hex(""),
     parts: [
-      { kind: "number", name: "start", size: 1, part: { kind: "identity", name: "start", number: rt.number(8, "little"), slot: 0 } },
+      { kind: "number", name: "start", size: 1, part: { kind: "identity", name: "start", number: rt.number(8), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
@@ -437,13 +437,13 @@ function brainFrame() {
     isBounded: false,
     kept: null,
     groups: [
-      { identities: [[[128, 128]]], messages: [planOfGyro], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[129, 129]]], messages: [planOfXcel], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[130, 130]]], messages: [planOfCompass], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[131, 131]]], messages: [planOfOptflow], fixed: 6, greatest: 6, carried: [{ least: 6, greatest: 6, step: 0 }] },
-      { identities: [[[132, 132]]], messages: [planOfLidar], fixed: 721, greatest: 721, carried: [{ least: 721, greatest: 721, step: 0 }] },
-      { identities: [[[133, 133]]], messages: [planOfSonar], fixed: 15, greatest: 15, carried: [{ least: 15, greatest: 15, step: 0 }] },
-      { identities: [[[160, 160]]], messages: [planOfFacing], fixed: 5, greatest: 5, carried: [{ least: 5, greatest: 5, step: 0 }] },
+      rt.group([planOfGyro]),
+      rt.group([planOfXcel]),
+      rt.group([planOfCompass]),
+      rt.group([planOfOptflow]),
+      rt.group([planOfLidar]),
+      rt.group([planOfSonar]),
+      rt.group([planOfFacing]),
     ],
     encodeOnly: [],
   };

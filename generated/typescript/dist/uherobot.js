@@ -157,8 +157,8 @@ function daemonFrame() {
     end: rt.hex("65"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8, "little"), slot: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
+      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
@@ -179,9 +179,9 @@ function daemonFrame() {
     isBounded: false,
     kept: null,
     groups: [
-      { identities: [[[0, 0]]], messages: [planOfMotorsServosLeds], fixed: 21, greatest: 21, carried: [{ least: 21, greatest: 21, step: 0 }] },
-      { identities: [[[1, 1]]], messages: [planOfMotorsTwoServos], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[3, 3]]], messages: [planOfMotorTest], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
+      rt.group([planOfMotorsServosLeds]),
+      rt.group([planOfMotorsTwoServos]),
+      rt.group([planOfMotorTest]),
     ],
     encodeOnly: [],
   };
@@ -214,8 +214,8 @@ function boardFrame() {
     end: rt.hex("65"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8, "little"), slot: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
+      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
@@ -236,7 +236,7 @@ function boardFrame() {
     isBounded: false,
     kept: null,
     groups: [
-      { identities: [[[1, 1]]], messages: [planOfStatus], fixed: 6, greatest: 6, carried: [{ least: 6, greatest: 6, step: 0 }] },
+      rt.group([planOfStatus]),
     ],
     encodeOnly: [],
   };

@@ -145,8 +145,8 @@ function daemonFrame() {
     end: rt.hex("0a"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8, "little"), slot: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
+      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8), slot: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
@@ -167,7 +167,7 @@ function daemonFrame() {
     isBounded: false,
     kept: null,
     groups: [
-      { identities: [[[0, 0]]], messages: [planOfMotorsServosLeds], fixed: 21, greatest: 21, carried: [{ least: 21, greatest: 21, step: 0 }] },
+      rt.group([planOfMotorsServosLeds]),
     ],
     encodeOnly: [],
   };
@@ -200,8 +200,8 @@ function boardFrame() {
     end: rt.hex("0d0a"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 0, optional: 0, greatest: 255, isFurther: false, least: 0, overWire: false, regionEnd: 0 } },
+      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8), slot: 0 } },
+      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 1, base: 0, optional: 0, greatest: 255, isFurther: false, least: 0, overWire: false, regionEnd: 0 } },
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
@@ -222,7 +222,7 @@ function boardFrame() {
     isBounded: false,
     kept: null,
     groups: [
-      { identities: [[[1, 1]]], messages: [planOfStatus], fixed: 12, greatest: 12, carried: [{ least: 12, greatest: 12, step: 0 }] },
+      rt.group([planOfStatus]),
     ],
     encodeOnly: [],
   };

@@ -389,7 +389,7 @@ def _sender_spec(sender: Sender, frame: str, parts: str, names: Names) -> str:
     messages = names.unions[sender.endpoint]
     name = f"{sender.name.upper()}_SENDER: _rt.SenderSpec[{messages}, {parts}] = "
     shown = {m.name: names.types[m.name] for m in sender.received}
-    encode_only = [names.types[m.name] for m in sender.messages if m.name not in shown]
+    encode_only = [names.types[m.name] for m in sender.encode_only]
     expression = call(
         "_rt.SenderSpec",
         text(sender.endpoint),

@@ -75,11 +75,9 @@ class FramePrinter:
     def text(self) -> Code:
         """The object, one member a line."""
         plan, frame = self._plan, self._sender.frame
-        content = frame.parts[: len(frame.parts) - len(plan.end_literals)]
+        content = plan.content
         stuffed = [index for index, item in enumerate(content) if item.name in frame.stuffed]
         sent, region = plan.sent_identity, plan.region
-        received = {message.name for message in self._sender.received}
-        unheard = (item for item in self._sender.messages if item.name not in received)
         return lines(
             {
                 "sender": self._sender.endpoint,
@@ -104,7 +102,7 @@ class FramePrinter:
                 "isBounded": frame.limit is not None,
                 "kept": frame.payload.kept,
                 "groups": _lines(map(self._group, plan.groups)),
-                "encodeOnly": map(self._plan_name, unheard),
+                "encodeOnly": map(self._plan_name, self._sender.encode_only),
             }
         )
 
@@ -242,14 +240,13 @@ class FramePrinter:
     def _runs(self, identities: Identities) -> Data:
         return runs_of(self._sender.frame.identity, identities)
 
-    def _group(self, group: IdentityGroup) -> Data:
-        return {
-            "identities": self._runs(group.told_by),
-            "messages": map(self._plan_name, group.messages),
-            "fixed": group.fixed,
-            "greatest": max(item.sizes.greatest for item in group.messages),
-            "carried": [told(sizes, SIZES) for sizes in group.sizes],
-        }
+    def _group(self, group: IdentityGroup) -> Code:
+        more = {}
+        if group.told_by != group.messages[0].told_by:
+            more["identities"] = self._runs(group.told_by)
+        if group.sizes != tuple(item.sizes for item in group.messages):
+            more["carried"] = [told(sizes, SIZES) for sizes in group.sizes]
+        return call("rt.group", map(self._plan_name, group.messages), more or None)
 
 
 def runs_of(parts: Iterable[IdentityPart], identities: Identities) -> Data:
@@ -282,7 +279,8 @@ def number(item: TypedPart | PlacedPart) -> Code:
     part = item.part if isinstance(item, PlacedPart) else item
     assert isinstance(part, TypedPart)
     type_ = part.type
-    order, seven = type_.byte_order, type_.byte_bits == 7 or None
+    seven = type_.byte_bits == 7 or None
+    order = type_.byte_order if seven or type_.byte_order == "big" else None
     if type_.is_text:
         return call("rt.characters", type_.size, seven)
     if type_.text is not None:
@@ -304,4 +302,4 @@ def algorithm(spec: ChecksumSpec) -> Code:
         for item in fields(spec)
         if not item.required and (value := getattr(spec, item.name)) != item.default
     }
-    return call(f"rt.{spec.kind}", spec.width, parameters)
+    return call(f"rt.{spec.kind}", spec.width, parameters or None)

@@ -142,7 +142,7 @@ class Module:
         doc = comment([f"Plan of {type_}, for `readPayload` and `writePayload` of the runtime."])
         yield constant(plan, f"rt.MessagePlan<{type_}>", literal(value), doc, exported=True)
 
-    def _body(self, message: Message, *, reads: bool) -> list[str]:
+    def _body(self, message: Message, *, reads: bool) -> tuple[str, ...]:
         return PayloadFunction(Scope(self._names, self._constants), reads=reads).body(message)
 
     def _senders(self) -> Iterator[Declaration]:

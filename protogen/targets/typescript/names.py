@@ -33,7 +33,7 @@ decoderStream encode events jsonLine rt protocol
 """
 """What a module has itself."""
 
-_LOCALS = "r w m rt at here last"
+_LOCALS = "r w m rt at"
 """What generated functions have themselves."""
 
 

@@ -68,18 +68,18 @@ class PayloadFunction:
         self._reads = reads
         self._by = "r" if reads else "w"
 
-    def body(self, message: Message) -> list[str]:
+    def body(self, message: Message) -> tuple[str, ...]:
         """The lines."""
         found = self._fields(message.plan.steps, message, "m", 0)
         if self._reads:
-            self._scope.line(f"return {_object({'message': message.name, **found})};")
+            self._scope.add(f"return {_object({'message': message.name, **found})};")
         return self._scope.lines
 
     def _call(self, name: str, *arguments: Data) -> Code:
         return call(f"{self._by}.{name}", *arguments)
 
     def _do(self, name: str, *arguments: Data) -> None:
-        self._scope.line(f"{self._call(name, *arguments)};")
+        self._scope.add(f"{self._call(name, *arguments)};")
 
     def _transfer(self, name: str, value: Code, *arguments: Data) -> Code:
         """The expression that reads; or print what writes the value."""
@@ -90,7 +90,7 @@ class PayloadFunction:
 
     def _let(self, word: str, value: str) -> Code:
         name = self._scope.variable(word)
-        self._scope.line(f"const {name} = {value};")
+        self._scope.add(f"const {name} = {value};")
         return name
 
     # --- fields -----------------------------------------------------------------------------------
@@ -137,7 +137,7 @@ class PayloadFunction:
             value = self._let(step.name, value)
             scope.know(level, step.name, value)
             if step is held:
-                scope.line(f"{write_number(held, value, at, scope)};")
+                scope.add(f"{write_number(held, value, at, scope)};")
                 return _NOTHING
         return self._value(step, value, at, level)
 
@@ -181,7 +181,7 @@ class PayloadFunction:
         if self._reads:
             return read_number(step, at, scope)
         value = check_number(step, value, at, scope)
-        scope.line(f"{write_number(step, value, at, scope)};")
+        scope.add(f"{write_number(step, value, at, scope)};")
         return _NOTHING
 
     def _string(self, step: BytesStep, value: Code, at: Code) -> Code:
@@ -264,9 +264,9 @@ class PayloadFunction:
         with scope.block(f"for (let {index} = 0{more}; {index}++)"):
             value = self._value(step.element, Code(f"{items}[{index}]"), index, level)
             if self._reads:
-                scope.line(f"{items}.push({value});")
+                scope.add(f"{items}.push({value});")
             if mark is not None and self._reads:
-                scope.line(f"last = {condition(mark, scope.look)};")
+                scope.add(f"isLast = {condition(mark, scope.look)};")
             elif mark is not None:
                 self._do("last", Code(condition(mark, scope.look)), items, index, mark.label)
         self._do("leave")
@@ -276,9 +276,10 @@ class PayloadFunction:
         """More variables of a loop that reads elements, and the condition for another one."""
         count, bounds = step.count, (step.count.least, step.count.greatest)
         if count.mark is not None:
-            return f", last = false; {self._call('goesOn', Code('last'), index, *bounds)}"
+            return f", isLast = false; {self._call('goesOn', Code('isLast'), index, *bounds)}"
         if count.fills:
-            return f", here = -1; (here = {self._call('next', Code('here'), index, *bounds)}) >= 0"
+            found = self._call("next", Code("lastAt"), index, *bounds)
+            return f", lastAt = -1; (lastAt = {found}) >= 0"
         if count.tail is not None:
             around = given(separator=count.tail.separator)
             found = self._call("elements", told(count.tail, "element least") | around)
@@ -300,7 +301,7 @@ class PayloadFunction:
         """A value that is one thing or another."""
         if self._reads:
             held = self._scope.variable(step.name)
-            self._scope.line(f"let {held};")
+            self._scope.add(f"let {held};")
         else:
             held = self._let(step.name, value)
         if isinstance(step, OptionalStep):
@@ -344,7 +345,7 @@ class PayloadFunction:
                 self._put(rest, held, at, level)
             else:
                 problem = self._call("noCase", selector, step.expression.text, at)
-                scope.line(f"throw {problem};")
+                scope.add(f"throw {problem};")
 
     def _put(self, step: AnyStep | RestStep | None, held: Code, at: Code, level: int) -> None:
         """Read into a variable, or write its value; without a step there is none."""
@@ -358,7 +359,7 @@ class PayloadFunction:
         else:
             found = self._value(step, held, at, level)
         if self._reads:
-            self._scope.line(f"{held} = {found};")
+            self._scope.add(f"{held} = {found};")
 
     # --- packed bits ------------------------------------------------------------------------------
 
@@ -392,7 +393,7 @@ class PayloadFunction:
         scope, size, little = self._scope, packing.size, packing.byte_order == "little"
         run = scope.variable("run")
         start = self._call("run", size, little, "") if self._reads else "0n"
-        scope.line(f"{'const' if self._reads else 'let'} {run} = {start};")
+        scope.add(f"{'const' if self._reads else 'let'} {run} = {start};")
         for item in packed_numbers(steps):
             is_alone, value = item.index is None, values[item.name]
             at = literal(names[item.name] if is_alone else item.index)
@@ -403,7 +404,7 @@ class PayloadFunction:
                 value = Code(f"{value}[{item.index}]")
             name = self._let(item.name or "bits", self._checked(item, value, at))
             if not self._reads:
-                scope.line(
+                scope.add(
                     f"{run} |= BigInt.asUintN({item.step.type.bits}, BigInt({name})) << {shift}n;"
                 )
             if is_alone:
@@ -437,7 +438,7 @@ class PayloadFunction:
             return self._let(step.name or "items", f"{runs}.map((bits, index) => {found})")
         value = check_number(inner, Code("item"), index, scope)
         made = Code(f"{items}.map((item, index) => BigInt({value}))")
-        scope.line(f"{call('rt.writeRun', Code('w'), made, packing.width, little)};")
+        scope.add(f"{call('rt.writeRun', Code('w'), made, packing.width, little)};")
         return _NOTHING
 
 

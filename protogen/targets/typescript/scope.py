@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 
 from protogen.model.payload_plan import Reference
+from protogen.targets.braces import BracedLines
 from protogen.targets.naming import NameTable, Thing
 from protogen.targets.typescript.literals import Code
 from protogen.targets.typescript.names import Names, locals_table
@@ -31,31 +31,17 @@ class Constants:
         return ((name, type_, value) for (type_, value), name in self._made.items())
 
 
-class Scope:
+class Scope(BracedLines):
     """Lines and variables of one function."""
 
     def __init__(self, names: Names, constants: Constants) -> None:
+        super().__init__(indent=2)
         self.names = names
         self.constants = constants
-        self.lines: list[str] = []
         self._locals: NameTable = locals_table()
-        self._depth = 0
         self._count = 0
         self._numbers: dict[tuple[int, str], str] = {}
         """Expressions of earlier numbers, by the level of their record and their names."""
-
-    def line(self, text: str) -> None:
-        """Add a line."""
-        self.lines.append("  " * self._depth + text)
-
-    @contextmanager
-    def block(self, head: str, tail: str = "}") -> Iterator[None]:
-        """Lines inside of a block."""
-        self.line(f"{head} {{")
-        self._depth += 1
-        yield
-        self._depth -= 1
-        self.line(tail)
 
     def variable(self, word: str) -> Code:
         """A new variable, called like this if nothing else is."""

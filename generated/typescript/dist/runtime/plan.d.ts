@@ -191,6 +191,11 @@ export interface Group {
     /** Sizes in which frames carry each of the messages. */
     readonly carried: readonly Sizes[];
 }
+/** A group; without `more`, its identities and the sizes in frames are those of its messages. */
+export declare function group(messages: readonly MessagePlan[], more?: {
+    readonly identities?: Runs;
+    readonly carried?: readonly Sizes[];
+}): Group;
 /** A sender's frame. Sizes are in bytes; content is what is there before any stuffing. */
 export interface Frame {
     /** The endpoint. */

@@ -210,6 +210,19 @@ export interface Group {
   readonly carried: readonly Sizes[];
 }
 
+/** A group; without `more`, its identities and the sizes in frames are those of its messages. */
+export function group(
+  messages: readonly MessagePlan[],
+  more: { readonly identities?: Runs; readonly carried?: readonly Sizes[] } = {},
+): Group {
+  const { identities = messages[0]!.identities } = more;
+  const { carried = messages.map((message) => message.sizes) } = more;
+  const [{ least }] = carried as readonly [Sizes];
+  const isFixed = carried.every((sizes) => sizes.least === least && sizes.greatest === least);
+  const greatest = Math.max(...messages.map((message) => message.sizes.greatest));
+  return { identities, messages, fixed: isFixed ? least : null, greatest, carried };
+}
+
 /** A sender's frame. Sizes are in bytes; content is what is there before any stuffing. */
 export interface Frame {
   /** The endpoint. */

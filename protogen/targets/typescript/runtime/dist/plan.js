@@ -5,6 +5,15 @@ export function ownOf(given, name) {
 }
 /** None of them. */
 export const NO_PARTS = {};
+/** A group; without `more`, its identities and the sizes in frames are those of its messages. */
+export function group(messages, more = {}) {
+    const { identities = messages[0].identities } = more;
+    const { carried = messages.map((message) => message.sizes) } = more;
+    const [{ least }] = carried;
+    const isFixed = carried.every((sizes) => sizes.least === least && sizes.greatest === least);
+    const greatest = Math.max(...messages.map((message) => message.sizes.greatest));
+    return { identities, messages, fixed: isFixed ? least : null, greatest, carried };
+}
 /** The place in the content of a frame with such a payload. */
 export function at(place, headSize, payload) {
     if (!place.isTail)
