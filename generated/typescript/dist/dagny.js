@@ -44,7 +44,7 @@ function writeSonar(w, m) {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar = { name: "sonar", identities: [[[83, 83]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readSonar, write: writeSonar };
+export const planOfSonar = /* @__PURE__ */ rt.plan("sonar", [[[83, 83]]], [0, 128, 1], readSonar, writeSonar);
 
 function readGps(r) {
   const data = r.rest(0, 128, false, "data");
@@ -56,7 +56,7 @@ function writeGps(w, m) {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps = { name: "gps", identities: [[[71, 71]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readGps, write: writeGps };
+export const planOfGps = /* @__PURE__ */ rt.plan("gps", [[[71, 71]]], [0, 128, 1], readGps, writeGps);
 
 function readBump(r) {
   const data = r.rest(0, 128, false, "data");
@@ -68,7 +68,7 @@ function writeBump(w, m) {
 }
 
 /** Plan of Bump, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBump = { name: "bump", identities: [[[66, 66]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readBump, write: writeBump };
+export const planOfBump = /* @__PURE__ */ rt.plan("bump", [[[66, 66]]], [0, 128, 1], readBump, writeBump);
 
 function readOdometry(r) {
   const data = r.rest(0, 128, false, "data");
@@ -80,7 +80,7 @@ function writeOdometry(w, m) {
 }
 
 /** Plan of Odometry, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOdometry = { name: "odometry", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readOdometry, write: writeOdometry };
+export const planOfOdometry = /* @__PURE__ */ rt.plan("odometry", [[[79, 79]]], [0, 128, 1], readOdometry, writeOdometry);
 
 function readSpeed(r) {
   const data = r.rest(0, 128, false, "data");
@@ -92,7 +92,7 @@ function writeSpeed(w, m) {
 }
 
 /** Plan of Speed, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSpeed = { name: "speed", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readSpeed, write: writeSpeed };
+export const planOfSpeed = /* @__PURE__ */ rt.plan("speed", [[[79, 79]]], [0, 128, 1], readSpeed, writeSpeed);
 
 function readWheelSlip(r) {
   const data = r.rest(0, 128, false, "data");
@@ -104,7 +104,7 @@ function writeWheelSlip(w, m) {
 }
 
 /** Plan of WheelSlip, for `readPayload` and `writePayload` of the runtime. */
-export const planOfWheelSlip = { name: "wheel_slip", identities: [[[87, 87]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readWheelSlip, write: writeWheelSlip };
+export const planOfWheelSlip = /* @__PURE__ */ rt.plan("wheel_slip", [[[87, 87]]], [0, 128, 1], readWheelSlip, writeWheelSlip);
 
 function readBattery(r) {
   const data = r.rest(0, 128, false, "data");
@@ -116,7 +116,7 @@ function writeBattery(w, m) {
 }
 
 /** Plan of Battery, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBattery = { name: "battery", identities: [[[98, 98]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readBattery, write: writeBattery };
+export const planOfBattery = /* @__PURE__ */ rt.plan("battery", [[[98, 98]]], [0, 128, 1], readBattery, writeBattery);
 
 function readReflexSettings(r) {
   const data = r.rest(0, 128, false, "data");
@@ -128,7 +128,7 @@ function writeReflexSettings(w, m) {
 }
 
 /** Plan of ReflexSettings, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReflexSettings = { name: "reflex_settings", identities: [[[82, 82]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readReflexSettings, write: writeReflexSettings };
+export const planOfReflexSettings = /* @__PURE__ */ rt.plan("reflex_settings", [[[82, 82]]], [0, 128, 1], readReflexSettings, writeReflexSettings);
 
 function readHardwareStatus(r) {
   const data = r.rest(0, 128, false, "data");
@@ -140,7 +140,7 @@ function writeHardwareStatus(w, m) {
 }
 
 /** Plan of HardwareStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfHardwareStatus = { name: "hardware_status", identities: [[[72, 72]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readHardwareStatus, write: writeHardwareStatus };
+export const planOfHardwareStatus = /* @__PURE__ */ rt.plan("hardware_status", [[[72, 72]]], [0, 128, 1], readHardwareStatus, writeHardwareStatus);
 
 function readMotor(r) {
   const s = r.u8("s");
@@ -152,7 +152,7 @@ function writeMotor(w, m) {
 }
 
 /** Plan of Motor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor = { name: "motor", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readMotor, write: writeMotor };
+export const planOfMotor = /* @__PURE__ */ rt.plan("motor", [[[77, 77]]], [1], readMotor, writeMotor);
 
 function readSteering(r) {
   const s = r.u8("s");
@@ -164,7 +164,7 @@ function writeSteering(w, m) {
 }
 
 /** Plan of Steering, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSteering = { name: "steering", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readSteering, write: writeSteering };
+export const planOfSteering = /* @__PURE__ */ rt.plan("steering", [[[83, 83]]], [1], readSteering, writeSteering);
 
 function readReflex(r) {
   const reflex = r.u8("reflex");
@@ -176,7 +176,7 @@ function writeReflex(w, m) {
 }
 
 /** Plan of Reflex, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReflex = { name: "reflex", identities: [[[82, 82]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readReflex, write: writeReflex };
+export const planOfReflex = /* @__PURE__ */ rt.plan("reflex", [[[82, 82]]], [1], readReflex, writeReflex);
 
 function readPowerDown(r) {
   const code = r.constant(r.u8("code"), 3, "code");
@@ -188,7 +188,7 @@ function writePowerDown(w, m) {
 }
 
 /** Plan of PowerDown, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPowerDown = { name: "power_down", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readPowerDown, write: writePowerDown };
+export const planOfPowerDown = /* @__PURE__ */ rt.plan("power_down", [[[80, 80]]], [1], readPowerDown, writePowerDown);
 
 function readPower(r) {
   const code = r.u8("code");
@@ -200,7 +200,7 @@ function writePower(w, m) {
 }
 
 /** Plan of Power, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPower = { name: "power", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readPower, write: writePower };
+export const planOfPower = /* @__PURE__ */ rt.plan("power", [[[80, 80]]], [1], readPower, writePower);
 
 function readLaser(r) {
   const readings = [];
@@ -222,7 +222,7 @@ function writeLaser(w, m) {
 }
 
 /** Plan of Laser, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLaser = { name: "laser", identities: [[[76, 76]]], sizes: { least: 0, greatest: 512, step: 1 }, known: null, read: readLaser, write: writeLaser };
+export const planOfLaser = /* @__PURE__ */ rt.plan("laser", [[[76, 76]]], [0, 512, 1], readLaser, writeLaser);
 
 function readCommand(r) {
   const data = r.rest(0, 128, false, "data");
@@ -234,7 +234,7 @@ function writeCommand(w, m) {
 }
 
 /** Plan of Command, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCommand = { name: "command", identities: [[[67, 67]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readCommand, write: writeCommand };
+export const planOfCommand = /* @__PURE__ */ rt.plan("command", [[[67, 67]]], [0, 128, 1], readCommand, writeCommand);
 
 /** What to do with the reflex; bits 6 to 7 of reflex. */
 export function reflexReflexCommand(record) {
@@ -257,32 +257,25 @@ export function laserReadingsFromCm(value) {
 }
 
 function hostFrame() {
-  return {
+  return rt.frame({
     sender: "host",
-    form: "",
     headSize: 1,
     tailSize: 1,
     tailSizeEmpty: 0,
     identityIsEarly: true,
     startWords: [],
     startBytes: rt.hex(""),
-    startIsUnique: false,
-    endIsUnique: false,
-    sharesDelimiter: false,
     markSize: 0,
-    endsIdle: false,
     least: 2,
     greatest: 515,
     givenUpAt: 515,
-    sevenBit: false,
     rescans: true,
     takesWhole: true,
     cutAmbiguous: true,
-    isCut: false,
     start: "after_end",
     end: rt.hex("0a"),
     parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8), slot: 0 } },
+      rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
@@ -290,21 +283,16 @@ function hostFrame() {
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    told: [],
-    virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
     greatestPayload: 512,
-    isBounded: false,
-    kept: null,
     groups: [
       rt.group([planOfMotor]),
       rt.group([planOfSteering]),
@@ -313,37 +301,32 @@ function hostFrame() {
       rt.group([planOfLaser]),
       rt.group([planOfCommand]),
     ],
-    encodeOnly: [planOfPowerDown],
-  };
+    encodeOnly: [
+      planOfPowerDown,
+    ],
+  });
 }
 
 function robotFrame() {
-  return {
+  return rt.frame({
     sender: "robot",
-    form: "",
     headSize: 1,
     tailSize: 1,
     tailSizeEmpty: 0,
     identityIsEarly: true,
     startWords: [],
     startBytes: rt.hex(""),
-    startIsUnique: false,
-    endIsUnique: false,
-    sharesDelimiter: false,
     markSize: 0,
-    endsIdle: false,
     least: 2,
     greatest: 515,
     givenUpAt: 515,
-    sevenBit: false,
     rescans: true,
     takesWhole: true,
     cutAmbiguous: true,
-    isCut: false,
     start: "after_end",
     end: rt.hex("0a"),
     parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8), slot: 0 } },
+      rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
@@ -351,21 +334,16 @@ function robotFrame() {
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    told: [],
-    virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
     greatestPayload: 512,
-    isBounded: false,
-    kept: null,
     groups: [
       rt.group([planOfSonar]),
       rt.group([planOfGps]),
@@ -378,8 +356,10 @@ function robotFrame() {
       rt.group([planOfLaser]),
       rt.group([planOfCommand]),
     ],
-    encodeOnly: [planOfSpeed],
-  };
+    encodeOnly: [
+      planOfSpeed,
+    ],
+  });
 }
 
 const protocol = /* @__PURE__ */ new rt.Protocol([hostFrame, robotFrame], [["host", "robot"]]);

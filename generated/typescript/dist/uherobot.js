@@ -52,7 +52,7 @@ function writeMotorsServosLeds(w, m) {
 }
 
 /** Plan of MotorsServosLeds, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsServosLeds = { name: "motors_servos_leds", identities: [[[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, read: readMotorsServosLeds, write: writeMotorsServosLeds };
+export const planOfMotorsServosLeds = /* @__PURE__ */ rt.plan("motors_servos_leds", [[[0, 0]]], [21], readMotorsServosLeds, writeMotorsServosLeds);
 
 function readMotorsTwoServos(r) {
   const motor_1 = r.i16be("motor_1");
@@ -78,7 +78,7 @@ function writeMotorsTwoServos(w, m) {
 }
 
 /** Plan of MotorsTwoServos, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsTwoServos = { name: "motors_two_servos", identities: [[[1, 1]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readMotorsTwoServos, write: writeMotorsTwoServos };
+export const planOfMotorsTwoServos = /* @__PURE__ */ rt.plan("motors_two_servos", [[[1, 1]]], [8], readMotorsTwoServos, writeMotorsTwoServos);
 
 function readMotorTest(r) {
   const motor_1 = r.i16be("motor_1");
@@ -92,7 +92,7 @@ function writeMotorTest(w, m) {
 }
 
 /** Plan of MotorTest, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorTest = { name: "motor_test", identities: [[[3, 3]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readMotorTest, write: writeMotorTest };
+export const planOfMotorTest = /* @__PURE__ */ rt.plan("motor_test", [[[3, 3]]], [4], readMotorTest, writeMotorTest);
 
 function readStatus(r) {
   const voltage = r.i16be("voltage");
@@ -108,7 +108,7 @@ function writeStatus(w, m) {
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStatus = { name: "status", identities: [[[1, 1]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, read: readStatus, write: writeStatus };
+export const planOfStatus = /* @__PURE__ */ rt.plan("status", [[[1, 1]]], [6], readStatus, writeStatus);
 
 /** Voltage in V. */
 export function statusVoltageV(record) {
@@ -131,9 +131,8 @@ export function statusTemperatureFromDegc(value) {
 }
 
 function daemonFrame() {
-  return {
+  return rt.frame({
     sender: "daemon",
-    form: "",
     headSize: 3,
     tailSize: 0,
     tailSizeEmpty: 0,
@@ -142,55 +141,42 @@ function daemonFrame() {
     startBytes: rt.hex("62"),
     startIsUnique: true,
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 1,
-    endsIdle: false,
     least: 14,
     greatest: 512,
     givenUpAt: 512,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isCut: false,
     start: "word",
     end: rt.hex("65"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8), slot: 0 } },
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, least: 2 }),
+      rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
-    told: [],
-    virtual: [],
     shown: [
       { name: "type", key: "type", slot: 0 },
     ],
-    sums: [],
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 253,
-    isBounded: false,
-    kept: null,
     groups: [
       rt.group([planOfMotorsServosLeds]),
       rt.group([planOfMotorsTwoServos]),
       rt.group([planOfMotorTest]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 function boardFrame() {
-  return {
+  return rt.frame({
     sender: "board",
-    form: "",
     headSize: 3,
     tailSize: 0,
     tailSizeEmpty: 0,
@@ -199,47 +185,35 @@ function boardFrame() {
     startBytes: rt.hex("62"),
     startIsUnique: true,
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 1,
-    endsIdle: false,
     least: 18,
     greatest: 512,
     givenUpAt: 512,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isCut: false,
     start: "word",
     end: rt.hex("65"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8), slot: 0 } },
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, least: 2 }),
+      rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
-    told: [],
-    virtual: [],
     shown: [
       { name: "type", key: "type", slot: 0 },
     ],
-    sums: [],
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 253,
-    isBounded: false,
-    kept: null,
     groups: [
       rt.group([planOfStatus]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 const protocol = /* @__PURE__ */ new rt.Protocol([daemonFrame, boardFrame], [["daemon", "board"]]);

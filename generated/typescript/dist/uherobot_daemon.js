@@ -56,7 +56,7 @@ function writeMotorsServosLeds(w, m) {
 }
 
 /** Plan of MotorsServosLeds, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsServosLeds = { name: "motors_servos_leds", identities: [[[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, read: readMotorsServosLeds, write: writeMotorsServosLeds };
+export const planOfMotorsServosLeds = /* @__PURE__ */ rt.plan("motors_servos_leds", [[[0, 0]]], [21], readMotorsServosLeds, writeMotorsServosLeds);
 
 function readStatus(r) {
   const reserved = r.i16be("reserved");
@@ -86,7 +86,7 @@ function writeStatus(w, m) {
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStatus = { name: "status", identities: [[[1, 1]]], sizes: { least: 12, greatest: 12, step: 0 }, known: 12, read: readStatus, write: writeStatus };
+export const planOfStatus = /* @__PURE__ */ rt.plan("status", [[[1, 1]]], [12], readStatus, writeStatus);
 
 /** Drive of the right motor in percent. */
 export function motorsServosLedsRightMotorPercent(record) {
@@ -119,9 +119,8 @@ export function statusPcbTemperatureFromDegc(value) {
 }
 
 function daemonFrame() {
-  return {
+  return rt.frame({
     sender: "daemon",
-    form: "",
     headSize: 3,
     tailSize: 0,
     tailSizeEmpty: 0,
@@ -130,53 +129,40 @@ function daemonFrame() {
     startBytes: rt.hex("62"),
     startIsUnique: true,
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 1,
-    endsIdle: false,
     least: 48,
     greatest: 512,
     givenUpAt: 512,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isCut: false,
     start: "word",
     end: rt.hex("0a"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8), slot: 0 } },
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, least: 2 }),
+      rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
-    told: [],
-    virtual: [],
     shown: [
       { name: "type", key: "type", slot: 0 },
     ],
-    sums: [],
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 253,
-    isBounded: false,
-    kept: null,
     groups: [
       rt.group([planOfMotorsServosLeds]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 function boardFrame() {
-  return {
+  return rt.frame({
     sender: "board",
-    form: "",
     headSize: 3,
     tailSize: 0,
     tailSizeEmpty: 0,
@@ -185,47 +171,35 @@ function boardFrame() {
     startBytes: rt.hex("62"),
     startIsUnique: true,
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 1,
-    endsIdle: false,
     least: 31,
     greatest: 517,
     givenUpAt: 517,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isCut: false,
     start: "word",
     end: rt.hex("0d0a"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8), slot: 0 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 1, base: 0, optional: 0, greatest: 255, isFurther: false, least: 0, overWire: false, regionEnd: 0 } },
+      rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 1, base: 0, optional: 0, greatest: 255, least: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
-    told: [],
-    virtual: [],
     shown: [
       { name: "type", key: "type", slot: 0 },
     ],
-    sums: [],
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 255,
-    isBounded: false,
-    kept: null,
     groups: [
       rt.group([planOfStatus]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 const protocol = /* @__PURE__ */ new rt.Protocol([daemonFrame, boardFrame], []);

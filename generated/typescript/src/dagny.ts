@@ -246,7 +246,7 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar: rt.MessagePlan<Sonar> = { name: "sonar", identities: [[[83, 83]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readSonar, write: writeSonar };
+export const planOfSonar: rt.MessagePlan<Sonar> = /* @__PURE__ */ rt.plan("sonar", [[[83, 83]]], [0, 128, 1], readSonar, writeSonar);
 
 function readGps(r: rt.Reader): Gps {
   const data = r.rest(0, 128, false, "data");
@@ -258,7 +258,7 @@ function writeGps(w: rt.Writer, m: Gps): void {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps: rt.MessagePlan<Gps> = { name: "gps", identities: [[[71, 71]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readGps, write: writeGps };
+export const planOfGps: rt.MessagePlan<Gps> = /* @__PURE__ */ rt.plan("gps", [[[71, 71]]], [0, 128, 1], readGps, writeGps);
 
 function readBump(r: rt.Reader): Bump {
   const data = r.rest(0, 128, false, "data");
@@ -270,7 +270,7 @@ function writeBump(w: rt.Writer, m: Bump): void {
 }
 
 /** Plan of Bump, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBump: rt.MessagePlan<Bump> = { name: "bump", identities: [[[66, 66]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readBump, write: writeBump };
+export const planOfBump: rt.MessagePlan<Bump> = /* @__PURE__ */ rt.plan("bump", [[[66, 66]]], [0, 128, 1], readBump, writeBump);
 
 function readOdometry(r: rt.Reader): Odometry {
   const data = r.rest(0, 128, false, "data");
@@ -282,7 +282,7 @@ function writeOdometry(w: rt.Writer, m: Odometry): void {
 }
 
 /** Plan of Odometry, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOdometry: rt.MessagePlan<Odometry> = { name: "odometry", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readOdometry, write: writeOdometry };
+export const planOfOdometry: rt.MessagePlan<Odometry> = /* @__PURE__ */ rt.plan("odometry", [[[79, 79]]], [0, 128, 1], readOdometry, writeOdometry);
 
 function readSpeed(r: rt.Reader): Speed {
   const data = r.rest(0, 128, false, "data");
@@ -294,7 +294,7 @@ function writeSpeed(w: rt.Writer, m: Speed): void {
 }
 
 /** Plan of Speed, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSpeed: rt.MessagePlan<Speed> = { name: "speed", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readSpeed, write: writeSpeed };
+export const planOfSpeed: rt.MessagePlan<Speed> = /* @__PURE__ */ rt.plan("speed", [[[79, 79]]], [0, 128, 1], readSpeed, writeSpeed);
 
 function readWheelSlip(r: rt.Reader): WheelSlip {
   const data = r.rest(0, 128, false, "data");
@@ -306,7 +306,7 @@ function writeWheelSlip(w: rt.Writer, m: WheelSlip): void {
 }
 
 /** Plan of WheelSlip, for `readPayload` and `writePayload` of the runtime. */
-export const planOfWheelSlip: rt.MessagePlan<WheelSlip> = { name: "wheel_slip", identities: [[[87, 87]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readWheelSlip, write: writeWheelSlip };
+export const planOfWheelSlip: rt.MessagePlan<WheelSlip> = /* @__PURE__ */ rt.plan("wheel_slip", [[[87, 87]]], [0, 128, 1], readWheelSlip, writeWheelSlip);
 
 function readBattery(r: rt.Reader): Battery {
   const data = r.rest(0, 128, false, "data");
@@ -318,7 +318,7 @@ function writeBattery(w: rt.Writer, m: Battery): void {
 }
 
 /** Plan of Battery, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBattery: rt.MessagePlan<Battery> = { name: "battery", identities: [[[98, 98]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readBattery, write: writeBattery };
+export const planOfBattery: rt.MessagePlan<Battery> = /* @__PURE__ */ rt.plan("battery", [[[98, 98]]], [0, 128, 1], readBattery, writeBattery);
 
 function readReflexSettings(r: rt.Reader): ReflexSettings {
   const data = r.rest(0, 128, false, "data");
@@ -330,7 +330,7 @@ function writeReflexSettings(w: rt.Writer, m: ReflexSettings): void {
 }
 
 /** Plan of ReflexSettings, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReflexSettings: rt.MessagePlan<ReflexSettings> = { name: "reflex_settings", identities: [[[82, 82]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readReflexSettings, write: writeReflexSettings };
+export const planOfReflexSettings: rt.MessagePlan<ReflexSettings> = /* @__PURE__ */ rt.plan("reflex_settings", [[[82, 82]]], [0, 128, 1], readReflexSettings, writeReflexSettings);
 
 function readHardwareStatus(r: rt.Reader): HardwareStatus {
   const data = r.rest(0, 128, false, "data");
@@ -342,7 +342,7 @@ function writeHardwareStatus(w: rt.Writer, m: HardwareStatus): void {
 }
 
 /** Plan of HardwareStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfHardwareStatus: rt.MessagePlan<HardwareStatus> = { name: "hardware_status", identities: [[[72, 72]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readHardwareStatus, write: writeHardwareStatus };
+export const planOfHardwareStatus: rt.MessagePlan<HardwareStatus> = /* @__PURE__ */ rt.plan("hardware_status", [[[72, 72]]], [0, 128, 1], readHardwareStatus, writeHardwareStatus);
 
 function readMotor(r: rt.Reader): Motor {
   const s = r.u8("s");
@@ -354,7 +354,7 @@ function writeMotor(w: rt.Writer, m: Motor): void {
 }
 
 /** Plan of Motor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor: rt.MessagePlan<Motor> = { name: "motor", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readMotor, write: writeMotor };
+export const planOfMotor: rt.MessagePlan<Motor> = /* @__PURE__ */ rt.plan("motor", [[[77, 77]]], [1], readMotor, writeMotor);
 
 function readSteering(r: rt.Reader): Steering {
   const s = r.u8("s");
@@ -366,7 +366,7 @@ function writeSteering(w: rt.Writer, m: Steering): void {
 }
 
 /** Plan of Steering, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSteering: rt.MessagePlan<Steering> = { name: "steering", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readSteering, write: writeSteering };
+export const planOfSteering: rt.MessagePlan<Steering> = /* @__PURE__ */ rt.plan("steering", [[[83, 83]]], [1], readSteering, writeSteering);
 
 function readReflex(r: rt.Reader): Reflex {
   const reflex = r.u8("reflex");
@@ -378,7 +378,7 @@ function writeReflex(w: rt.Writer, m: Reflex): void {
 }
 
 /** Plan of Reflex, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReflex: rt.MessagePlan<Reflex> = { name: "reflex", identities: [[[82, 82]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readReflex, write: writeReflex };
+export const planOfReflex: rt.MessagePlan<Reflex> = /* @__PURE__ */ rt.plan("reflex", [[[82, 82]]], [1], readReflex, writeReflex);
 
 function readPowerDown(r: rt.Reader): PowerDown {
   const code = r.constant(r.u8("code"), 3, "code");
@@ -390,7 +390,7 @@ function writePowerDown(w: rt.Writer, m: PowerDownInput): void {
 }
 
 /** Plan of PowerDown, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPowerDown: rt.MessagePlan<PowerDown> = { name: "power_down", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readPowerDown, write: writePowerDown };
+export const planOfPowerDown: rt.MessagePlan<PowerDown> = /* @__PURE__ */ rt.plan("power_down", [[[80, 80]]], [1], readPowerDown, writePowerDown);
 
 function readPower(r: rt.Reader): Power {
   const code = r.u8("code");
@@ -402,7 +402,7 @@ function writePower(w: rt.Writer, m: Power): void {
 }
 
 /** Plan of Power, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPower: rt.MessagePlan<Power> = { name: "power", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readPower, write: writePower };
+export const planOfPower: rt.MessagePlan<Power> = /* @__PURE__ */ rt.plan("power", [[[80, 80]]], [1], readPower, writePower);
 
 function readLaser(r: rt.Reader): Laser {
   const readings = [];
@@ -424,7 +424,7 @@ function writeLaser(w: rt.Writer, m: Laser): void {
 }
 
 /** Plan of Laser, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLaser: rt.MessagePlan<Laser> = { name: "laser", identities: [[[76, 76]]], sizes: { least: 0, greatest: 512, step: 1 }, known: null, read: readLaser, write: writeLaser };
+export const planOfLaser: rt.MessagePlan<Laser> = /* @__PURE__ */ rt.plan("laser", [[[76, 76]]], [0, 512, 1], readLaser, writeLaser);
 
 function readCommand(r: rt.Reader): Command {
   const data = r.rest(0, 128, false, "data");
@@ -436,7 +436,7 @@ function writeCommand(w: rt.Writer, m: Command): void {
 }
 
 /** Plan of Command, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCommand: rt.MessagePlan<Command> = { name: "command", identities: [[[67, 67]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, read: readCommand, write: writeCommand };
+export const planOfCommand: rt.MessagePlan<Command> = /* @__PURE__ */ rt.plan("command", [[[67, 67]]], [0, 128, 1], readCommand, writeCommand);
 
 /** What to do with the reflex; bits 6 to 7 of reflex. */
 export function reflexReflexCommand(record: Pick<Reflex, "reflex">): ReflexReflexCommand | (number & {}) {
@@ -459,32 +459,25 @@ export function laserReadingsFromCm(value: number): number {
 }
 
 function hostFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "host",
-    form: "",
     headSize: 1,
     tailSize: 1,
     tailSizeEmpty: 0,
     identityIsEarly: true,
     startWords: [],
     startBytes: rt.hex(""),
-    startIsUnique: false,
-    endIsUnique: false,
-    sharesDelimiter: false,
     markSize: 0,
-    endsIdle: false,
     least: 2,
     greatest: 515,
     givenUpAt: 515,
-    sevenBit: false,
     rescans: true,
     takesWhole: true,
     cutAmbiguous: true,
-    isCut: false,
     start: "after_end",
     end: rt.hex("0a"),
     parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8), slot: 0 } },
+      rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
@@ -492,21 +485,16 @@ function hostFrame(): rt.Frame {
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    told: [],
-    virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
     greatestPayload: 512,
-    isBounded: false,
-    kept: null,
     groups: [
       rt.group([planOfMotor]),
       rt.group([planOfSteering]),
@@ -515,37 +503,32 @@ function hostFrame(): rt.Frame {
       rt.group([planOfLaser]),
       rt.group([planOfCommand]),
     ],
-    encodeOnly: [planOfPowerDown],
-  };
+    encodeOnly: [
+      planOfPowerDown,
+    ],
+  });
 }
 
 function robotFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "robot",
-    form: "",
     headSize: 1,
     tailSize: 1,
     tailSizeEmpty: 0,
     identityIsEarly: true,
     startWords: [],
     startBytes: rt.hex(""),
-    startIsUnique: false,
-    endIsUnique: false,
-    sharesDelimiter: false,
     markSize: 0,
-    endsIdle: false,
     least: 2,
     greatest: 515,
     givenUpAt: 515,
-    sevenBit: false,
     rescans: true,
     takesWhole: true,
     cutAmbiguous: true,
-    isCut: false,
     start: "after_end",
     end: rt.hex("0a"),
     parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8), slot: 0 } },
+      rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
@@ -553,21 +536,16 @@ function robotFrame(): rt.Frame {
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    told: [],
-    virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
     greatestPayload: 512,
-    isBounded: false,
-    kept: null,
     groups: [
       rt.group([planOfSonar]),
       rt.group([planOfGps]),
@@ -580,8 +558,10 @@ function robotFrame(): rt.Frame {
       rt.group([planOfLaser]),
       rt.group([planOfCommand]),
     ],
-    encodeOnly: [planOfSpeed],
-  };
+    encodeOnly: [
+      planOfSpeed,
+    ],
+  });
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([hostFrame, robotFrame], [["host", "robot"]]);

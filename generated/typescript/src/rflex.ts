@@ -425,7 +425,7 @@ function readRequestSystemStatus(r: rt.Reader): RequestSystemStatus {
 function writeRequestSystemStatus(w: rt.Writer, m: RequestSystemStatus): void {}
 
 /** Plan of RequestSystemStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfRequestSystemStatus: rt.MessagePlan<RequestSystemStatus> = { name: "request_system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readRequestSystemStatus, write: writeRequestSystemStatus };
+export const planOfRequestSystemStatus: rt.MessagePlan<RequestSystemStatus> = /* @__PURE__ */ rt.plan("request_system_status", [[[1, 1]], [[1, 1]]], [0], readRequestSystemStatus, writeRequestSystemStatus);
 
 function readSystemStatus(r: rt.Reader): SystemStatus {
   const timestamp = r.u32be("timestamp");
@@ -441,7 +441,7 @@ function writeSystemStatus(w: rt.Writer, m: SystemStatus): void {
 }
 
 /** Plan of SystemStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSystemStatus: rt.MessagePlan<SystemStatus> = { name: "system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, read: readSystemStatus, write: writeSystemStatus };
+export const planOfSystemStatus: rt.MessagePlan<SystemStatus> = /* @__PURE__ */ rt.plan("system_status", [[[1, 1]], [[1, 1]]], [9], readSystemStatus, writeSystemStatus);
 
 function readMotor00(r: rt.Reader): Motor00 {
   const unknown_ = r.u8("unknown");
@@ -453,7 +453,7 @@ function writeMotor00(w: rt.Writer, m: Motor00): void {
 }
 
 /** Plan of Motor00, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor00: rt.MessagePlan<Motor00> = { name: "motor_00", identities: [[[2, 2]], [[0, 0]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, read: readMotor00, write: writeMotor00 };
+export const planOfMotor00: rt.MessagePlan<Motor00> = /* @__PURE__ */ rt.plan("motor_00", [[[2, 2]], [[0, 0]]], [1], readMotor00, writeMotor00);
 
 function readMotorCommand(r: rt.Reader): MotorCommand {
   const axis = r.u8("axis");
@@ -473,7 +473,7 @@ function writeMotorCommand(w: rt.Writer, m: MotorCommand): void {
 }
 
 /** Plan of MotorCommand, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorCommand: rt.MessagePlan<MotorCommand> = { name: "motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 14, greatest: 14, step: 0 }, known: 14, read: readMotorCommand, write: writeMotorCommand };
+export const planOfMotorCommand: rt.MessagePlan<MotorCommand> = /* @__PURE__ */ rt.plan("motor_command", [[[2, 2]], [[7, 7]]], [14], readMotorCommand, writeMotorCommand);
 
 function readConfirmMotorCommand(r: rt.Reader): ConfirmMotorCommand {
   const unknown_ = r.u32be("unknown");
@@ -489,7 +489,7 @@ function writeConfirmMotorCommand(w: rt.Writer, m: ConfirmMotorCommand): void {
 }
 
 /** Plan of ConfirmMotorCommand, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmMotorCommand: rt.MessagePlan<ConfirmMotorCommand> = { name: "confirm_motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, read: readConfirmMotorCommand, write: writeConfirmMotorCommand };
+export const planOfConfirmMotorCommand: rt.MessagePlan<ConfirmMotorCommand> = /* @__PURE__ */ rt.plan("confirm_motor_command", [[[2, 2]], [[7, 7]]], [9], readConfirmMotorCommand, writeConfirmMotorCommand);
 
 function readMotor0a(r: rt.Reader): Motor0a {
   return { message: "motor_0a" };
@@ -498,7 +498,7 @@ function readMotor0a(r: rt.Reader): Motor0a {
 function writeMotor0a(w: rt.Writer, m: Motor0a): void {}
 
 /** Plan of Motor0a, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor0a: rt.MessagePlan<Motor0a> = { name: "motor_0a", identities: [[[2, 2]], [[10, 10]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readMotor0a, write: writeMotor0a };
+export const planOfMotor0a: rt.MessagePlan<Motor0a> = /* @__PURE__ */ rt.plan("motor_0a", [[[2, 2]], [[10, 10]]], [0], readMotor0a, writeMotor0a);
 
 function readMotor0c(r: rt.Reader): Motor0c {
   return { message: "motor_0c" };
@@ -507,7 +507,7 @@ function readMotor0c(r: rt.Reader): Motor0c {
 function writeMotor0c(w: rt.Writer, m: Motor0c): void {}
 
 /** Plan of Motor0c, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor0c: rt.MessagePlan<Motor0c> = { name: "motor_0c", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readMotor0c, write: writeMotor0c };
+export const planOfMotor0c: rt.MessagePlan<Motor0c> = /* @__PURE__ */ rt.plan("motor_0c", [[[2, 2]], [[12, 12]]], [0], readMotor0c, writeMotor0c);
 
 function readMotor0cAnswer(r: rt.Reader): Motor0cAnswer {
   const unknown_ = r.u32be("unknown");
@@ -521,7 +521,7 @@ function writeMotor0cAnswer(w: rt.Writer, m: Motor0cAnswer): void {
 }
 
 /** Plan of Motor0cAnswer, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor0cAnswer: rt.MessagePlan<Motor0cAnswer> = { name: "motor_0c_answer", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readMotor0cAnswer, write: writeMotor0cAnswer };
+export const planOfMotor0cAnswer: rt.MessagePlan<Motor0cAnswer> = /* @__PURE__ */ rt.plan("motor_0c_answer", [[[2, 2]], [[12, 12]]], [8], readMotor0cAnswer, writeMotor0cAnswer);
 
 function readReadMotor(r: rt.Reader): ReadMotor {
   const unknown_ = r.u32be("unknown");
@@ -554,7 +554,7 @@ function writeReadMotor(w: rt.Writer, m: ReadMotor): void {
 }
 
 /** Plan of ReadMotor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReadMotor: rt.MessagePlan<ReadMotor> = { name: "read_motor", identities: [[[2, 2]], [[33, 33]]], sizes: { least: 25, greatest: 25, step: 0 }, known: 25, read: readReadMotor, write: writeReadMotor };
+export const planOfReadMotor: rt.MessagePlan<ReadMotor> = /* @__PURE__ */ rt.plan("read_motor", [[[2, 2]], [[33, 33]]], [25], readReadMotor, writeReadMotor);
 
 function readStartStopMotorPackets(r: rt.Reader): StartStopMotorPackets {
   const timestamp = r.u32be("timestamp");
@@ -568,7 +568,7 @@ function writeStartStopMotorPackets(w: rt.Writer, m: StartStopMotorPackets): voi
 }
 
 /** Plan of StartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStartStopMotorPackets: rt.MessagePlan<StartStopMotorPackets> = { name: "start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readStartStopMotorPackets, write: writeStartStopMotorPackets };
+export const planOfStartStopMotorPackets: rt.MessagePlan<StartStopMotorPackets> = /* @__PURE__ */ rt.plan("start_stop_motor_packets", [[[2, 2]], [[34, 34]]], [8], readStartStopMotorPackets, writeStartStopMotorPackets);
 
 function readConfirmStartStopMotorPackets(r: rt.Reader): ConfirmStartStopMotorPackets {
   const unknown_ = r.u32be("unknown");
@@ -582,7 +582,7 @@ function writeConfirmStartStopMotorPackets(w: rt.Writer, m: ConfirmStartStopMoto
 }
 
 /** Plan of ConfirmStartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmStartStopMotorPackets: rt.MessagePlan<ConfirmStartStopMotorPackets> = { name: "confirm_start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readConfirmStartStopMotorPackets, write: writeConfirmStartStopMotorPackets };
+export const planOfConfirmStartStopMotorPackets: rt.MessagePlan<ConfirmStartStopMotorPackets> = /* @__PURE__ */ rt.plan("confirm_start_stop_motor_packets", [[[2, 2]], [[34, 34]]], [8], readConfirmStartStopMotorPackets, writeConfirmStartStopMotorPackets);
 
 function readRequestJoystickData(r: rt.Reader): RequestJoystickData {
   return { message: "request_joystick_data" };
@@ -591,7 +591,7 @@ function readRequestJoystickData(r: rt.Reader): RequestJoystickData {
 function writeRequestJoystickData(w: rt.Writer, m: RequestJoystickData): void {}
 
 /** Plan of RequestJoystickData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfRequestJoystickData: rt.MessagePlan<RequestJoystickData> = { name: "request_joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, read: readRequestJoystickData, write: writeRequestJoystickData };
+export const planOfRequestJoystickData: rt.MessagePlan<RequestJoystickData> = /* @__PURE__ */ rt.plan("request_joystick_data", [[[3, 3]], [[0, 0]]], [0], readRequestJoystickData, writeRequestJoystickData);
 
 function readJoystickData(r: rt.Reader): JoystickData {
   const timestamp = r.u32be("timestamp");
@@ -609,7 +609,7 @@ function writeJoystickData(w: rt.Writer, m: JoystickData): void {
 }
 
 /** Plan of JoystickData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfJoystickData: rt.MessagePlan<JoystickData> = { name: "joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, read: readJoystickData, write: writeJoystickData };
+export const planOfJoystickData: rt.MessagePlan<JoystickData> = /* @__PURE__ */ rt.plan("joystick_data", [[[3, 3]], [[0, 0]]], [13], readJoystickData, writeJoystickData);
 
 function readStartStopSonarPackets(r: rt.Reader): StartStopSonarPackets {
   const frequency = r.u32be("frequency");
@@ -633,7 +633,7 @@ function writeStartStopSonarPackets(w: rt.Writer, m: StartStopSonarPackets): voi
 }
 
 /** Plan of StartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStartStopSonarPackets: rt.MessagePlan<StartStopSonarPackets> = { name: "start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, read: readStartStopSonarPackets, write: writeStartStopSonarPackets };
+export const planOfStartStopSonarPackets: rt.MessagePlan<StartStopSonarPackets> = /* @__PURE__ */ rt.plan("start_stop_sonar_packets", [[[4, 4]], [[0, 0]]], [13], readStartStopSonarPackets, writeStartStopSonarPackets);
 
 function readConfirmStartStopSonarPackets(r: rt.Reader): ConfirmStartStopSonarPackets {
   const unknown_ = r.u32be("unknown");
@@ -647,7 +647,7 @@ function writeConfirmStartStopSonarPackets(w: rt.Writer, m: ConfirmStartStopSona
 }
 
 /** Plan of ConfirmStartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmStartStopSonarPackets: rt.MessagePlan<ConfirmStartStopSonarPackets> = { name: "confirm_start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readConfirmStartStopSonarPackets, write: writeConfirmStartStopSonarPackets };
+export const planOfConfirmStartStopSonarPackets: rt.MessagePlan<ConfirmStartStopSonarPackets> = /* @__PURE__ */ rt.plan("confirm_start_stop_sonar_packets", [[[4, 4]], [[0, 0]]], [8], readConfirmStartStopSonarPackets, writeConfirmStartStopSonarPackets);
 
 function readSonarData(r: rt.Reader): SonarData {
   const unknown_ = r.u32be("unknown");
@@ -682,7 +682,7 @@ function writeSonarData(w: rt.Writer, m: SonarDataInput): void {
 }
 
 /** Plan of SonarData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonarData: rt.MessagePlan<SonarData> = { name: "sonar_data", identities: [[[4, 4]], [[2, 2]]], sizes: { least: 8, greatest: 254, step: 3 }, known: null, read: readSonarData, write: writeSonarData };
+export const planOfSonarData: rt.MessagePlan<SonarData> = /* @__PURE__ */ rt.plan("sonar_data", [[[4, 4]], [[2, 2]]], [8, 254, 3], readSonarData, writeSonarData);
 
 function readInitializeDigitalIo(r: rt.Reader): InitializeDigitalIo {
   const unknown_ = r.u32be("unknown");
@@ -694,7 +694,7 @@ function writeInitializeDigitalIo(w: rt.Writer, m: InitializeDigitalIo): void {
 }
 
 /** Plan of InitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
-export const planOfInitializeDigitalIo: rt.MessagePlan<InitializeDigitalIo> = { name: "initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readInitializeDigitalIo, write: writeInitializeDigitalIo };
+export const planOfInitializeDigitalIo: rt.MessagePlan<InitializeDigitalIo> = /* @__PURE__ */ rt.plan("initialize_digital_io", [[[5, 5]], [[0, 0]]], [4], readInitializeDigitalIo, writeInitializeDigitalIo);
 
 function readConfirmInitializeDigitalIo(r: rt.Reader): ConfirmInitializeDigitalIo {
   const unknown_ = r.u32be("unknown");
@@ -708,7 +708,7 @@ function writeConfirmInitializeDigitalIo(w: rt.Writer, m: ConfirmInitializeDigit
 }
 
 /** Plan of ConfirmInitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmInitializeDigitalIo: rt.MessagePlan<ConfirmInitializeDigitalIo> = { name: "confirm_initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readConfirmInitializeDigitalIo, write: writeConfirmInitializeDigitalIo };
+export const planOfConfirmInitializeDigitalIo: rt.MessagePlan<ConfirmInitializeDigitalIo> = /* @__PURE__ */ rt.plan("confirm_initialize_digital_io", [[[5, 5]], [[0, 0]]], [8], readConfirmInitializeDigitalIo, writeConfirmInitializeDigitalIo);
 
 function readChangedBumpers(r: rt.Reader): ChangedBumpers {
   const timestamp = r.u32be("timestamp");
@@ -724,7 +724,7 @@ function writeChangedBumpers(w: rt.Writer, m: ChangedBumpers): void {
 }
 
 /** Plan of ChangedBumpers, for `readPayload` and `writePayload` of the runtime. */
-export const planOfChangedBumpers: rt.MessagePlan<ChangedBumpers> = { name: "changed_bumpers", identities: [[[5, 5]], [[1, 1]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readChangedBumpers, write: writeChangedBumpers };
+export const planOfChangedBumpers: rt.MessagePlan<ChangedBumpers> = /* @__PURE__ */ rt.plan("changed_bumpers", [[[5, 5]], [[1, 1]]], [7], readChangedBumpers, writeChangedBumpers);
 
 function readCheckIoChanged(r: rt.Reader): CheckIoChanged {
   const timestamp = r.u32be("timestamp");
@@ -736,7 +736,7 @@ function writeCheckIoChanged(w: rt.Writer, m: CheckIoChanged): void {
 }
 
 /** Plan of CheckIoChanged, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCheckIoChanged: rt.MessagePlan<CheckIoChanged> = { name: "check_io_changed", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readCheckIoChanged, write: writeCheckIoChanged };
+export const planOfCheckIoChanged: rt.MessagePlan<CheckIoChanged> = /* @__PURE__ */ rt.plan("check_io_changed", [[[5, 5]], [[2, 2]]], [4], readCheckIoChanged, writeCheckIoChanged);
 
 function readCheckIoChangedAnswer(r: rt.Reader): CheckIoChangedAnswer {
   const unknown_ = r.u32be("unknown");
@@ -757,7 +757,7 @@ function writeCheckIoChangedAnswer(w: rt.Writer, m: CheckIoChangedAnswer): void 
 }
 
 /** Plan of CheckIoChangedAnswer, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCheckIoChangedAnswer: rt.MessagePlan<CheckIoChangedAnswer> = { name: "check_io_changed_answer", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 12, greatest: 12, step: 0 }, known: 12, read: readCheckIoChangedAnswer, write: writeCheckIoChangedAnswer };
+export const planOfCheckIoChangedAnswer: rt.MessagePlan<CheckIoChangedAnswer> = /* @__PURE__ */ rt.plan("check_io_changed_answer", [[[5, 5]], [[2, 2]]], [12], readCheckIoChangedAnswer, writeCheckIoChangedAnswer);
 
 function readChangedByte(r: rt.Reader): ChangedByte {
   const timestamp = r.u32be("timestamp");
@@ -773,12 +773,11 @@ function writeChangedByte(w: rt.Writer, m: ChangedByte): void {
 }
 
 /** Plan of ChangedByte, for `readPayload` and `writePayload` of the runtime. */
-export const planOfChangedByte: rt.MessagePlan<ChangedByte> = { name: "changed_byte", identities: [[[5, 5]], [[3, 3]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, read: readChangedByte, write: writeChangedByte };
+export const planOfChangedByte: rt.MessagePlan<ChangedByte> = /* @__PURE__ */ rt.plan("changed_byte", [[[5, 5]], [[3, 3]]], [7], readChangedByte, writeChangedByte);
 
 function linuxFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "linux",
-    form: "",
     headSize: 6,
     tailSize: 1,
     tailSizeEmpty: 1,
@@ -787,25 +786,19 @@ function linuxFrame(): rt.Frame {
     startBytes: rt.hex("1b02"),
     startIsUnique: true,
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 2,
-    endsIdle: false,
     least: 9,
     greatest: 782,
     givenUpAt: 782,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isCut: false,
     start: "word",
     end: rt.hex("1b03"),
     parts: [
       { kind: "literal", name: "start", size: 2, bytes: rt.hex("1b02") },
-      { kind: "number", name: "class", size: 1, part: { kind: "identity", name: "class", number: rt.number(8), slot: 0 } },
-      { kind: "number", name: "number", size: 1, part: { kind: "value", name: "number", number: rt.number(8), slot: 1, least: 0, greatest: 255, default: 255, isCounter: false, values: null, between: null, isHeld: false } },
-      { kind: "number", name: "subclass", size: 1, part: { kind: "identity", name: "subclass", number: rt.number(8), slot: 2 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 3, base: 0, optional: 0, greatest: 255, isFurther: false, least: 0, overWire: false, regionEnd: 0 } },
+      rt.single({ kind: "identity", name: "class", number: rt.number(8), slot: 0 }),
+      rt.single({ kind: "value", name: "number", number: rt.number(8), slot: 1, least: 0, greatest: 255, default: 255 }),
+      rt.single({ kind: "identity", name: "subclass", number: rt.number(8), slot: 2 }),
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 3, base: 0, optional: 0, greatest: 255, least: 0 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
@@ -813,23 +806,19 @@ function linuxFrame(): rt.Frame {
     slots: 4,
     identity: [0, 2],
     lastIdentity: 2,
-    told: [],
-    virtual: [],
     shown: [
       { name: "class", key: "class", slot: 0 },
       { name: "number", key: "number", slot: 1 },
       { name: "subclass", key: "subclass", slot: 2 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: false, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
     firstStuffed: 1,
     lastStuffed: 6,
     behindRegion: 0,
     greatestPayload: 255,
-    isBounded: false,
-    kept: null,
     groups: [
       rt.group([planOfRequestSystemStatus]),
       rt.group([planOfMotor00]),
@@ -842,14 +831,12 @@ function linuxFrame(): rt.Frame {
       rt.group([planOfInitializeDigitalIo]),
       rt.group([planOfCheckIoChanged]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 function flexFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "flex",
-    form: "",
     headSize: 6,
     tailSize: 1,
     tailSizeEmpty: 1,
@@ -858,25 +845,19 @@ function flexFrame(): rt.Frame {
     startBytes: rt.hex("1b02"),
     startIsUnique: true,
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 2,
-    endsIdle: false,
     least: 16,
     greatest: 782,
     givenUpAt: 782,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isCut: false,
     start: "word",
     end: rt.hex("1b03"),
     parts: [
       { kind: "literal", name: "start", size: 2, bytes: rt.hex("1b02") },
-      { kind: "number", name: "class", size: 1, part: { kind: "identity", name: "class", number: rt.number(8), slot: 0 } },
-      { kind: "number", name: "number", size: 1, part: { kind: "value", name: "number", number: rt.number(8), slot: 1, least: 0, greatest: 255, default: 255, isCounter: false, values: null, between: null, isHeld: false } },
-      { kind: "number", name: "subclass", size: 1, part: { kind: "identity", name: "subclass", number: rt.number(8), slot: 2 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 3, base: 0, optional: 0, greatest: 255, isFurther: false, least: 0, overWire: false, regionEnd: 0 } },
+      rt.single({ kind: "identity", name: "class", number: rt.number(8), slot: 0 }),
+      rt.single({ kind: "value", name: "number", number: rt.number(8), slot: 1, least: 0, greatest: 255, default: 255 }),
+      rt.single({ kind: "identity", name: "subclass", number: rt.number(8), slot: 2 }),
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 3, base: 0, optional: 0, greatest: 255, least: 0 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
@@ -884,23 +865,19 @@ function flexFrame(): rt.Frame {
     slots: 4,
     identity: [0, 2],
     lastIdentity: 2,
-    told: [],
-    virtual: [],
     shown: [
       { name: "class", key: "class", slot: 0 },
       { name: "number", key: "number", slot: 1 },
       { name: "subclass", key: "subclass", slot: 2 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, isOptional: false, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isBits: false, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
     firstStuffed: 1,
     lastStuffed: 6,
     behindRegion: 0,
     greatestPayload: 255,
-    isBounded: false,
-    kept: null,
     groups: [
       rt.group([planOfSystemStatus]),
       rt.group([planOfConfirmMotorCommand]),
@@ -915,8 +892,7 @@ function flexFrame(): rt.Frame {
       rt.group([planOfCheckIoChangedAnswer]),
       rt.group([planOfChangedByte]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([linuxFrame, flexFrame], [["linux", "flex"]]);

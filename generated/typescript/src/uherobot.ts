@@ -129,7 +129,7 @@ function writeMotorsServosLeds(w: rt.Writer, m: MotorsServosLeds): void {
 }
 
 /** Plan of MotorsServosLeds, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsServosLeds: rt.MessagePlan<MotorsServosLeds> = { name: "motors_servos_leds", identities: [[[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, read: readMotorsServosLeds, write: writeMotorsServosLeds };
+export const planOfMotorsServosLeds: rt.MessagePlan<MotorsServosLeds> = /* @__PURE__ */ rt.plan("motors_servos_leds", [[[0, 0]]], [21], readMotorsServosLeds, writeMotorsServosLeds);
 
 function readMotorsTwoServos(r: rt.Reader): MotorsTwoServos {
   const motor_1 = r.i16be("motor_1");
@@ -155,7 +155,7 @@ function writeMotorsTwoServos(w: rt.Writer, m: MotorsTwoServos): void {
 }
 
 /** Plan of MotorsTwoServos, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsTwoServos: rt.MessagePlan<MotorsTwoServos> = { name: "motors_two_servos", identities: [[[1, 1]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, read: readMotorsTwoServos, write: writeMotorsTwoServos };
+export const planOfMotorsTwoServos: rt.MessagePlan<MotorsTwoServos> = /* @__PURE__ */ rt.plan("motors_two_servos", [[[1, 1]]], [8], readMotorsTwoServos, writeMotorsTwoServos);
 
 function readMotorTest(r: rt.Reader): MotorTest {
   const motor_1 = r.i16be("motor_1");
@@ -169,7 +169,7 @@ function writeMotorTest(w: rt.Writer, m: MotorTest): void {
 }
 
 /** Plan of MotorTest, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorTest: rt.MessagePlan<MotorTest> = { name: "motor_test", identities: [[[3, 3]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, read: readMotorTest, write: writeMotorTest };
+export const planOfMotorTest: rt.MessagePlan<MotorTest> = /* @__PURE__ */ rt.plan("motor_test", [[[3, 3]]], [4], readMotorTest, writeMotorTest);
 
 function readStatus(r: rt.Reader): Status {
   const voltage = r.i16be("voltage");
@@ -185,7 +185,7 @@ function writeStatus(w: rt.Writer, m: Status): void {
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStatus: rt.MessagePlan<Status> = { name: "status", identities: [[[1, 1]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, read: readStatus, write: writeStatus };
+export const planOfStatus: rt.MessagePlan<Status> = /* @__PURE__ */ rt.plan("status", [[[1, 1]]], [6], readStatus, writeStatus);
 
 /** Voltage in V. */
 export function statusVoltageV(record: Pick<Status, "voltage">): number {
@@ -208,9 +208,8 @@ export function statusTemperatureFromDegc(value: number): number {
 }
 
 function daemonFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "daemon",
-    form: "",
     headSize: 3,
     tailSize: 0,
     tailSizeEmpty: 0,
@@ -219,55 +218,42 @@ function daemonFrame(): rt.Frame {
     startBytes: rt.hex("62"),
     startIsUnique: true,
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 1,
-    endsIdle: false,
     least: 14,
     greatest: 512,
     givenUpAt: 512,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isCut: false,
     start: "word",
     end: rt.hex("65"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8), slot: 0 } },
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, least: 2 }),
+      rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
-    told: [],
-    virtual: [],
     shown: [
       { name: "type", key: "type", slot: 0 },
     ],
-    sums: [],
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 253,
-    isBounded: false,
-    kept: null,
     groups: [
       rt.group([planOfMotorsServosLeds]),
       rt.group([planOfMotorsTwoServos]),
       rt.group([planOfMotorTest]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 function boardFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "board",
-    form: "",
     headSize: 3,
     tailSize: 0,
     tailSizeEmpty: 0,
@@ -276,47 +262,35 @@ function boardFrame(): rt.Frame {
     startBytes: rt.hex("62"),
     startIsUnique: true,
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 1,
-    endsIdle: false,
     least: 18,
     greatest: 512,
     givenUpAt: 512,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isCut: false,
     start: "word",
     end: rt.hex("65"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, isFurther: false, least: 2, overWire: false, regionEnd: 0 } },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8), slot: 0 } },
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, least: 2 }),
+      rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
-    told: [],
-    virtual: [],
     shown: [
       { name: "type", key: "type", slot: 0 },
     ],
-    sums: [],
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 253,
-    isBounded: false,
-    kept: null,
     groups: [
       rt.group([planOfStatus]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([daemonFrame, boardFrame], [["daemon", "board"]]);

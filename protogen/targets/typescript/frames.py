@@ -56,7 +56,6 @@ end_is_unique shares_delimiter mark_size ends_idle least greatest given_up_at se
 rescans takes_whole cut_ambiguous is_cut
 """
 """What the runtime takes as the plan has it."""
-SIZES = "least greatest step"
 
 
 class FramePrinter:
@@ -78,33 +77,32 @@ class FramePrinter:
         content = plan.content
         stuffed = [index for index, item in enumerate(content) if item.name in frame.stuffed]
         sent, region = plan.sent_identity, plan.region
-        return lines(
-            {
-                "sender": self._sender.endpoint,
-                "form": "" if self._sender.is_only_form else self._sender.form,
-                **told(plan, _FACTS),
-                "start": _STARTS[plan.start],
-                "end": plan.end_bytes,
-                "parts": _lines(map(self._part, content)),
-                "payloadIndex": content.index(frame.payload),
-                "slots": len(self._slots),
-                "identity": [self._slots[item.name] for item in frame.identity],
-                "lastIdentity": self._slots[sent[-1].name] if sent else -1,
-                "told": _lines(map(self._told, frame.told)),
-                "virtual": _lines(map(self._virtual, plan.virtual)),
-                "shown": _lines(map(self._shown_part, self._shown)),
-                "sums": _lines(map(self._sum, plan.checksums)),
-                "transparency": None if region is None else self._transparency(),
-                "firstStuffed": min(stuffed, default=-1),
-                "lastStuffed": max(stuffed, default=-1),
-                "behindRegion": 0 if region is None else region.behind,
-                "greatestPayload": self._sender.framing.payload.greatest,
-                "isBounded": frame.limit is not None,
-                "kept": frame.payload.kept,
-                "groups": _lines(map(self._group, plan.groups)),
-                "encodeOnly": map(self._plan_name, self._sender.encode_only),
-            }
-        )
+        facts = {
+            "sender": self._sender.endpoint,
+            "form": "" if self._sender.is_only_form else self._sender.form,
+            **told(plan, _FACTS),
+            "start": _STARTS[plan.start],
+            "end": plan.end_bytes,
+            "parts": _lines(map(self._part, content)),
+            "payloadIndex": content.index(frame.payload),
+            "slots": len(self._slots),
+            "identity": [self._slots[item.name] for item in frame.identity],
+            "lastIdentity": self._slots[sent[-1].name] if sent else -1,
+            "told": _lines(map(self._told, frame.told)),
+            "virtual": _lines(map(self._virtual, plan.virtual)),
+            "shown": _lines(map(self._shown_part, self._shown)),
+            "sums": _lines(map(self._sum, plan.checksums)),
+            "transparency": None if region is None else self._transparency(),
+            "firstStuffed": min(stuffed, default=-1),
+            "lastStuffed": max(stuffed, default=-1),
+            "behindRegion": 0 if region is None else region.behind,
+            "greatestPayload": self._sender.framing.payload.greatest,
+            "isBounded": frame.limit is not None,
+            "kept": frame.payload.kept,
+            "groups": _lines(map(self._group, plan.groups)),
+            "encodeOnly": _lines(map(self._plan_name, self._sender.encode_only)),
+        }
+        return call("rt.frame", lines({k: it for k, it in facts.items() if not _is_usual(it)}))
 
     def _plan_name(self, message: Message) -> Code:
         return Code(self._names.functions[message.name][2])
@@ -123,7 +121,7 @@ class FramePrinter:
             case ChecksumPart():
                 return {"kind": "sum", **own, "sum": self._sums.index(part.name)}
         assert isinstance(part, NumberPart)
-        return {"kind": "number", **own, "part": self._number_part(part)}
+        return call("rt.single", self._number_part(part))
 
     def _bits(self, part: BitsPart) -> dict[str, Data]:
         return {
@@ -145,9 +143,13 @@ class FramePrinter:
                 return {"kind": "identity", **own}
             case LengthPart():
                 counted = self._plan.counted(part)
-                facts = told(counted, "base optional greatest is_further")
-                end = {"regionEnd": counted.region_end or 0}
-                return {"kind": "length", **own, **facts, **told(part, "least over_wire"), **end}
+                own |= told(counted, "base optional greatest") | {"least": part.least}
+                rare = given(
+                    isFurther=counted.is_further or None,
+                    overWire=part.over_wire or None,
+                    regionEnd=counted.region_end,
+                )
+                return {"kind": "length", **own, **rare}
             case CounterPart() | ValuePart():
                 return {"kind": "value", **own, **self._value(part)}
         raise TypeError(f"{type(part).__name__} is no number of a frame")
@@ -159,10 +161,12 @@ class FramePrinter:
             "least": _shown(part, part.least),
             "greatest": _shown(part, part.greatest),
             "default": None if part.default is None else _shown(part, part.default),
-            "isCounter": isinstance(part, CounterPart),
-            "values": choices and [_shown(part, value) for value in choices],
-            "between": None if between is None else characters(bytes(between)),
-            "isHeld": any(item.part is part for item in self._plan.bounded),
+            **given(
+                isCounter=isinstance(part, CounterPart) or None,
+                values=choices and [_shown(part, value) for value in choices],
+                between=None if between is None else characters(bytes(between)),
+                isHeld=any(item.part is part for item in self._plan.bounded) or None,
+            ),
         }
 
     def _told(self, part: ToldPart) -> Data:
@@ -203,10 +207,11 @@ class FramePrinter:
             **_numbered(part),
             "algorithm": algorithm(part.algorithm),
             "covers": map(self._covered, plan.covers),
-            **told(part, "over_wire is_optional lowest"),
+            **given(overWire=part.over_wire or None, isOptional=part.is_optional or None),
+            **given(isBits=part.type.within is not None or None),
+            "lowest": part.lowest,
             "place": _place(plan.placed.place),
             "size": plan.placed.size,
-            "isBits": part.type.within is not None,
             "greatest": part.type.greatest,
         }
 
@@ -245,7 +250,7 @@ class FramePrinter:
         if group.told_by != group.messages[0].told_by:
             more["identities"] = self._runs(group.told_by)
         if group.sizes != tuple(item.sizes for item in group.messages):
-            more["carried"] = [told(sizes, SIZES) for sizes in group.sizes]
+            more["carried"] = [told(sizes, "least greatest step") for sizes in group.sizes]
         return call("rt.group", map(self._plan_name, group.messages), more or None)
 
 
@@ -264,6 +269,11 @@ def _shown(part: TypedPart, value: int) -> Data:
 
 def _lines(items: Iterable[Data]) -> Code:
     return lines(items, "  ")
+
+
+def _is_usual(fact: Data) -> bool:
+    """True if the runtime takes a fact for so that a frame does not say; numbers are all said."""
+    return fact is False or fact is None or fact in ("", "[]")
 
 
 def _place(place: Place) -> Data:

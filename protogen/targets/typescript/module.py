@@ -18,8 +18,8 @@ from protogen.targets.typescript.declarations import (
     interface,
     union,
 )
-from protogen.targets.typescript.frames import SIZES, FramePrinter, runs_of
-from protogen.targets.typescript.literals import Code, call, given, is_big, key, literal, told
+from protogen.targets.typescript.frames import FramePrinter, runs_of
+from protogen.targets.typescript.literals import Code, call, given, is_big, key, literal
 from protogen.targets.typescript.names import Names, names_of
 from protogen.targets.typescript.payloads import PayloadFunction
 from protogen.targets.typescript.scope import Constants, Scope
@@ -127,20 +127,22 @@ class Module:
         yield function(read, {"r": "rt.Reader"}, type_, self._body(message, reads=True))
         taken = {"w": "rt.Writer", "m": input_name(message, names)}
         yield function(write, taken, "void", self._body(message, reads=False))
-        forms = self._protocol.senders_of(message)
-        is_cut = any(form.plan.is_cut for form in forms)
-        value = {
-            "name": message.name,
-            "identities": runs_of(forms[0].frame.identity, message.told_by),
-            "sizes": told(message.sizes, SIZES),
-            "known": message.cut_size,
-            **given(tellsItsEnd=(is_cut and message.tells_its_end) or None),
-            **given(held=[field.part for field in message.held] or None),
-            "read": Code(read),
-            "write": Code(write),
-        }
         doc = comment([f"Plan of {type_}, for `readPayload` and `writePayload` of the runtime."])
-        yield constant(plan, f"rt.MessagePlan<{type_}>", literal(value), doc, exported=True)
+        value = f"/* @__PURE__ */ {self._plan(message, Code(read), Code(write))}"
+        yield constant(plan, f"rt.MessagePlan<{type_}>", value, doc, exported=True)
+
+    def _plan(self, message: Message, read: Code, write: Code) -> Code:
+        forms, sizes = self._protocol.senders_of(message), message.sizes
+        is_cut = any(form.plan.is_cut for form in forms)
+        identities = runs_of(forms[0].frame.identity, message.told_by)
+        is_fixed = sizes.fixed is not None
+        size = [sizes.least] if is_fixed else [sizes.least, sizes.greatest, sizes.step]
+        more = given(
+            known=literal(message.cut_size) if message.cut_size != sizes.fixed else None,
+            tellsItsEnd=(is_cut and message.tells_its_end) or None,
+            held=[field.part for field in message.held] or None,
+        )
+        return call("rt.plan", message.name, identities, size, read, write, more or None)
 
     def _body(self, message: Message, *, reads: bool) -> tuple[str, ...]:
         return PayloadFunction(Scope(self._names, self._constants), reads=reads).body(message)

@@ -10,7 +10,7 @@ export { bits, counted, elements, floor, modulo, noneOf } from "./formulas.js";
 export { readBigDigits, readBigNumeral, readDigits, readNumeral, writeDigits, writeNumeral, type Digits, type Numeral, } from "./numerals.js";
 export { bitsNumber, characters, digits, number, type Value } from "./numbers.js";
 export { nearest, physical } from "./physical.js";
-export { group, type Frame, type HeldParts, type MessagePlan } from "./plan.js";
+export { frame, group, plan, single, type Frame, type HeldParts, type MessagePlan } from "./plan.js";
 export { Encoder, Protocol, type DecodeOptions, type EncodeOptions, type NamedMessage, } from "./protocol.js";
 export { readRun, writeRun } from "./runs.js";
 export { readPayload, writePayload } from "./sender.js";

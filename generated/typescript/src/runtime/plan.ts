@@ -55,11 +55,11 @@ export interface LengthNumber extends Numbered {
   readonly least: number;
   readonly greatest: number;
   /** True if it counts stuffed bytes. */
-  readonly overWire: boolean;
+  readonly overWire?: boolean;
   /** True of another length than the one that tells where the frame ends. */
-  readonly isFurther: boolean;
+  readonly isFurther?: boolean;
   /** Wire bytes up to the end of what is stuffed, in a frame with the value `base`. */
-  readonly regionEnd: number;
+  readonly regionEnd?: number;
 }
 
 /** A number that callers give, within bounds. */
@@ -68,13 +68,13 @@ export interface ValueNumber extends Numbered {
   readonly least: Value;
   readonly greatest: Value;
   readonly default: Value | null;
-  readonly isCounter: boolean;
+  readonly isCounter?: boolean;
   /** Values that it can have, where it is one of several literals. */
-  readonly values: readonly Value[] | null;
+  readonly values?: readonly Value[];
   /** The least and the greatest character of a text. */
-  readonly between: string | null;
+  readonly between?: string;
   /** True if receivers hold it to its bounds. */
-  readonly isHeld: boolean;
+  readonly isHeld?: boolean;
 }
 
 export type NumberPart = IdentityNumber | LengthNumber | ValueNumber;
@@ -83,6 +83,11 @@ export type NumberPart = IdentityNumber | LengthNumber | ValueNumber;
 export interface Single extends Named {
   readonly kind: "number";
   readonly part: NumberPart;
+}
+
+/** A number as a part. */
+export function single(part: NumberPart): Single {
+  return { kind: "number", name: part.name, size: part.number.size, part };
 }
 
 /** Bits that follow from another number. */
@@ -100,13 +105,13 @@ export interface Sum {
   readonly number: PartNumber;
   readonly algorithm: Checksum;
   readonly covers: readonly Covered[];
-  readonly overWire: boolean;
+  readonly overWire?: boolean;
   /** Where the bytes of the part lie that has it. */
   readonly place: Place;
   readonly size: number;
-  readonly isOptional: boolean;
+  readonly isOptional?: boolean;
   /** True if it is some bits of a part, from bit `lowest` of the result on. */
-  readonly isBits: boolean;
+  readonly isBits?: boolean;
   readonly lowest: number;
   /** The greatest value of these bits. */
   readonly greatest: number;
@@ -192,11 +197,29 @@ export interface MessagePlan<M = unknown> {
   /** Bytes that are known of a payload; null where its fields say how long it is. */
   readonly known: number | null;
   /** True if its size varies, and its fields say where they end. */
-  readonly tellsItsEnd?: boolean;
+  readonly tellsItsEnd: boolean;
   /** Parts of the frame that are fields; payloads have no bytes of them. */
-  readonly held?: readonly string[];
+  readonly held: readonly string[];
   readonly read: (reader: Reader) => M;
   readonly write: (writer: Writer, message: never) => void;
+}
+
+/**
+ * The plan of a message of one size, or of sizes from the least to the greatest in steps.
+ *
+ * Without `more`, it has no parts of the frame as fields, and what is known of it is its one size.
+ */
+export function plan<M>(
+  name: string,
+  identities: Runs,
+  [least, greatest = least, step = 0]: readonly [number, number?, number?],
+  read: (reader: Reader) => M,
+  write: (writer: Writer, message: never) => void,
+  more: Partial<Pick<MessagePlan, "known" | "tellsItsEnd" | "held">> = {},
+): MessagePlan<M> {
+  const sizes = { least, greatest, step };
+  const { known = step ? null : least, tellsItsEnd = false, held = [] } = more;
+  return { name, identities, sizes, known, tellsItsEnd, held, read, write };
 }
 
 /** The messages behind one identity, in the order in which they are tried. */
@@ -282,6 +305,35 @@ export interface Frame {
   readonly groups: readonly Group[];
   /** Messages that no decoder yields, as nothing tells them from others. */
   readonly encodeOnly: readonly MessagePlan[];
+}
+
+/** What is so of most frames. */
+const USUAL = {
+  form: "",
+  startIsUnique: false,
+  endIsUnique: false,
+  sharesDelimiter: false,
+  endsIdle: false,
+  sevenBit: false,
+  rescans: false,
+  takesWhole: false,
+  cutAmbiguous: false,
+  isBounded: false,
+  isCut: false,
+  identityIsEarly: false,
+  told: [],
+  virtual: [],
+  shown: [],
+  sums: [],
+  groups: [],
+  transparency: null,
+  kept: null,
+  encodeOnly: [],
+};
+
+/** A frame, of which is said what is not so of most. */
+export function frame(given: Partial<Frame> & Omit<Frame, keyof typeof USUAL>): Frame {
+  return { ...USUAL, ...given };
 }
 
 /** The place in the content of a frame with such a payload. */

@@ -171,7 +171,7 @@ export class Sender {
 
   /** The parts of a frame that are fields of the message, among the values of the frame. */
   held(message: MessagePlan, values: readonly (Value | undefined)[]): HeldParts {
-    if (!message.held) return NO_PARTS;
+    if (!message.held.length) return NO_PARTS;
     return Object.fromEntries(
       message.held.map((name) => [name, values[this.slots.get(name)!]!] as const),
     );
@@ -193,7 +193,7 @@ export class Sender {
   }
 
   private leaves(message: MessagePlan, size: number): boolean {
-    return this.frame.isCut && message.tellsItsEnd === true && size > message.sizes.least;
+    return this.frame.isCut && message.tellsItsEnd && size > message.sizes.least;
   }
 
   /** The message of a frame's payload and values, and its plan. Throws a Fault. */

@@ -20,7 +20,7 @@ export {
 } from "./numerals.js";
 export { bitsNumber, characters, digits, number, type Value } from "./numbers.js";
 export { nearest, physical } from "./physical.js";
-export { group, type Frame, type HeldParts, type MessagePlan } from "./plan.js";
+export { frame, group, plan, single, type Frame, type HeldParts, type MessagePlan } from "./plan.js";
 export {
   Encoder,
   Protocol,

@@ -8,7 +8,7 @@ export { bits, counted, elements, floor, modulo, noneOf } from "./formulas.js";
 export { readBigDigits, readBigNumeral, readDigits, readNumeral, writeDigits, writeNumeral, } from "./numerals.js";
 export { bitsNumber, characters, digits, number } from "./numbers.js";
 export { nearest, physical } from "./physical.js";
-export { group } from "./plan.js";
+export { frame, group, plan, single } from "./plan.js";
 export { Encoder, Protocol, } from "./protocol.js";
 export { readRun, writeRun } from "./runs.js";
 export { readPayload, writePayload } from "./sender.js";

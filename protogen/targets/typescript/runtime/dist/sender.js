@@ -136,7 +136,7 @@ export class Sender {
     }
     /** The parts of a frame that are fields of the message, among the values of the frame. */
     held(message, values) {
-        if (!message.held)
+        if (!message.held.length)
             return NO_PARTS;
         return Object.fromEntries(message.held.map((name) => [name, values[this.slots.get(name)]]));
     }
@@ -156,7 +156,7 @@ export class Sender {
         return filled;
     }
     leaves(message, size) {
-        return this.frame.isCut && message.tellsItsEnd === true && size > message.sizes.least;
+        return this.frame.isCut && message.tellsItsEnd && size > message.sizes.least;
     }
     /** The message of a frame's payload and values, and its plan. Throws a Fault. */
     read(group, payload, values) {
