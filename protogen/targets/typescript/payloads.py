@@ -330,26 +330,31 @@ class PayloadFunction:
     def _choose(self, step: ChooseStep, held: Code, at: Code, level: int) -> None:
         scope = self._scope
         if isinstance(step.selector, int) and (chosen := step.case(step.selector)) is not None:
-            self._put(chosen, held, at, level)
+            self._case(chosen, held, at, level)
             return
         selector = self._let("selector", number(step.selector, scope.look))
         head = "if"
         for case in step.cases:
             if case.value is not None:
                 with scope.block(f"{head} ({selector} === {case.value})"):
-                    self._put(case.step, held, at, level)
+                    self._case(case.step, held, at, level)
                 head = "else if"
         rest = step.rest if step.otherwise is None else step.otherwise.step
         with scope.block("else" if head != "if" else "if (true)"):
             if rest is not None:
-                self._put(rest, held, at, level)
+                self._case(rest, held, at, level)
             else:
                 problem = self._call("noCase", selector, step.expression.text, at)
                 scope.add(f"throw {problem};")
 
+    def _case(self, step: AnyStep | RestStep, held: Code, at: Code, level: int) -> None:
+        """Read or write one of several; of a struct without fields there is no value."""
+        is_empty = isinstance(step, RecordStep) and not step.steps
+        self._put(None if is_empty else step, held, at, level)
+
     def _put(self, step: AnyStep | RestStep | None, held: Code, at: Code, level: int) -> None:
         """Read into a variable, or write its value; without a step there is none."""
-        if step is None or (isinstance(step, RecordStep) and not step.steps):
+        if step is None:
             found = Code("null")
             if not self._reads:
                 self._do("nothing", held, at)
