@@ -4,7 +4,7 @@ import { Cut, dueOf, verdictOn } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { EncodeError } from "./errors.js";
 import { areAmong, at, ownOf } from "./plan.js";
-import { numbersOf, payloadOf } from "./sender.js";
+import { numbersOf, payloadOf, writerOf } from "./sender.js";
 /** The frame of a message. Throws an EncodeError. */
 export function frameOf(sender, message, value, given, strict) {
     const { headSize } = sender.frame;
@@ -33,7 +33,10 @@ function identityOf(sender, message, given, values) {
         const { name, slot, number } = sender.identityParts[index];
         const runs = message.identities[index];
         const own = ownOf(given, name);
-        const chosen = own === undefined || own === null ? runs[0][0] : givenTo(number, own, name);
+        values[slot] = runs[0][0];
+        if (own === undefined || own === null)
+            continue;
+        const chosen = givenTo(number, own, name);
         if (!areAmong([runs], [chosen])) {
             throw new EncodeError(name, `${chosen} is not an identity of ${message.name}`);
         }
@@ -42,11 +45,8 @@ function identityOf(sender, message, given, values) {
 }
 /** The frame of an unknown message, whose identity is given. Throws an EncodeError. */
 export function unknownFrameOf(sender, payload, given) {
-    const values = new Array(sender.frame.slots).fill(undefined);
-    const names = new Set();
-    for (const slot of sender.frame.identity) {
-        const { name, number } = identityPart(sender, slot);
-        names.add(name);
+    const values = new Array(sender.frame.slots);
+    for (const { name, slot, number } of sender.identityParts) {
         values[slot] = givenTo(number, ownOf(given, name), name);
     }
     const writer = writerOf(false, sender.frame.headSize);
@@ -77,9 +77,9 @@ function encodeFrame(sender, writer, size, given, values, strict) {
             throw new EncodeError(name, "there is no such part");
         }
     }
-    for (const part of parts)
+    for (const part of valueParts)
         values[part.slot] = valueOf(part, ownOf(given, part.name), strict);
-    const wire = new Assembly(sender, values, payload).wire();
+    const wire = new Assembly(sender, values, writer, size).wire();
     const { frame } = sender;
     if (frame.isBounded && wire.length > frame.greatest) {
         const problem = `makes a frame of ${wire.length} bytes, at most ${frame.greatest} are allowed`;

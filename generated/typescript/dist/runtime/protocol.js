@@ -170,7 +170,7 @@ export class Encoder {
         if (!senders.length)
             throw new EncodeError("message", `${message.message} is not sent`);
         return firstThatFits(senders, (sender) => {
-            const counters = valueParts(sender).filter((part) => part.isCounter && (ownOf(given, part.name) ?? null) === null);
+            const counters = sender.valueParts.filter((part) => part.isCounter && (ownOf(given, part.name) ?? null) === null);
             const counted = counters.map((part) => [part.name, this.next.get(part.name)]);
             const parts = { ...given, ...Object.fromEntries(counted) };
             const plan = sender.named(message.message);

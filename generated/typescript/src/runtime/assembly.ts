@@ -57,7 +57,9 @@ function identityOf(
     const { name, slot, number } = sender.identityParts[index]!;
     const runs = message.identities[index]!;
     const own = ownOf(given, name);
-    const chosen = own === undefined || own === null ? runs[0]![0] : givenTo(number, own, name);
+    values[slot] = runs[0]![0];
+    if (own === undefined || own === null) continue;
+    const chosen = givenTo(number, own, name);
     if (!areAmong([runs], [chosen])) {
       throw new EncodeError(name, `${chosen} is not an identity of ${message.name}`);
     }
@@ -71,11 +73,8 @@ export function unknownFrameOf(
   payload: Uint8Array,
   given: GivenParts,
 ): Uint8Array {
-  const values: Values = new Array<Value | undefined>(sender.frame.slots).fill(undefined);
-  const names = new Set<string>();
-  for (const slot of sender.frame.identity) {
-    const { name, number } = identityPart(sender, slot);
-    names.add(name);
+  const values: Values = new Array<Value | undefined>(sender.frame.slots);
+  for (const { name, slot, number } of sender.identityParts) {
     values[slot] = givenTo(number, ownOf(given, name), name);
   }
   const writer = writerOf(false, sender.frame.headSize);
@@ -114,8 +113,8 @@ function encodeFrame(
       throw new EncodeError(name, "there is no such part");
     }
   }
-  for (const part of parts) values[part.slot] = valueOf(part, ownOf(given, part.name), strict);
-  const wire = new Assembly(sender, values, payload).wire();
+  for (const part of valueParts) values[part.slot] = valueOf(part, ownOf(given, part.name), strict);
+  const wire = new Assembly(sender, values, writer, size).wire();
   const { frame } = sender;
   if (frame.isBounded && wire.length > frame.greatest) {
     const problem = `makes a frame of ${wire.length} bytes, at most ${frame.greatest} are allowed`;

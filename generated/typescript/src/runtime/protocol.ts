@@ -216,7 +216,7 @@ export class Encoder<Message extends NamedMessage = NamedMessage, Parts = GivenP
     );
     if (!senders.length) throw new EncodeError("message", `${message.message} is not sent`);
     return firstThatFits(senders, (sender) => {
-      const counters = valueParts(sender).filter(
+      const counters = sender.valueParts.filter(
         (part) => part.isCounter && (ownOf(given, part.name) ?? null) === null,
       );
       const counted = counters.map((part) => [part.name, this.next.get(part.name)] as const);
