@@ -243,7 +243,7 @@ class TestNames:
         names = names_of(protocol)
         assert {*_public(generated)} - {"annotations"} <= names.module.things.keys()
         for record in (*protocol.structs, *protocol.messages):
-            attributes = _public(getattr(generated, names.classes[record.name], None))
+            attributes = _public(getattr(generated, names.types[record.name], None))
             table = names.records[record.name].table
             assert {*filter(str.islower, attributes)} <= table.things.keys()
         parameters = inspect.signature(generated.encode).parameters

@@ -14,6 +14,8 @@ import typescript_engine as engine
 from compiled import DIALECTS, DOCUMENTS, ROOT, protocol_of
 from tooling import require_tool
 
+from protogen.compiler import compile_file
+
 RUNTIME = ROOT / "protogen" / "targets" / "typescript" / "runtime"
 FILES = ROOT / "tests" / "typescript"
 TYPES = ("sampler", "sampler7", "bounded", "else_cases", "presence", "regions", "tagged", "digits")
@@ -75,12 +77,17 @@ class TestSources:
         """`npx tsc -p protogen/targets/typescript/runtime` was run after the last change."""
         folder = RUNTIME / "dist"
         engine.run_tool("tsc", "-p", RUNTIME, "--outDir", tmp_path, folder=tmp_path)
-        made = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()}
-        assert made == {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()}
+        assert texts_in(tmp_path) == texts_in(folder)
 
     def test_of_the_runtime_are_short(self) -> None:
         sizes = {path.name: len(path.read_text().splitlines()) for path in RUNTIME.glob("*.ts")}
         assert {name for name, size in sizes.items() if size > LONGEST} == set()
+
+
+def texts_in(folder: Path) -> dict[Path, str]:
+    """The files of a folder, by their paths in it."""
+    paths = (path for path in folder.rglob("*") if path.is_file())
+    return {path.relative_to(folder): path.read_text(encoding="utf-8") for path in paths}
 
 
 def compile_strictly(sources: Path, target: Path) -> None:
@@ -129,6 +136,30 @@ def run_program(text: str) -> Any:
 
 GO = "55 06 56 AA 47 64 00 AB FF 50"
 """`go` with counter 0x55, speed 100 and steer -85: the counter is escaped as 56 AA."""
+
+
+INHERITED = """
+protocol: odd
+endpoints: {a: {title: A}, b: {title: B}}
+byte_order: little
+frame:
+  a:
+    id: {type: uint8, id: true}
+    constructor: {type: uint8, counter: true}
+    payload: {}
+    sum: {type: uint8, algorithm: sum-8, covers: id..constructor}
+    end: {literal: 0xC0}
+  b:
+    id: {type: uint8, id: true}
+    constructor: {type: uint8, default: 7}
+    payload: {}
+    sum: {type: uint8, algorithm: sum-8, covers: id..constructor}
+    end: {literal: 0xC0}
+transparency: slip
+messages:
+  ping: {id: 1, from: a}
+  pong: {id: 1, from: b}
+"""
 
 
 class TestCalls:
@@ -183,6 +214,30 @@ class TestCalls:
             console.log(JSON.stringify([counter(), counter({ parts: { counter: 9 } }), counter()]));
         """)
         assert found == [0, 9, 1]
+
+    def test_a_part_is_given_only_if_the_caller_gives_it(self) -> None:
+        """Every object inherits a `constructor`, which is no value of the part of that name."""
+        protocol = compile_file("odd.yaml", text=INHERITED).protocol
+        assert protocol is not None
+        found = run_program(
+            f"""
+            import * as odd from "{engine.module_of(protocol)}";
+            const told = new odd.Encoder("a");
+            const frames = [
+                () => odd.encode({{ message: "ping" }}),
+                () => odd.encode({{ message: "ping" }}, {{ parts: {{ constructor: 3 }} }}),
+                () => told.encode({{ message: "ping" }}),
+                () => odd.encode({{ message: "pong" }}),
+            ].map((make) => {{
+                try {{ return Array.from(make()); }} catch (error) {{ return error.path; }}
+            }});
+            console.log(JSON.stringify(frames));
+            """
+        )
+        # The identity, the part, the sum of both and the end. In ping the part is a counter, and in
+        # pong a value with a default.
+        counted = [[1, 3, 4, 0xC0], [1, 0, 1, 0xC0]]
+        assert found == ["constructor", *counted, [1, 7, 8, 0xC0]]
 
     def test_streams_and_iterators_give_the_events_of_a_decoder(self) -> None:
         found = run_program(f"""

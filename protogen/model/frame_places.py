@@ -25,6 +25,11 @@ class Place(msgspec.Struct, frozen=True):
     absent: int = 0
     """Number of these bytes that are absent where the payload is empty."""
 
+    @property
+    def is_tail(self) -> bool:
+        """True if it is counted from the first byte behind the payload."""
+        return self.side is Side.TAIL
+
     def at(self, head_size: int, payload: int) -> int:
         """Index in the content of a frame with such a payload."""
         if self.side is Side.HEAD:

@@ -18,6 +18,7 @@ from protogen.model.frame_places import PlacedPart
 from protogen.model.messages import Message
 from protogen.model.part_plans import (
     ChecksumPlan,
+    CountedLength,
     FurtherLength,
     IdentityGroup,
     LengthPlan,
@@ -28,6 +29,7 @@ from protogen.model.parts import (
     ChoicePart,
     CounterPart,
     IdentityPart,
+    LengthPart,
     Part,
     ValuePart,
     varying_bits,
@@ -226,6 +228,17 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return {**told, **self.told_size(wire)}
 
     # --- parts ------------------------------------------------------------------------------------
+
+    def counted(self, part: LengthPart) -> CountedLength:
+        """What a length of the frame counts."""
+        assert self.length is not None
+        every = (self.length, *self.further_lengths)
+        return next(item for item in every if item.part.name == part.name)
+
+    @property
+    def content(self) -> tuple[Part, ...]:
+        """The parts in wire order, the payload among them, without the end."""
+        return self.frame.parts[: len(self.frame.parts) - len(self.end_literals)]
 
     @property
     def placed(self) -> tuple[PlacedPart, ...]:

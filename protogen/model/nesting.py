@@ -39,6 +39,15 @@ def fields_inside(type_: Type) -> Iterator[Field]:
         yield from fields_inside(inner)
 
 
+def structs_in(type_: Type) -> Iterator[Struct]:
+    """Yield the structs that a value has directly inside, or is."""
+    if isinstance(type_, Struct):
+        yield type_
+        return
+    for inner in inner_types(type_):
+        yield from structs_in(inner)
+
+
 def is_composite(type_: Type) -> bool:
     """True if the type is fields, or a choice between types."""
     return isinstance(type_, Struct | Switch)

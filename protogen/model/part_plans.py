@@ -58,6 +58,19 @@ class CountedLength(msgspec.Struct, frozen=True, kw_only=True):
     """Value for an empty payload."""
     optional: int
     """Bytes that it counts besides, where the payload is not empty."""
+    region_end: int | None = None
+    """Where it counts bytes on the wire: how many there are up to the end of what is stuffed, in a
+    frame of the value `base`."""
+
+    @property
+    def greatest(self) -> int:
+        """The greatest value that a receiver takes."""
+        return self.part.greatest
+
+    @property
+    def is_further(self) -> bool:
+        """True if another length decides where a frame ends."""
+        return self.part.agrees_with is not None
 
     def counted(self, payload: int) -> int:
         """Value for a payload of that size."""
@@ -67,9 +80,6 @@ class CountedLength(msgspec.Struct, frozen=True, kw_only=True):
 class LengthPlan(CountedLength, frozen=True, kw_only=True):
     """The length part: its value for a payload, and the payload's size for a value."""
 
-    region_end: int | None = None
-    """Where it counts bytes on the wire: how many there are up to the end of what is stuffed, in a
-    frame of the value `base`."""
     most: int | None = None
     """Where it counts bytes on the wire: the greatest value that a frame has."""
 

@@ -295,6 +295,7 @@ class RepeatStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
 class RestStep(Step, frozen=True, kw_only=True, eq=False, dict=True):
     """The bytes that are left of the payload, where no case has the value of the selector."""
 
+    type: Switch
     count: Count
 
 

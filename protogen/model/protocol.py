@@ -120,6 +120,12 @@ class Sender(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         names = {message.name for group in self.plan.groups for message in group.messages}
         return tuple(message for message in self.messages if message.name in names)
 
+    @property
+    def encode_only(self) -> tuple[Message, ...]:
+        """The messages that no decoder yields, as nothing tells them from others."""
+        names = {message.name for message in self.received}
+        return tuple(message for message in self.messages if message.name not in names)
+
     def received_as(self, message: str) -> str:
         """Name of the message that a decoder takes this one for, where nothing tells them apart."""
         for overload in self.overloads:

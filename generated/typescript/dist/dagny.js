@@ -44,7 +44,7 @@ function writeSonar(w, m) {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar = { name: "sonar", identities: [[[83, 83]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar = /* @__PURE__ */ rt.plan("sonar", [[[83, 83]]], [0, 128, 1], readSonar, writeSonar);
 
 function readGps(r) {
   const data = r.rest(0, 128, false, "data");
@@ -56,7 +56,7 @@ function writeGps(w, m) {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps = { name: "gps", identities: [[[71, 71]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readGps, write: writeGps };
+export const planOfGps = /* @__PURE__ */ rt.plan("gps", [[[71, 71]]], [0, 128, 1], readGps, writeGps);
 
 function readBump(r) {
   const data = r.rest(0, 128, false, "data");
@@ -68,7 +68,7 @@ function writeBump(w, m) {
 }
 
 /** Plan of Bump, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBump = { name: "bump", identities: [[[66, 66]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readBump, write: writeBump };
+export const planOfBump = /* @__PURE__ */ rt.plan("bump", [[[66, 66]]], [0, 128, 1], readBump, writeBump);
 
 function readOdometry(r) {
   const data = r.rest(0, 128, false, "data");
@@ -80,7 +80,7 @@ function writeOdometry(w, m) {
 }
 
 /** Plan of Odometry, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOdometry = { name: "odometry", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readOdometry, write: writeOdometry };
+export const planOfOdometry = /* @__PURE__ */ rt.plan("odometry", [[[79, 79]]], [0, 128, 1], readOdometry, writeOdometry);
 
 function readSpeed(r) {
   const data = r.rest(0, 128, false, "data");
@@ -92,7 +92,7 @@ function writeSpeed(w, m) {
 }
 
 /** Plan of Speed, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSpeed = { name: "speed", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readSpeed, write: writeSpeed };
+export const planOfSpeed = /* @__PURE__ */ rt.plan("speed", [[[79, 79]]], [0, 128, 1], readSpeed, writeSpeed);
 
 function readWheelSlip(r) {
   const data = r.rest(0, 128, false, "data");
@@ -104,7 +104,7 @@ function writeWheelSlip(w, m) {
 }
 
 /** Plan of WheelSlip, for `readPayload` and `writePayload` of the runtime. */
-export const planOfWheelSlip = { name: "wheel_slip", identities: [[[87, 87]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readWheelSlip, write: writeWheelSlip };
+export const planOfWheelSlip = /* @__PURE__ */ rt.plan("wheel_slip", [[[87, 87]]], [0, 128, 1], readWheelSlip, writeWheelSlip);
 
 function readBattery(r) {
   const data = r.rest(0, 128, false, "data");
@@ -116,7 +116,7 @@ function writeBattery(w, m) {
 }
 
 /** Plan of Battery, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBattery = { name: "battery", identities: [[[98, 98]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readBattery, write: writeBattery };
+export const planOfBattery = /* @__PURE__ */ rt.plan("battery", [[[98, 98]]], [0, 128, 1], readBattery, writeBattery);
 
 function readReflexSettings(r) {
   const data = r.rest(0, 128, false, "data");
@@ -128,7 +128,7 @@ function writeReflexSettings(w, m) {
 }
 
 /** Plan of ReflexSettings, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReflexSettings = { name: "reflex_settings", identities: [[[82, 82]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readReflexSettings, write: writeReflexSettings };
+export const planOfReflexSettings = /* @__PURE__ */ rt.plan("reflex_settings", [[[82, 82]]], [0, 128, 1], readReflexSettings, writeReflexSettings);
 
 function readHardwareStatus(r) {
   const data = r.rest(0, 128, false, "data");
@@ -140,7 +140,7 @@ function writeHardwareStatus(w, m) {
 }
 
 /** Plan of HardwareStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfHardwareStatus = { name: "hardware_status", identities: [[[72, 72]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readHardwareStatus, write: writeHardwareStatus };
+export const planOfHardwareStatus = /* @__PURE__ */ rt.plan("hardware_status", [[[72, 72]]], [0, 128, 1], readHardwareStatus, writeHardwareStatus);
 
 function readMotor(r) {
   const s = r.u8("s");
@@ -152,7 +152,7 @@ function writeMotor(w, m) {
 }
 
 /** Plan of Motor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor = { name: "motor", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMotor, write: writeMotor };
+export const planOfMotor = /* @__PURE__ */ rt.plan("motor", [[[77, 77]]], [1], readMotor, writeMotor);
 
 function readSteering(r) {
   const s = r.u8("s");
@@ -164,7 +164,7 @@ function writeSteering(w, m) {
 }
 
 /** Plan of Steering, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSteering = { name: "steering", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readSteering, write: writeSteering };
+export const planOfSteering = /* @__PURE__ */ rt.plan("steering", [[[83, 83]]], [1], readSteering, writeSteering);
 
 function readReflex(r) {
   const reflex = r.u8("reflex");
@@ -176,7 +176,7 @@ function writeReflex(w, m) {
 }
 
 /** Plan of Reflex, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReflex = { name: "reflex", identities: [[[82, 82]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readReflex, write: writeReflex };
+export const planOfReflex = /* @__PURE__ */ rt.plan("reflex", [[[82, 82]]], [1], readReflex, writeReflex);
 
 function readPowerDown(r) {
   const code = r.constant(r.u8("code"), 3, "code");
@@ -188,7 +188,7 @@ function writePowerDown(w, m) {
 }
 
 /** Plan of PowerDown, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPowerDown = { name: "power_down", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readPowerDown, write: writePowerDown };
+export const planOfPowerDown = /* @__PURE__ */ rt.plan("power_down", [[[80, 80]]], [1], readPowerDown, writePowerDown);
 
 function readPower(r) {
   const code = r.u8("code");
@@ -200,16 +200,15 @@ function writePower(w, m) {
 }
 
 /** Plan of Power, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPower = { name: "power", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readPower, write: writePower };
+export const planOfPower = /* @__PURE__ */ rt.plan("power", [[[80, 80]]], [1], readPower, writePower);
 
 function readLaser(r) {
   const readings = [];
-  while (r.left > 0) {
-    r.count(readings.length + 1, 0, 512, "fill", "readings");
-    r.enter("readings");
-    readings.push(r.u8(readings.length));
-    r.leave();
+  r.enter("readings");
+  for (let i = 0, lastAt = -1; (lastAt = r.next(lastAt, i, 0, 512)) >= 0; i++) {
+    readings.push(r.u8(i));
   }
+  r.leave();
   return { message: "laser", readings };
 }
 
@@ -223,7 +222,7 @@ function writeLaser(w, m) {
 }
 
 /** Plan of Laser, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLaser = { name: "laser", identities: [[[76, 76]]], sizes: { least: 0, greatest: 512, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readLaser, write: writeLaser };
+export const planOfLaser = /* @__PURE__ */ rt.plan("laser", [[[76, 76]]], [0, 512, 1], readLaser, writeLaser);
 
 function readCommand(r) {
   const data = r.rest(0, 128, false, "data");
@@ -235,7 +234,7 @@ function writeCommand(w, m) {
 }
 
 /** Plan of Command, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCommand = { name: "command", identities: [[[67, 67]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readCommand, write: writeCommand };
+export const planOfCommand = /* @__PURE__ */ rt.plan("command", [[[67, 67]]], [0, 128, 1], readCommand, writeCommand);
 
 /** What to do with the reflex; bits 6 to 7 of reflex. */
 export function reflexReflexCommand(record) {
@@ -249,7 +248,7 @@ export function reflexReflexNumber(record) {
 
 /** Distance; the metres times 50 in cm. */
 export function laserReadingsCm(record) {
-  return record.readings.map((raw) => rt.physical(raw, 2n, 0n, 1n));
+  return rt.physical(record.readings, 2n, 0n, 1n);
 }
 
 /** The raw `readings` nearest to a value in cm. */
@@ -258,163 +257,143 @@ export function laserReadingsFromCm(value) {
 }
 
 function hostFrame() {
-  return {
+  return rt.frame({
     sender: "host",
-    form: "",
+    headSize: 1,
+    tailSize: 1,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    markSize: 0,
+    least: 2,
+    greatest: 515,
+    givenUpAt: 515,
+    rescans: true,
+    takesWhole: true,
+    cutAmbiguous: true,
+    start: "after_end",
+    end: rt.hex("0a"),
     parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
+      rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 1,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: true, isBits: false, lowest: 0, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0a"),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
-    transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
-    least: 2,
-    greatest: 515,
-    givenUpAt: 515,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: true,
-    takesWhole: true,
-    cutAmbiguous: true,
-    isBounded: false,
-    kept: null,
-    isCut: false,
     groups: [
-      { identities: [[[77, 77]]], messages: [planOfMotor], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[83, 83]]], messages: [planOfSteering], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[82, 82]]], messages: [planOfReflex], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[80, 80]]], messages: [planOfPower], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[76, 76]]], messages: [planOfLaser], fixed: null, greatest: 512, carried: [{ least: 0, greatest: 512, step: 1 }] },
-      { identities: [[[67, 67]]], messages: [planOfCommand], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
+      rt.group([planOfMotor]),
+      rt.group([planOfSteering]),
+      rt.group([planOfReflex]),
+      rt.group([planOfPower]),
+      rt.group([planOfLaser]),
+      rt.group([planOfCommand]),
     ],
-    encodeOnly: [planOfPowerDown],
-  };
+    encodeOnly: [
+      planOfPowerDown,
+    ],
+  });
 }
 
 function robotFrame() {
-  return {
+  return rt.frame({
     sender: "robot",
-    form: "",
+    headSize: 1,
+    tailSize: 1,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    markSize: 0,
+    least: 2,
+    greatest: 515,
+    givenUpAt: 515,
+    rescans: true,
+    takesWhole: true,
+    cutAmbiguous: true,
+    start: "after_end",
+    end: rt.hex("0a"),
     parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
+      rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 1,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: true, isBits: false, lowest: 0, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0a"),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
-    transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
-    least: 2,
-    greatest: 515,
-    givenUpAt: 515,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: true,
-    takesWhole: true,
-    cutAmbiguous: true,
-    isBounded: false,
-    kept: null,
-    isCut: false,
     groups: [
-      { identities: [[[83, 83]]], messages: [planOfSonar], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[71, 71]]], messages: [planOfGps], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[66, 66]]], messages: [planOfBump], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[79, 79]]], messages: [planOfOdometry], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[87, 87]]], messages: [planOfWheelSlip], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[98, 98]]], messages: [planOfBattery], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[82, 82]]], messages: [planOfReflexSettings], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[72, 72]]], messages: [planOfHardwareStatus], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[76, 76]]], messages: [planOfLaser], fixed: null, greatest: 512, carried: [{ least: 0, greatest: 512, step: 1 }] },
-      { identities: [[[67, 67]]], messages: [planOfCommand], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
+      rt.group([planOfSonar]),
+      rt.group([planOfGps]),
+      rt.group([planOfBump]),
+      rt.group([planOfOdometry]),
+      rt.group([planOfWheelSlip]),
+      rt.group([planOfBattery]),
+      rt.group([planOfReflexSettings]),
+      rt.group([planOfHardwareStatus]),
+      rt.group([planOfLaser]),
+      rt.group([planOfCommand]),
     ],
-    encodeOnly: [planOfSpeed],
-  };
+    encodeOnly: [
+      planOfSpeed,
+    ],
+  });
 }
 
 const protocol = /* @__PURE__ */ new rt.Protocol([hostFrame, robotFrame], [["host", "robot"]]);
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder extends rt.Decoder {
-  constructor(sender) {
-    super(protocol.senders(sender));
-  }
+    constructor(sender) {
+        super(protocol.senders(sender));
+    }
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export class Encoder extends rt.Encoder {
-  constructor(sender) {
-    super(protocol, sender);
-  }
+    constructor(sender) {
+        super(protocol, sender);
+    }
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */
 export function decode(frame, options = {}) {
-  return protocol.decode(frame, options);
+    return protocol.decode(frame, options);
 }
 
 /** The frame of a message. Throws an EncodeError. */
 export function encode(message, options = {}) {
-  return protocol.encode(message, options);
+    return protocol.encode(message, options);
 }
 
 /** A stream of bytes into one of events. */
 export function decoderStream(sender) {
-  return rt.streamOf(new Decoder(sender));
+    return rt.streamOf(new Decoder(sender));
 }
 
 /** The events of chunks, as they come in. */
 export function events(chunks, sender) {
-  return rt.eventsOf(new Decoder(sender), chunks);
+    return rt.eventsOf(new Decoder(sender), chunks);
 }

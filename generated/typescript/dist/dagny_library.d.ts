@@ -282,12 +282,6 @@ export interface Senders {
   readonly robot: { readonly message: RobotMessage; readonly parts: RobotParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = 
   | Sonar
@@ -303,18 +297,9 @@ export type MessageInput =
   | Laser
   | ShutdownInput;
 
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
-
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
 }
-
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
 export declare const planOfSonar: rt.MessagePlan<Sonar>;
@@ -370,14 +355,29 @@ export declare function laserReadingsCm(record: Pick<Laser, "readings">): number
 /** The raw `readings` nearest to a value in cm. */
 export declare function laserReadingsFromCm(value: number): number;
 
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
+
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export declare class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {
-  constructor(sender?: S);
+    constructor(sender?: S);
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export declare class Encoder extends rt.Encoder<MessageInput, GivenParts> {
-  constructor(sender: SenderName);
+    constructor(sender: SenderName);
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */

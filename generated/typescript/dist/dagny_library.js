@@ -27,10 +27,9 @@ export const PowerCode = {
 };
 
 function readSonar(r) {
-  const count = 5;
   const distances = [];
   r.enter("distances");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 5; i++) {
     distances.push(r.u8(i));
   }
   r.leave();
@@ -47,7 +46,7 @@ function writeSonar(w, m) {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar = { name: "sonar", identities: [[[83, 83]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar = /* @__PURE__ */ rt.plan("sonar", [[[83, 83]]], [5], readSonar, writeSonar);
 
 function readGps(r) {
   const nmea = rt.latin1(r.rest(0, 126, false, "nmea"));
@@ -59,7 +58,7 @@ function writeGps(w, m) {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps = { name: "gps", identities: [[[71, 71]]], sizes: { least: 0, greatest: 126, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readGps, write: writeGps };
+export const planOfGps = /* @__PURE__ */ rt.plan("gps", [[[71, 71]]], [0, 126, 1], readGps, writeGps);
 
 function readOdometry(r) {
   const right_count = r.u16("right_count");
@@ -92,7 +91,7 @@ function writeOdometry(w, m) {
 }
 
 /** Plan of Odometry, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOdometry = { name: "odometry", identities: [[[79, 79]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, tellsItsEnd: false, held: [], read: readOdometry, write: writeOdometry };
+export const planOfOdometry = /* @__PURE__ */ rt.plan("odometry", [[[79, 79]]], [13], readOdometry, writeOdometry);
 
 function readBattery(r) {
   const main_battery = r.u8("main_battery");
@@ -108,7 +107,7 @@ function writeBattery(w, m) {
 }
 
 /** Plan of Battery, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBattery = { name: "battery", identities: [[[98, 98]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, tellsItsEnd: false, held: [], read: readBattery, write: writeBattery };
+export const planOfBattery = /* @__PURE__ */ rt.plan("battery", [[[98, 98]]], [6], readBattery, writeBattery);
 
 function readCompass(r) {
   const x = r.i16("x");
@@ -122,7 +121,7 @@ function writeCompass(w, m) {
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCompass = { name: "compass", identities: [[[67, 67]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readCompass, write: writeCompass };
+export const planOfCompass = /* @__PURE__ */ rt.plan("compass", [[[67, 67]]], [4], readCompass, writeCompass);
 
 function readMotor(r) {
   const speed = r.i8("speed");
@@ -134,7 +133,7 @@ function writeMotor(w, m) {
 }
 
 /** Plan of Motor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor = { name: "motor", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMotor, write: writeMotor };
+export const planOfMotor = /* @__PURE__ */ rt.plan("motor", [[[77, 77]]], [1], readMotor, writeMotor);
 
 function readDrive(r) {
   const speed = r.i8("speed");
@@ -148,7 +147,7 @@ function writeDrive(w, m) {
 }
 
 /** Plan of Drive, for `readPayload` and `writePayload` of the runtime. */
-export const planOfDrive = { name: "drive", identities: [[[77, 77]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readDrive, write: writeDrive };
+export const planOfDrive = /* @__PURE__ */ rt.plan("drive", [[[77, 77]]], [2], readDrive, writeDrive);
 
 function readSteering(r) {
   const position = r.u8("position");
@@ -160,7 +159,7 @@ function writeSteering(w, m) {
 }
 
 /** Plan of Steering, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSteering = { name: "steering", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readSteering, write: writeSteering };
+export const planOfSteering = /* @__PURE__ */ rt.plan("steering", [[[83, 83]]], [1], readSteering, writeSteering);
 
 function readPower(r) {
   const code = r.u8("code");
@@ -172,7 +171,7 @@ function writePower(w, m) {
 }
 
 /** Plan of Power, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPower = { name: "power", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readPower, write: writePower };
+export const planOfPower = /* @__PURE__ */ rt.plan("power", [[[80, 80]]], [1], readPower, writePower);
 
 function readGpsPosition(r) {
   const latitude = r.i32("latitude");
@@ -186,16 +185,15 @@ function writeGpsPosition(w, m) {
 }
 
 /** Plan of GpsPosition, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGpsPosition = { name: "gps_position", identities: [[[71, 71]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readGpsPosition, write: writeGpsPosition };
+export const planOfGpsPosition = /* @__PURE__ */ rt.plan("gps_position", [[[71, 71]]], [8], readGpsPosition, writeGpsPosition);
 
 function readLaser(r) {
   const readings = [];
-  while (r.left > 0) {
-    r.count(readings.length + 1, 0, 512, "fill", "readings");
-    r.enter("readings");
-    readings.push(r.u8(readings.length));
-    r.leave();
+  r.enter("readings");
+  for (let i = 0, lastAt = -1; (lastAt = r.next(lastAt, i, 0, 512)) >= 0; i++) {
+    readings.push(r.u8(i));
   }
+  r.leave();
   return { message: "laser", readings };
 }
 
@@ -209,7 +207,7 @@ function writeLaser(w, m) {
 }
 
 /** Plan of Laser, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLaser = { name: "laser", identities: [[[76, 76]]], sizes: { least: 0, greatest: 512, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readLaser, write: writeLaser };
+export const planOfLaser = /* @__PURE__ */ rt.plan("laser", [[[76, 76]]], [0, 512, 1], readLaser, writeLaser);
 
 function readShutdown(r) {
   const confirmation = r.constant(r.text(7, rt.PLAIN_TEXT, false, "confirmation"), "ZZZZZZZ", "confirmation");
@@ -221,7 +219,7 @@ function writeShutdown(w, m) {
 }
 
 /** Plan of Shutdown, for `readPayload` and `writePayload` of the runtime. */
-export const planOfShutdown = { name: "shutdown", identities: [[[90, 90]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readShutdown, write: writeShutdown };
+export const planOfShutdown = /* @__PURE__ */ rt.plan("shutdown", [[[90, 90]]], [7], readShutdown, writeShutdown);
 
 /** Latitude in deg. */
 export function gpsPositionLatitudeDeg(record) {
@@ -245,7 +243,7 @@ export function gpsPositionLongitudeFromDeg(value) {
 
 /** Distance; the metres times 50 in cm. */
 export function laserReadingsCm(record) {
-  return record.readings.map((raw) => rt.physical(raw, 2n, 0n, 1n));
+  return rt.physical(record.readings, 2n, 0n, 1n);
 }
 
 /** The raw `readings` nearest to a value in cm. */
@@ -254,154 +252,126 @@ export function laserReadingsFromCm(value) {
 }
 
 function hostFrame() {
-  return {
+  return rt.frame({
     sender: "host",
-    form: "",
-    parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "payload", name: "payload", size: 0 },
-    ],
-    payloadIndex: 1,
     headSize: 1,
     tailSize: 0,
     tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    endIsUnique: true,
+    markSize: 0,
+    least: 2,
+    greatest: 1027,
+    givenUpAt: 1027,
+    takesWhole: true,
+    start: "after_end",
+    end: rt.hex("0d"),
+    parts: [
+      rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
+      { kind: "payload", name: "payload", size: 0 },
+    ],
+    payloadIndex: 1,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
-    sums: [],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0d"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
     firstStuffed: 0,
     lastStuffed: 1,
     behindRegion: 0,
-    least: 2,
-    greatest: 1027,
-    givenUpAt: 1027,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
     groups: [
-      { identities: [[[77, 77]]], messages: [planOfMotor, planOfDrive], fixed: null, greatest: 2, carried: [{ least: 1, greatest: 1, step: 0 }, { least: 2, greatest: 2, step: 0 }] },
-      { identities: [[[83, 83]]], messages: [planOfSteering], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[80, 80]]], messages: [planOfPower], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[71, 71]]], messages: [planOfGpsPosition], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[76, 76]]], messages: [planOfLaser], fixed: null, greatest: 512, carried: [{ least: 0, greatest: 512, step: 1 }] },
-      { identities: [[[90, 90]]], messages: [planOfShutdown], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
+      rt.group([planOfMotor, planOfDrive]),
+      rt.group([planOfSteering]),
+      rt.group([planOfPower]),
+      rt.group([planOfGpsPosition]),
+      rt.group([planOfLaser]),
+      rt.group([planOfShutdown]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 function robotFrame() {
-  return {
+  return rt.frame({
     sender: "robot",
-    form: "",
-    parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "payload", name: "payload", size: 0 },
-    ],
-    payloadIndex: 1,
     headSize: 1,
     tailSize: 0,
     tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    endIsUnique: true,
+    markSize: 0,
+    least: 2,
+    greatest: 1027,
+    givenUpAt: 1027,
+    takesWhole: true,
+    start: "after_end",
+    end: rt.hex("0d"),
+    parts: [
+      rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
+      { kind: "payload", name: "payload", size: 0 },
+    ],
+    payloadIndex: 1,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
-    sums: [],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0d"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
     firstStuffed: 0,
     lastStuffed: 1,
     behindRegion: 0,
-    least: 2,
-    greatest: 1027,
-    givenUpAt: 1027,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
     groups: [
-      { identities: [[[83, 83]]], messages: [planOfSonar], fixed: 5, greatest: 5, carried: [{ least: 5, greatest: 5, step: 0 }] },
-      { identities: [[[71, 71]]], messages: [planOfGps], fixed: null, greatest: 126, carried: [{ least: 0, greatest: 126, step: 1 }] },
-      { identities: [[[79, 79]]], messages: [planOfOdometry], fixed: 13, greatest: 13, carried: [{ least: 13, greatest: 13, step: 0 }] },
-      { identities: [[[98, 98]]], messages: [planOfBattery], fixed: 6, greatest: 6, carried: [{ least: 6, greatest: 6, step: 0 }] },
-      { identities: [[[67, 67]]], messages: [planOfCompass], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[76, 76]]], messages: [planOfLaser], fixed: null, greatest: 512, carried: [{ least: 0, greatest: 512, step: 1 }] },
-      { identities: [[[90, 90]]], messages: [planOfShutdown], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
+      rt.group([planOfSonar]),
+      rt.group([planOfGps]),
+      rt.group([planOfOdometry]),
+      rt.group([planOfBattery]),
+      rt.group([planOfCompass]),
+      rt.group([planOfLaser]),
+      rt.group([planOfShutdown]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 const protocol = /* @__PURE__ */ new rt.Protocol([hostFrame, robotFrame], [["host", "robot"]]);
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder extends rt.Decoder {
-  constructor(sender) {
-    super(protocol.senders(sender));
-  }
+    constructor(sender) {
+        super(protocol.senders(sender));
+    }
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export class Encoder extends rt.Encoder {
-  constructor(sender) {
-    super(protocol, sender);
-  }
+    constructor(sender) {
+        super(protocol, sender);
+    }
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */
 export function decode(frame, options = {}) {
-  return protocol.decode(frame, options);
+    return protocol.decode(frame, options);
 }
 
 /** The frame of a message. Throws an EncodeError. */
 export function encode(message, options = {}) {
-  return protocol.encode(message, options);
+    return protocol.encode(message, options);
 }
 
 /** A stream of bytes into one of events. */
 export function decoderStream(sender) {
-  return rt.streamOf(new Decoder(sender));
+    return rt.streamOf(new Decoder(sender));
 }
 
 /** The events of chunks, as they come in. */
 export function events(chunks, sender) {
-  return rt.eventsOf(new Decoder(sender), chunks);
+    return rt.eventsOf(new Decoder(sender), chunks);
 }

@@ -47,7 +47,7 @@ function readStop(r) {
 function writeStop(w, m) {}
 
 /** Plan of Stop, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStop = { name: "stop", identities: [[[83, 83]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readStop, write: writeStop };
+export const planOfStop = /* @__PURE__ */ rt.plan("stop", [[[83, 83]]], [0], readStop, writeStop);
 
 function readReset(r) {
   return { message: "reset" };
@@ -56,7 +56,7 @@ function readReset(r) {
 function writeReset(w, m) {}
 
 /** Plan of Reset, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReset = { name: "reset", identities: [[[82, 82]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readReset, write: writeReset };
+export const planOfReset = /* @__PURE__ */ rt.plan("reset", [[[82, 82]]], [0], readReset, writeReset);
 
 function readMode(r) {
   const mode = r.u8("mode");
@@ -68,7 +68,7 @@ function writeMode(w, m) {
 }
 
 /** Plan of Mode, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMode = { name: "mode", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMode, write: writeMode };
+export const planOfMode = /* @__PURE__ */ rt.plan("mode", [[[77, 77]]], [1], readMode, writeMode);
 
 function readGo(r) {
   const speed = r.i16("speed");
@@ -82,7 +82,7 @@ function writeGo(w, m) {
 }
 
 /** Plan of Go, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGo = { name: "go", identities: [[[71, 71]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readGo, write: writeGo };
+export const planOfGo = /* @__PURE__ */ rt.plan("go", [[[71, 71]]], [4], readGo, writeGo);
 
 function readLimits(r) {
   const max_speed = r.i16("max_speed");
@@ -96,7 +96,7 @@ function writeLimits(w, m) {
 }
 
 /** Plan of Limits, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLimits = { name: "limits", identities: [[[76, 76]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readLimits, write: writeLimits };
+export const planOfLimits = /* @__PURE__ */ rt.plan("limits", [[[76, 76]]], [4], readLimits, writeLimits);
 
 function readTiming(r) {
   const period = r.u16("period");
@@ -110,7 +110,7 @@ function writeTiming(w, m) {
 }
 
 /** Plan of Timing, for `readPayload` and `writePayload` of the runtime. */
-export const planOfTiming = { name: "timing", identities: [[[84, 84]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readTiming, write: writeTiming };
+export const planOfTiming = /* @__PURE__ */ rt.plan("timing", [[[84, 84]]], [4], readTiming, writeTiming);
 
 function readGpsMode(r) {
   const mode = r.u8("mode");
@@ -122,7 +122,7 @@ function writeGpsMode(w, m) {
 }
 
 /** Plan of GpsMode, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGpsMode = { name: "gps_mode", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readGpsMode, write: writeGpsMode };
+export const planOfGpsMode = /* @__PURE__ */ rt.plan("gps_mode", [[[80, 80]]], [1], readGpsMode, writeGpsMode);
 
 function readAck(r) {
   return { message: "ack" };
@@ -131,7 +131,7 @@ function readAck(r) {
 function writeAck(w, m) {}
 
 /** Plan of Ack, for `readPayload` and `writePayload` of the runtime. */
-export const planOfAck = { name: "ack", identities: [[[65, 65]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readAck, write: writeAck };
+export const planOfAck = /* @__PURE__ */ rt.plan("ack", [[[65, 65]]], [0], readAck, writeAck);
 
 function readNack(r) {
   return { message: "nack" };
@@ -140,7 +140,7 @@ function readNack(r) {
 function writeNack(w, m) {}
 
 /** Plan of Nack, for `readPayload` and `writePayload` of the runtime. */
-export const planOfNack = { name: "nack", identities: [[[78, 78]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readNack, write: writeNack };
+export const planOfNack = /* @__PURE__ */ rt.plan("nack", [[[78, 78]]], [0], readNack, writeNack);
 
 function readStatus(r) {
   const status = r.u8("status");
@@ -182,7 +182,7 @@ function writeStatus(w, m) {
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStatus = { name: "status", identities: [[[73, 73]]], sizes: { least: 18, greatest: 18, step: 0 }, known: 18, tellsItsEnd: false, held: [], read: readStatus, write: writeStatus };
+export const planOfStatus = /* @__PURE__ */ rt.plan("status", [[[73, 73]]], [18], readStatus, writeStatus);
 
 function readGps(r) {
   const nmea = rt.latin1(r.rest(0, 121, false, "nmea"));
@@ -194,7 +194,7 @@ function writeGps(w, m) {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps = { name: "gps", identities: [[[80, 80]]], sizes: { least: 0, greatest: 121, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readGps, write: writeGps };
+export const planOfGps = /* @__PURE__ */ rt.plan("gps", [[[80, 80]]], [0, 121, 1], readGps, writeGps);
 
 /** Wanted angle of the joint in deg. */
 export function goSteerDeg(record) {
@@ -227,166 +227,140 @@ export function statusAngleFromDeg(value) {
 }
 
 function pcFrame() {
-  return {
+  return rt.frame({
     sender: "pc",
-    form: "",
+    headSize: 4,
+    tailSize: 1,
+    tailSizeEmpty: 1,
+    identityIsEarly: true,
+    startWords: [rt.hex("55")],
+    startBytes: rt.hex("55"),
+    startIsUnique: true,
+    markSize: 1,
+    least: 5,
+    greatest: 250,
+    givenUpAt: 250,
+    takesWhole: true,
+    start: "word",
+    end: rt.hex(""),
     parts: [
       { kind: "literal", name: "sync", size: 1, bytes: rt.hex("55") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 2, base: 2, optional: 0, least: 2, greatest: 123, overWire: false, isFurther: false, regionEnd: 0 } },
-      { kind: "number", name: "counter", size: 1, part: { kind: "value", name: "counter", number: rt.number(8, "little"), slot: 0, least: 0, greatest: 255, default: null, isCounter: true, values: null, between: null, isHeld: false } },
-      { kind: "number", name: "command", size: 1, part: { kind: "identity", name: "command", number: rt.number(8, "little"), slot: 1 } },
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 2, base: 2, optional: 0, greatest: 123, least: 2 }),
+      rt.single({ kind: "value", name: "counter", number: rt.number(8), slot: 0, least: 0, greatest: 255, default: null, isCounter: true }),
+      rt.single({ kind: "identity", name: "command", number: rt.number(8), slot: 1 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
     payloadIndex: 4,
-    headSize: 4,
-    tailSize: 1,
-    tailSizeEmpty: 1,
     slots: 3,
     identity: [1],
     lastIdentity: 1,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "counter", key: "counter", slot: 0 },
       { name: "command", key: "command", slot: 1 },
     ],
     sums: [
-      { name: "crc", number: rt.number(8, "little"), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
+      { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    start: "word",
-    startWords: [rt.hex("55")],
-    startBytes: rt.hex("55"),
-    startIsUnique: true,
-    end: rt.hex(""),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
     firstStuffed: 1,
     lastStuffed: 5,
     behindRegion: 0,
-    least: 5,
-    greatest: 250,
-    givenUpAt: 250,
     greatestPayload: 121,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
     groups: [
-      { identities: [[[83, 83]]], messages: [planOfStop], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[82, 82]]], messages: [planOfReset], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[77, 77]]], messages: [planOfMode], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[71, 71]]], messages: [planOfGo], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[76, 76]]], messages: [planOfLimits], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[84, 84]]], messages: [planOfTiming], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[80, 80]]], messages: [planOfGpsMode], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
+      rt.group([planOfStop]),
+      rt.group([planOfReset]),
+      rt.group([planOfMode]),
+      rt.group([planOfGo]),
+      rt.group([planOfLimits]),
+      rt.group([planOfTiming]),
+      rt.group([planOfGpsMode]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 function espFrame() {
-  return {
+  return rt.frame({
     sender: "esp",
-    form: "",
+    headSize: 4,
+    tailSize: 1,
+    tailSizeEmpty: 1,
+    identityIsEarly: true,
+    startWords: [rt.hex("55")],
+    startBytes: rt.hex("55"),
+    startIsUnique: true,
+    markSize: 1,
+    least: 5,
+    greatest: 250,
+    givenUpAt: 250,
+    takesWhole: true,
+    start: "word",
+    end: rt.hex(""),
     parts: [
       { kind: "literal", name: "sync", size: 1, bytes: rt.hex("55") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 2, base: 2, optional: 0, least: 2, greatest: 123, overWire: false, isFurther: false, regionEnd: 0 } },
-      { kind: "number", name: "counter", size: 1, part: { kind: "value", name: "counter", number: rt.number(8, "little"), slot: 0, least: 0, greatest: 255, default: null, isCounter: true, values: null, between: null, isHeld: false } },
-      { kind: "number", name: "command", size: 1, part: { kind: "identity", name: "command", number: rt.number(8, "little"), slot: 1 } },
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 2, base: 2, optional: 0, greatest: 123, least: 2 }),
+      rt.single({ kind: "value", name: "counter", number: rt.number(8), slot: 0, least: 0, greatest: 255, default: null, isCounter: true }),
+      rt.single({ kind: "identity", name: "command", number: rt.number(8), slot: 1 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
     payloadIndex: 4,
-    headSize: 4,
-    tailSize: 1,
-    tailSizeEmpty: 1,
     slots: 3,
     identity: [1],
     lastIdentity: 1,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "counter", key: "counter", slot: 0 },
       { name: "command", key: "command", slot: 1 },
     ],
     sums: [
-      { name: "crc", number: rt.number(8, "little"), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
+      { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    start: "word",
-    startWords: [rt.hex("55")],
-    startBytes: rt.hex("55"),
-    startIsUnique: true,
-    end: rt.hex(""),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
     firstStuffed: 1,
     lastStuffed: 5,
     behindRegion: 0,
-    least: 5,
-    greatest: 250,
-    givenUpAt: 250,
     greatestPayload: 121,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
     groups: [
-      { identities: [[[65, 65]]], messages: [planOfAck], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[78, 78]]], messages: [planOfNack], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[73, 73]]], messages: [planOfStatus], fixed: 18, greatest: 18, carried: [{ least: 18, greatest: 18, step: 0 }] },
-      { identities: [[[80, 80]]], messages: [planOfGps], fixed: null, greatest: 121, carried: [{ least: 0, greatest: 121, step: 1 }] },
+      rt.group([planOfAck]),
+      rt.group([planOfNack]),
+      rt.group([planOfStatus]),
+      rt.group([planOfGps]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 const protocol = /* @__PURE__ */ new rt.Protocol([pcFrame, espFrame], [["pc", "esp"]]);
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder extends rt.Decoder {
-  constructor(sender) {
-    super(protocol.senders(sender));
-  }
+    constructor(sender) {
+        super(protocol.senders(sender));
+    }
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export class Encoder extends rt.Encoder {
-  constructor(sender) {
-    super(protocol, sender);
-  }
+    constructor(sender) {
+        super(protocol, sender);
+    }
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */
 export function decode(frame, options = {}) {
-  return protocol.decode(frame, options);
+    return protocol.decode(frame, options);
 }
 
 /** The frame of a message. Throws an EncodeError. */
 export function encode(message, options = {}) {
-  return protocol.encode(message, options);
+    return protocol.encode(message, options);
 }
 
 /** A stream of bytes into one of events. */
 export function decoderStream(sender) {
-  return rt.streamOf(new Decoder(sender));
+    return rt.streamOf(new Decoder(sender));
 }
 
 /** The events of chunks, as they come in. */
 export function events(chunks, sender) {
-  return rt.eventsOf(new Decoder(sender), chunks);
+    return rt.eventsOf(new Decoder(sender), chunks);
 }

@@ -68,7 +68,7 @@ function readRequestSystemStatus(r) {
 function writeRequestSystemStatus(w, m) {}
 
 /** Plan of RequestSystemStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfRequestSystemStatus = { name: "request_system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readRequestSystemStatus, write: writeRequestSystemStatus };
+export const planOfRequestSystemStatus = /* @__PURE__ */ rt.plan("request_system_status", [[[1, 1]], [[1, 1]]], [0], readRequestSystemStatus, writeRequestSystemStatus);
 
 function readSystemStatus(r) {
   const timestamp = r.u32be("timestamp");
@@ -84,7 +84,7 @@ function writeSystemStatus(w, m) {
 }
 
 /** Plan of SystemStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSystemStatus = { name: "system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, tellsItsEnd: false, held: [], read: readSystemStatus, write: writeSystemStatus };
+export const planOfSystemStatus = /* @__PURE__ */ rt.plan("system_status", [[[1, 1]], [[1, 1]]], [9], readSystemStatus, writeSystemStatus);
 
 function readMotor00(r) {
   const unknown_ = r.u8("unknown");
@@ -96,7 +96,7 @@ function writeMotor00(w, m) {
 }
 
 /** Plan of Motor00, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor00 = { name: "motor_00", identities: [[[2, 2]], [[0, 0]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMotor00, write: writeMotor00 };
+export const planOfMotor00 = /* @__PURE__ */ rt.plan("motor_00", [[[2, 2]], [[0, 0]]], [1], readMotor00, writeMotor00);
 
 function readMotorCommand(r) {
   const axis = r.u8("axis");
@@ -116,7 +116,7 @@ function writeMotorCommand(w, m) {
 }
 
 /** Plan of MotorCommand, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorCommand = { name: "motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 14, greatest: 14, step: 0 }, known: 14, tellsItsEnd: false, held: [], read: readMotorCommand, write: writeMotorCommand };
+export const planOfMotorCommand = /* @__PURE__ */ rt.plan("motor_command", [[[2, 2]], [[7, 7]]], [14], readMotorCommand, writeMotorCommand);
 
 function readConfirmMotorCommand(r) {
   const unknown_ = r.u32be("unknown");
@@ -132,7 +132,7 @@ function writeConfirmMotorCommand(w, m) {
 }
 
 /** Plan of ConfirmMotorCommand, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmMotorCommand = { name: "confirm_motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, tellsItsEnd: false, held: [], read: readConfirmMotorCommand, write: writeConfirmMotorCommand };
+export const planOfConfirmMotorCommand = /* @__PURE__ */ rt.plan("confirm_motor_command", [[[2, 2]], [[7, 7]]], [9], readConfirmMotorCommand, writeConfirmMotorCommand);
 
 function readMotor0a(r) {
   return { message: "motor_0a" };
@@ -141,7 +141,7 @@ function readMotor0a(r) {
 function writeMotor0a(w, m) {}
 
 /** Plan of Motor0a, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor0a = { name: "motor_0a", identities: [[[2, 2]], [[10, 10]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readMotor0a, write: writeMotor0a };
+export const planOfMotor0a = /* @__PURE__ */ rt.plan("motor_0a", [[[2, 2]], [[10, 10]]], [0], readMotor0a, writeMotor0a);
 
 function readMotor0c(r) {
   return { message: "motor_0c" };
@@ -150,7 +150,7 @@ function readMotor0c(r) {
 function writeMotor0c(w, m) {}
 
 /** Plan of Motor0c, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor0c = { name: "motor_0c", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readMotor0c, write: writeMotor0c };
+export const planOfMotor0c = /* @__PURE__ */ rt.plan("motor_0c", [[[2, 2]], [[12, 12]]], [0], readMotor0c, writeMotor0c);
 
 function readMotor0cAnswer(r) {
   const unknown_ = r.u32be("unknown");
@@ -164,7 +164,7 @@ function writeMotor0cAnswer(w, m) {
 }
 
 /** Plan of Motor0cAnswer, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor0cAnswer = { name: "motor_0c_answer", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readMotor0cAnswer, write: writeMotor0cAnswer };
+export const planOfMotor0cAnswer = /* @__PURE__ */ rt.plan("motor_0c_answer", [[[2, 2]], [[12, 12]]], [8], readMotor0cAnswer, writeMotor0cAnswer);
 
 function readReadMotor(r) {
   const unknown_ = r.u32be("unknown");
@@ -197,7 +197,7 @@ function writeReadMotor(w, m) {
 }
 
 /** Plan of ReadMotor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReadMotor = { name: "read_motor", identities: [[[2, 2]], [[33, 33]]], sizes: { least: 25, greatest: 25, step: 0 }, known: 25, tellsItsEnd: false, held: [], read: readReadMotor, write: writeReadMotor };
+export const planOfReadMotor = /* @__PURE__ */ rt.plan("read_motor", [[[2, 2]], [[33, 33]]], [25], readReadMotor, writeReadMotor);
 
 function readStartStopMotorPackets(r) {
   const timestamp = r.u32be("timestamp");
@@ -211,7 +211,7 @@ function writeStartStopMotorPackets(w, m) {
 }
 
 /** Plan of StartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStartStopMotorPackets = { name: "start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readStartStopMotorPackets, write: writeStartStopMotorPackets };
+export const planOfStartStopMotorPackets = /* @__PURE__ */ rt.plan("start_stop_motor_packets", [[[2, 2]], [[34, 34]]], [8], readStartStopMotorPackets, writeStartStopMotorPackets);
 
 function readConfirmStartStopMotorPackets(r) {
   const unknown_ = r.u32be("unknown");
@@ -225,7 +225,7 @@ function writeConfirmStartStopMotorPackets(w, m) {
 }
 
 /** Plan of ConfirmStartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmStartStopMotorPackets = { name: "confirm_start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readConfirmStartStopMotorPackets, write: writeConfirmStartStopMotorPackets };
+export const planOfConfirmStartStopMotorPackets = /* @__PURE__ */ rt.plan("confirm_start_stop_motor_packets", [[[2, 2]], [[34, 34]]], [8], readConfirmStartStopMotorPackets, writeConfirmStartStopMotorPackets);
 
 function readRequestJoystickData(r) {
   return { message: "request_joystick_data" };
@@ -234,7 +234,7 @@ function readRequestJoystickData(r) {
 function writeRequestJoystickData(w, m) {}
 
 /** Plan of RequestJoystickData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfRequestJoystickData = { name: "request_joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readRequestJoystickData, write: writeRequestJoystickData };
+export const planOfRequestJoystickData = /* @__PURE__ */ rt.plan("request_joystick_data", [[[3, 3]], [[0, 0]]], [0], readRequestJoystickData, writeRequestJoystickData);
 
 function readJoystickData(r) {
   const timestamp = r.u32be("timestamp");
@@ -252,7 +252,7 @@ function writeJoystickData(w, m) {
 }
 
 /** Plan of JoystickData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfJoystickData = { name: "joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, tellsItsEnd: false, held: [], read: readJoystickData, write: writeJoystickData };
+export const planOfJoystickData = /* @__PURE__ */ rt.plan("joystick_data", [[[3, 3]], [[0, 0]]], [13], readJoystickData, writeJoystickData);
 
 function readStartStopSonarPackets(r) {
   const frequency = r.u32be("frequency");
@@ -276,7 +276,7 @@ function writeStartStopSonarPackets(w, m) {
 }
 
 /** Plan of StartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStartStopSonarPackets = { name: "start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, tellsItsEnd: false, held: [], read: readStartStopSonarPackets, write: writeStartStopSonarPackets };
+export const planOfStartStopSonarPackets = /* @__PURE__ */ rt.plan("start_stop_sonar_packets", [[[4, 4]], [[0, 0]]], [13], readStartStopSonarPackets, writeStartStopSonarPackets);
 
 function readConfirmStartStopSonarPackets(r) {
   const unknown_ = r.u32be("unknown");
@@ -290,23 +290,22 @@ function writeConfirmStartStopSonarPackets(w, m) {
 }
 
 /** Plan of ConfirmStartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmStartStopSonarPackets = { name: "confirm_start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readConfirmStartStopSonarPackets, write: writeConfirmStartStopSonarPackets };
+export const planOfConfirmStartStopSonarPackets = /* @__PURE__ */ rt.plan("confirm_start_stop_sonar_packets", [[[4, 4]], [[0, 0]]], [8], readConfirmStartStopSonarPackets, writeConfirmStartStopSonarPackets);
 
 function readSonarData(r) {
   const unknown_ = r.u32be("unknown");
   const timestamp = r.u32be("timestamp");
   const readings = [];
-  while (r.left > 0) {
-    r.count(readings.length + 1, 0, 82, "fill", "readings");
-    r.enter("readings");
-    r.enter(readings.length);
+  r.enter("readings");
+  for (let i = 0, lastAt = -1; (lastAt = r.next(lastAt, i, 0, 82)) >= 0; i++) {
+    r.enter(i);
     const cluster = r.u8("cluster");
     const distance = r.u16be("distance");
     const value = { cluster, distance };
     r.leave();
     readings.push(value);
-    r.leave();
   }
+  r.leave();
   return { message: "sonar_data", unknown: unknown_, timestamp, readings };
 }
 
@@ -326,7 +325,7 @@ function writeSonarData(w, m) {
 }
 
 /** Plan of SonarData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonarData = { name: "sonar_data", identities: [[[4, 4]], [[2, 2]]], sizes: { least: 8, greatest: 254, step: 3 }, known: null, tellsItsEnd: false, held: [], read: readSonarData, write: writeSonarData };
+export const planOfSonarData = /* @__PURE__ */ rt.plan("sonar_data", [[[4, 4]], [[2, 2]]], [8, 254, 3], readSonarData, writeSonarData);
 
 function readInitializeDigitalIo(r) {
   const unknown_ = r.u32be("unknown");
@@ -338,7 +337,7 @@ function writeInitializeDigitalIo(w, m) {
 }
 
 /** Plan of InitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
-export const planOfInitializeDigitalIo = { name: "initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readInitializeDigitalIo, write: writeInitializeDigitalIo };
+export const planOfInitializeDigitalIo = /* @__PURE__ */ rt.plan("initialize_digital_io", [[[5, 5]], [[0, 0]]], [4], readInitializeDigitalIo, writeInitializeDigitalIo);
 
 function readConfirmInitializeDigitalIo(r) {
   const unknown_ = r.u32be("unknown");
@@ -352,7 +351,7 @@ function writeConfirmInitializeDigitalIo(w, m) {
 }
 
 /** Plan of ConfirmInitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmInitializeDigitalIo = { name: "confirm_initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readConfirmInitializeDigitalIo, write: writeConfirmInitializeDigitalIo };
+export const planOfConfirmInitializeDigitalIo = /* @__PURE__ */ rt.plan("confirm_initialize_digital_io", [[[5, 5]], [[0, 0]]], [8], readConfirmInitializeDigitalIo, writeConfirmInitializeDigitalIo);
 
 function readChangedBumpers(r) {
   const timestamp = r.u32be("timestamp");
@@ -368,7 +367,7 @@ function writeChangedBumpers(w, m) {
 }
 
 /** Plan of ChangedBumpers, for `readPayload` and `writePayload` of the runtime. */
-export const planOfChangedBumpers = { name: "changed_bumpers", identities: [[[5, 5]], [[1, 1]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readChangedBumpers, write: writeChangedBumpers };
+export const planOfChangedBumpers = /* @__PURE__ */ rt.plan("changed_bumpers", [[[5, 5]], [[1, 1]]], [7], readChangedBumpers, writeChangedBumpers);
 
 function readCheckIoChanged(r) {
   const timestamp = r.u32be("timestamp");
@@ -380,7 +379,7 @@ function writeCheckIoChanged(w, m) {
 }
 
 /** Plan of CheckIoChanged, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCheckIoChanged = { name: "check_io_changed", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readCheckIoChanged, write: writeCheckIoChanged };
+export const planOfCheckIoChanged = /* @__PURE__ */ rt.plan("check_io_changed", [[[5, 5]], [[2, 2]]], [4], readCheckIoChanged, writeCheckIoChanged);
 
 function readCheckIoChangedAnswer(r) {
   const unknown_ = r.u32be("unknown");
@@ -401,7 +400,7 @@ function writeCheckIoChangedAnswer(w, m) {
 }
 
 /** Plan of CheckIoChangedAnswer, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCheckIoChangedAnswer = { name: "check_io_changed_answer", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 12, greatest: 12, step: 0 }, known: 12, tellsItsEnd: false, held: [], read: readCheckIoChangedAnswer, write: writeCheckIoChangedAnswer };
+export const planOfCheckIoChangedAnswer = /* @__PURE__ */ rt.plan("check_io_changed_answer", [[[5, 5]], [[2, 2]]], [12], readCheckIoChangedAnswer, writeCheckIoChangedAnswer);
 
 function readChangedByte(r) {
   const timestamp = r.u32be("timestamp");
@@ -417,184 +416,160 @@ function writeChangedByte(w, m) {
 }
 
 /** Plan of ChangedByte, for `readPayload` and `writePayload` of the runtime. */
-export const planOfChangedByte = { name: "changed_byte", identities: [[[5, 5]], [[3, 3]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readChangedByte, write: writeChangedByte };
+export const planOfChangedByte = /* @__PURE__ */ rt.plan("changed_byte", [[[5, 5]], [[3, 3]]], [7], readChangedByte, writeChangedByte);
 
 function linuxFrame() {
-  return {
+  return rt.frame({
     sender: "linux",
-    form: "",
-    parts: [
-      { kind: "literal", name: "start", size: 2, bytes: rt.hex("1b02") },
-      { kind: "number", name: "class", size: 1, part: { kind: "identity", name: "class", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "number", name: "number", size: 1, part: { kind: "value", name: "number", number: rt.number(8, "little"), slot: 1, least: 0, greatest: 255, default: 255, isCounter: false, values: null, between: null, isHeld: false } },
-      { kind: "number", name: "subclass", size: 1, part: { kind: "identity", name: "subclass", number: rt.number(8, "little"), slot: 2 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 3, base: 0, optional: 0, least: 0, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
-      { kind: "payload", name: "payload", size: 0 },
-      { kind: "sum", name: "checksum", size: 1, sum: 0 },
-    ],
-    payloadIndex: 5,
     headSize: 6,
     tailSize: 1,
     tailSizeEmpty: 1,
-    slots: 4,
-    identity: [0, 2],
-    lastIdentity: 2,
     identityIsEarly: true,
-    told: [],
-    virtual: [],
-    shown: [
-      { name: "class", key: "class", slot: 0 },
-      { name: "number", key: "number", slot: 1 },
-      { name: "subclass", key: "subclass", slot: 2 },
-    ],
-    sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
-    ],
-    start: "word",
     startWords: [rt.hex("1b02")],
     startBytes: rt.hex("1b02"),
     startIsUnique: true,
-    end: rt.hex("1b03"),
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 2,
-    endsIdle: false,
-    transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
-    firstStuffed: 1,
-    lastStuffed: 6,
-    behindRegion: 0,
     least: 9,
     greatest: 782,
     givenUpAt: 782,
-    greatestPayload: 255,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
-    groups: [
-      { identities: [[[1, 1]], [[1, 1]]], messages: [planOfRequestSystemStatus], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[2, 2]], [[0, 0]]], messages: [planOfMotor00], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[2, 2]], [[7, 7]]], messages: [planOfMotorCommand], fixed: 14, greatest: 14, carried: [{ least: 14, greatest: 14, step: 0 }] },
-      { identities: [[[2, 2]], [[10, 10]]], messages: [planOfMotor0a], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[2, 2]], [[12, 12]]], messages: [planOfMotor0c], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[2, 2]], [[34, 34]]], messages: [planOfStartStopMotorPackets], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[3, 3]], [[0, 0]]], messages: [planOfRequestJoystickData], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[4, 4]], [[0, 0]]], messages: [planOfStartStopSonarPackets], fixed: 13, greatest: 13, carried: [{ least: 13, greatest: 13, step: 0 }] },
-      { identities: [[[5, 5]], [[0, 0]]], messages: [planOfInitializeDigitalIo], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[5, 5]], [[2, 2]]], messages: [planOfCheckIoChanged], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-    ],
-    encodeOnly: [],
-  };
-}
-
-function flexFrame() {
-  return {
-    sender: "flex",
-    form: "",
+    start: "word",
+    end: rt.hex("1b03"),
     parts: [
       { kind: "literal", name: "start", size: 2, bytes: rt.hex("1b02") },
-      { kind: "number", name: "class", size: 1, part: { kind: "identity", name: "class", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "number", name: "number", size: 1, part: { kind: "value", name: "number", number: rt.number(8, "little"), slot: 1, least: 0, greatest: 255, default: 255, isCounter: false, values: null, between: null, isHeld: false } },
-      { kind: "number", name: "subclass", size: 1, part: { kind: "identity", name: "subclass", number: rt.number(8, "little"), slot: 2 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 3, base: 0, optional: 0, least: 0, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
+      rt.single({ kind: "identity", name: "class", number: rt.number(8), slot: 0 }),
+      rt.single({ kind: "value", name: "number", number: rt.number(8), slot: 1, least: 0, greatest: 255, default: 255 }),
+      rt.single({ kind: "identity", name: "subclass", number: rt.number(8), slot: 2 }),
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 3, base: 0, optional: 0, greatest: 255, least: 0 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
     payloadIndex: 5,
-    headSize: 6,
-    tailSize: 1,
-    tailSizeEmpty: 1,
     slots: 4,
     identity: [0, 2],
     lastIdentity: 2,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "class", key: "class", slot: 0 },
       { name: "number", key: "number", slot: 1 },
       { name: "subclass", key: "subclass", slot: 2 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    start: "word",
-    startWords: [rt.hex("1b02")],
-    startBytes: rt.hex("1b02"),
-    startIsUnique: true,
-    end: rt.hex("1b03"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 2,
-    endsIdle: false,
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
     firstStuffed: 1,
     lastStuffed: 6,
     behindRegion: 0,
+    greatestPayload: 255,
+    groups: [
+      rt.group([planOfRequestSystemStatus]),
+      rt.group([planOfMotor00]),
+      rt.group([planOfMotorCommand]),
+      rt.group([planOfMotor0a]),
+      rt.group([planOfMotor0c]),
+      rt.group([planOfStartStopMotorPackets]),
+      rt.group([planOfRequestJoystickData]),
+      rt.group([planOfStartStopSonarPackets]),
+      rt.group([planOfInitializeDigitalIo]),
+      rt.group([planOfCheckIoChanged]),
+    ],
+  });
+}
+
+function flexFrame() {
+  return rt.frame({
+    sender: "flex",
+    headSize: 6,
+    tailSize: 1,
+    tailSizeEmpty: 1,
+    identityIsEarly: true,
+    startWords: [rt.hex("1b02")],
+    startBytes: rt.hex("1b02"),
+    startIsUnique: true,
+    endIsUnique: true,
+    markSize: 2,
     least: 16,
     greatest: 782,
     givenUpAt: 782,
-    greatestPayload: 255,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
-    groups: [
-      { identities: [[[1, 1]], [[1, 1]]], messages: [planOfSystemStatus], fixed: 9, greatest: 9, carried: [{ least: 9, greatest: 9, step: 0 }] },
-      { identities: [[[2, 2]], [[7, 7]]], messages: [planOfConfirmMotorCommand], fixed: 9, greatest: 9, carried: [{ least: 9, greatest: 9, step: 0 }] },
-      { identities: [[[2, 2]], [[12, 12]]], messages: [planOfMotor0cAnswer], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[2, 2]], [[33, 33]]], messages: [planOfReadMotor], fixed: 25, greatest: 25, carried: [{ least: 25, greatest: 25, step: 0 }] },
-      { identities: [[[2, 2]], [[34, 34]]], messages: [planOfConfirmStartStopMotorPackets], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[3, 3]], [[0, 0]]], messages: [planOfJoystickData], fixed: 13, greatest: 13, carried: [{ least: 13, greatest: 13, step: 0 }] },
-      { identities: [[[4, 4]], [[0, 0]]], messages: [planOfConfirmStartStopSonarPackets], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[4, 4]], [[2, 2]]], messages: [planOfSonarData], fixed: null, greatest: 254, carried: [{ least: 8, greatest: 254, step: 3 }] },
-      { identities: [[[5, 5]], [[0, 0]]], messages: [planOfConfirmInitializeDigitalIo], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[5, 5]], [[1, 1]]], messages: [planOfChangedBumpers], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[5, 5]], [[2, 2]]], messages: [planOfCheckIoChangedAnswer], fixed: 12, greatest: 12, carried: [{ least: 12, greatest: 12, step: 0 }] },
-      { identities: [[[5, 5]], [[3, 3]]], messages: [planOfChangedByte], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
+    start: "word",
+    end: rt.hex("1b03"),
+    parts: [
+      { kind: "literal", name: "start", size: 2, bytes: rt.hex("1b02") },
+      rt.single({ kind: "identity", name: "class", number: rt.number(8), slot: 0 }),
+      rt.single({ kind: "value", name: "number", number: rt.number(8), slot: 1, least: 0, greatest: 255, default: 255 }),
+      rt.single({ kind: "identity", name: "subclass", number: rt.number(8), slot: 2 }),
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 3, base: 0, optional: 0, greatest: 255, least: 0 }),
+      { kind: "payload", name: "payload", size: 0 },
+      { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
-    encodeOnly: [],
-  };
+    payloadIndex: 5,
+    slots: 4,
+    identity: [0, 2],
+    lastIdentity: 2,
+    shown: [
+      { name: "class", key: "class", slot: 0 },
+      { name: "number", key: "number", slot: 1 },
+      { name: "subclass", key: "subclass", slot: 2 },
+    ],
+    sums: [
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
+    ],
+    transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
+    firstStuffed: 1,
+    lastStuffed: 6,
+    behindRegion: 0,
+    greatestPayload: 255,
+    groups: [
+      rt.group([planOfSystemStatus]),
+      rt.group([planOfConfirmMotorCommand]),
+      rt.group([planOfMotor0cAnswer]),
+      rt.group([planOfReadMotor]),
+      rt.group([planOfConfirmStartStopMotorPackets]),
+      rt.group([planOfJoystickData]),
+      rt.group([planOfConfirmStartStopSonarPackets]),
+      rt.group([planOfSonarData]),
+      rt.group([planOfConfirmInitializeDigitalIo]),
+      rt.group([planOfChangedBumpers]),
+      rt.group([planOfCheckIoChangedAnswer]),
+      rt.group([planOfChangedByte]),
+    ],
+  });
 }
 
 const protocol = /* @__PURE__ */ new rt.Protocol([linuxFrame, flexFrame], [["linux", "flex"]]);
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder extends rt.Decoder {
-  constructor(sender) {
-    super(protocol.senders(sender));
-  }
+    constructor(sender) {
+        super(protocol.senders(sender));
+    }
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export class Encoder extends rt.Encoder {
-  constructor(sender) {
-    super(protocol, sender);
-  }
+    constructor(sender) {
+        super(protocol, sender);
+    }
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */
 export function decode(frame, options = {}) {
-  return protocol.decode(frame, options);
+    return protocol.decode(frame, options);
 }
 
 /** The frame of a message. Throws an EncodeError. */
 export function encode(message, options = {}) {
-  return protocol.encode(message, options);
+    return protocol.encode(message, options);
 }
 
 /** A stream of bytes into one of events. */
 export function decoderStream(sender) {
-  return rt.streamOf(new Decoder(sender));
+    return rt.streamOf(new Decoder(sender));
 }
 
 /** The events of chunks, as they come in. */
 export function events(chunks, sender) {
-  return rt.eventsOf(new Decoder(sender), chunks);
+    return rt.eventsOf(new Decoder(sender), chunks);
 }

@@ -485,12 +485,6 @@ export interface Senders {
   readonly flex: { readonly message: FlexMessage; readonly parts: FlexParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = 
   | RequestSystemStatus
@@ -520,19 +514,10 @@ export type MessageInput =
   | IrRun
   | IrReport;
 
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
-
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
   readonly number?: number | undefined;
 }
-
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Plan of RequestSystemStatus, for `readPayload` and `writePayload` of the runtime. */
 export declare const planOfRequestSystemStatus: rt.MessagePlan<RequestSystemStatus>;
@@ -618,14 +603,29 @@ export declare function systemStatusBatteryVoltageV(record: Pick<SystemStatus, "
 /** The raw `battery_voltage` nearest to a value in V. */
 export declare function systemStatusBatteryVoltageFromV(value: number): number;
 
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
+
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export declare class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {
-  constructor(sender?: S);
+    constructor(sender?: S);
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export declare class Encoder extends rt.Encoder<MessageInput, GivenParts> {
-  constructor(sender: SenderName);
+    constructor(sender: SenderName);
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */

@@ -376,12 +376,6 @@ export interface Senders {
   readonly brain: { readonly message: BrainMessage; readonly parts: BrainParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = 
   | MoveManual
@@ -399,18 +393,9 @@ export type MessageInput =
   | MotorControllerMessage
   | DebugNumbers;
 
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
-
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
 }
-
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Plan of MoveManual, for `readPayload` and `writePayload` of the runtime. */
 export declare const planOfMoveManual: rt.MessagePlan<MoveManual>;
@@ -460,14 +445,29 @@ export declare function moveRelativeTwostepAngleDeg(record: Pick<MoveRelativeTwo
 /** The raw `angle` nearest to a value in deg. */
 export declare function moveRelativeTwostepAngleFromDeg(value: number): number;
 
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
+
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export declare class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {
-  constructor(sender?: S);
+    constructor(sender?: S);
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export declare class Encoder extends rt.Encoder<MessageInput, GivenParts> {
-  constructor(sender: SenderName);
+    constructor(sender: SenderName);
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */

@@ -66,7 +66,7 @@ function writeMoveManual(w, m) {
 }
 
 /** Plan of MoveManual, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveManual = { name: "move_manual", identities: [[[128, 128]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readMoveManual, write: writeMoveManual };
+export const planOfMoveManual = /* @__PURE__ */ rt.plan("move_manual", [[[128, 128]]], [2], readMoveManual, writeMoveManual);
 
 function readMoveRelativeTwostep(r) {
   const angle = r.sint(2, 14, false, 128, "angle");
@@ -80,7 +80,7 @@ function writeMoveRelativeTwostep(w, m) {
 }
 
 /** Plan of MoveRelativeTwostep, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveRelativeTwostep = { name: "move_relative_twostep", identities: [[[129, 129]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readMoveRelativeTwostep, write: writeMoveRelativeTwostep };
+export const planOfMoveRelativeTwostep = /* @__PURE__ */ rt.plan("move_relative_twostep", [[[129, 129]]], [4], readMoveRelativeTwostep, writeMoveRelativeTwostep);
 
 function readDecreasePhaseAngle(r) {
   const ignored = r.uint(1, 7, true, 128, "ignored");
@@ -92,7 +92,7 @@ function writeDecreasePhaseAngle(w, m) {
 }
 
 /** Plan of DecreasePhaseAngle, for `readPayload` and `writePayload` of the runtime. */
-export const planOfDecreasePhaseAngle = { name: "decrease_phase_angle", identities: [[[209, 209]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readDecreasePhaseAngle, write: writeDecreasePhaseAngle };
+export const planOfDecreasePhaseAngle = /* @__PURE__ */ rt.plan("decrease_phase_angle", [[[209, 209]]], [1], readDecreasePhaseAngle, writeDecreasePhaseAngle);
 
 function readIncreasePhaseAngle(r) {
   const ignored = r.uint(1, 7, true, 128, "ignored");
@@ -104,13 +104,12 @@ function writeIncreasePhaseAngle(w, m) {
 }
 
 /** Plan of IncreasePhaseAngle, for `readPayload` and `writePayload` of the runtime. */
-export const planOfIncreasePhaseAngle = { name: "increase_phase_angle", identities: [[[210, 210]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readIncreasePhaseAngle, write: writeIncreasePhaseAngle };
+export const planOfIncreasePhaseAngle = /* @__PURE__ */ rt.plan("increase_phase_angle", [[[210, 210]]], [1], readIncreasePhaseAngle, writeIncreasePhaseAngle);
 
 function readMaintenance(r) {
-  const count = 3;
   const magic = [];
   r.enter("magic");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 3; i++) {
     magic.push(r.uint(1, 7, true, 128, i));
   }
   r.leave();
@@ -143,24 +142,24 @@ function writeMaintenance(w, m) {
   w.leave();
   const operation = w.int(m.operation, 0, 127, "operation");
   w.uint(operation, 1, 7, true, 128);
-  const value = m.argument;
+  const argument = m.argument;
   const selector = operation;
   if (selector === 82) {
-    w.nothing(value, "argument");
+    w.nothing(argument, "argument");
   }
   else if (selector === 83) {
-    const run_motor_controller_flasher = w.record(value, "argument");
+    const run_motor_controller_flasher = w.record(argument, "argument");
     w.enter("argument");
     w.uint(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), 1, 7, true, 128);
     w.leave();
   }
   else {
-    w.octets(value, 0, 1, true, "argument");
+    w.octets(argument, 0, 1, true, "argument");
   }
 }
 
 /** Plan of Maintenance, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMaintenance = { name: "maintenance", identities: [[[254, 254]]], sizes: { least: 4, greatest: 5, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readMaintenance, write: writeMaintenance };
+export const planOfMaintenance = /* @__PURE__ */ rt.plan("maintenance", [[[254, 254]]], [4, 5, 1], readMaintenance, writeMaintenance);
 
 function readGyro(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -178,7 +177,7 @@ function writeGyro(w, m) {
 }
 
 /** Plan of Gyro, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGyro = { name: "gyro", identities: [[[128, 128]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readGyro, write: writeGyro };
+export const planOfGyro = /* @__PURE__ */ rt.plan("gyro", [[[128, 128]]], [7], readGyro, writeGyro);
 
 function readXcel(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -196,7 +195,7 @@ function writeXcel(w, m) {
 }
 
 /** Plan of Xcel, for `readPayload` and `writePayload` of the runtime. */
-export const planOfXcel = { name: "xcel", identities: [[[129, 129]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readXcel, write: writeXcel };
+export const planOfXcel = /* @__PURE__ */ rt.plan("xcel", [[[129, 129]]], [7], readXcel, writeXcel);
 
 function readCompass(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -214,14 +213,13 @@ function writeCompass(w, m) {
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCompass = { name: "compass", identities: [[[130, 130]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readCompass, write: writeCompass };
+export const planOfCompass = /* @__PURE__ */ rt.plan("compass", [[[130, 130]]], [7], readCompass, writeCompass);
 
 function readLidar(r) {
   const status = r.uint(1, 7, true, 128, "status");
-  const count = 360;
   const distances = [];
   r.enter("distances");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 360; i++) {
     distances.push(r.uint(2, 14, true, 128, i));
   }
   r.leave();
@@ -239,14 +237,13 @@ function writeLidar(w, m) {
 }
 
 /** Plan of Lidar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLidar = { name: "lidar", identities: [[[132, 132]]], sizes: { least: 721, greatest: 721, step: 0 }, known: 721, tellsItsEnd: false, held: [], read: readLidar, write: writeLidar };
+export const planOfLidar = /* @__PURE__ */ rt.plan("lidar", [[[132, 132]]], [721], readLidar, writeLidar);
 
 function readSonar(r) {
   const status = r.uint(1, 7, true, 128, "status");
-  const count = 3;
   const distances = [];
   r.enter("distances");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 3; i++) {
     distances.push(r.uint(2, 14, true, 128, i));
   }
   r.leave();
@@ -264,7 +261,7 @@ function writeSonar(w, m) {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar = { name: "sonar", identities: [[[133, 133]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar = /* @__PURE__ */ rt.plan("sonar", [[[133, 133]]], [7], readSonar, writeSonar);
 
 function readFacing(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -280,7 +277,7 @@ function writeFacing(w, m) {
 }
 
 /** Plan of Facing, for `readPayload` and `writePayload` of the runtime. */
-export const planOfFacing = { name: "facing", identities: [[[160, 160]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, tellsItsEnd: false, held: [], read: readFacing, write: writeFacing };
+export const planOfFacing = /* @__PURE__ */ rt.plan("facing", [[[160, 160]]], [5], readFacing, writeFacing);
 
 function readOptflowIntegral(r) {
   const status = r.uint(1, 7, true, 128, "status");
@@ -296,7 +293,7 @@ function writeOptflowIntegral(w, m) {
 }
 
 /** Plan of OptflowIntegral, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOptflowIntegral = { name: "optflow_integral", identities: [[[161, 161]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, tellsItsEnd: false, held: [], read: readOptflowIntegral, write: writeOptflowIntegral };
+export const planOfOptflowIntegral = /* @__PURE__ */ rt.plan("optflow_integral", [[[161, 161]]], [5], readOptflowIntegral, writeOptflowIntegral);
 
 function readMotorControllerMessage(r) {
   const last_msg = r.uint(2, 14, false, 128, "last_msg");
@@ -308,7 +305,7 @@ function writeMotorControllerMessage(w, m) {
 }
 
 /** Plan of MotorControllerMessage, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorControllerMessage = { name: "motor_controller_message", identities: [[[209, 209]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readMotorControllerMessage, write: writeMotorControllerMessage };
+export const planOfMotorControllerMessage = /* @__PURE__ */ rt.plan("motor_controller_message", [[[209, 209]]], [2], readMotorControllerMessage, writeMotorControllerMessage);
 
 function readDebugNumbers(r) {
   const dbg1 = r.sint(5, 35, false, 128, "dbg1");
@@ -326,7 +323,7 @@ function writeDebugNumbers(w, m) {
 }
 
 /** Plan of DebugNumbers, for `readPayload` and `writePayload` of the runtime. */
-export const planOfDebugNumbers = { name: "debug_numbers", identities: [[[210, 210]]], sizes: { least: 20, greatest: 20, step: 0 }, known: 20, tellsItsEnd: false, held: [], read: readDebugNumbers, write: writeDebugNumbers };
+export const planOfDebugNumbers = /* @__PURE__ */ rt.plan("debug_numbers", [[[210, 210]]], [20], readDebugNumbers, writeDebugNumbers);
 
 /** How far to turn in deg. */
 export function moveRelativeTwostepAngleDeg(record) {
@@ -339,155 +336,128 @@ export function moveRelativeTwostepAngleFromDeg(value) {
 }
 
 function hostFrame() {
-  return {
+  return rt.frame({
     sender: "host",
-    form: "",
-    parts: [
-      { kind: "number", name: "start", size: 1, part: { kind: "identity", name: "start", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "payload", name: "payload", size: 0 },
-    ],
-    payloadIndex: 1,
     headSize: 1,
     tailSize: 0,
     tailSizeEmpty: 0,
-    slots: 1,
-    identity: [0],
-    lastIdentity: 0,
     identityIsEarly: true,
-    told: [],
-    virtual: [],
-    shown: [
-      { name: "start", key: "start", slot: 0 },
-    ],
-    sums: [],
-    start: "word",
     startWords: [rt.hex("80"), rt.hex("81"), rt.hex("82"), rt.hex("83"), rt.hex("84"), rt.hex("85"), rt.hex("86"), rt.hex("87"), rt.hex("88"), rt.hex("89"), rt.hex("8a"), rt.hex("8b"), rt.hex("8c"), rt.hex("8d"), rt.hex("8e"), rt.hex("8f"), rt.hex("90"), rt.hex("91"), rt.hex("92"), rt.hex("93"), rt.hex("94"), rt.hex("95"), rt.hex("96"), rt.hex("97"), rt.hex("98"), rt.hex("99"), rt.hex("9a"), rt.hex("9b"), rt.hex("9c"), rt.hex("9d"), rt.hex("9e"), rt.hex("9f"), rt.hex("a0"), rt.hex("a1"), rt.hex("a2"), rt.hex("a3"), rt.hex("a4"), rt.hex("a5"), rt.hex("a6"), rt.hex("a7"), rt.hex("a8"), rt.hex("a9"), rt.hex("aa"), rt.hex("ab"), rt.hex("ac"), rt.hex("ad"), rt.hex("ae"), rt.hex("af"), rt.hex("b0"), rt.hex("b1"), rt.hex("b2"), rt.hex("b3"), rt.hex("b4"), rt.hex("b5"), rt.hex("b6"), rt.hex("b7"), rt.hex("b8"), rt.hex("b9"), rt.hex("ba"), rt.hex("bb"), rt.hex("bc"), rt.hex("bd"), rt.hex("be"), rt.hex("bf"), rt.hex("c0"), rt.hex("c1"), rt.hex("c2"), rt.hex("c3"), rt.hex("c4"), rt.hex("c5"), rt.hex("c6"), rt.hex("c7"), rt.hex("c8"), rt.hex("c9"), rt.hex("ca"), rt.hex("cb"), rt.hex("cc"), rt.hex("cd"), rt.hex("ce"), rt.hex("cf"), rt.hex("d0"), rt.hex("d1"), rt.hex("d2"), rt.hex("d3"), rt.hex("d4"), rt.hex("d5"), rt.hex("d6"), rt.hex("d7"), rt.hex("d8"), rt.hex("d9"), rt.hex("da"), rt.hex("db"), rt.hex("dc"), rt.hex("dd"), rt.hex("de"), rt.hex("df"), rt.hex("e0"), rt.hex("e1"), rt.hex("e2"), rt.hex("e3"), rt.hex("e4"), rt.hex("e5"), rt.hex("e6"), rt.hex("e7"), rt.hex("e8"), rt.hex("e9"), rt.hex("ea"), rt.hex("eb"), rt.hex("ec"), rt.hex("ed"), rt.hex("ee"), rt.hex("ef"), rt.hex("f0"), rt.hex("f1"), rt.hex("f2"), rt.hex("f3"), rt.hex("f4"), rt.hex("f5"), rt.hex("f6"), rt.hex("f7"), rt.hex("f8"), rt.hex("f9"), rt.hex("fa"), rt.hex("fb"), rt.hex("fc"), rt.hex("fd"), rt.hex("fe")],
     startBytes: rt.hex(""),
     startIsUnique: true,
-    end: rt.hex("ff"),
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 0,
-    endsIdle: false,
-    transparency: null,
-    firstStuffed: -1,
-    lastStuffed: -1,
-    behindRegion: 0,
     least: 3,
     greatest: 7,
     givenUpAt: 7,
-    greatestPayload: 5,
     sevenBit: true,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
-    groups: [
-      { identities: [[[128, 128]]], messages: [planOfMoveManual], fixed: 2, greatest: 2, carried: [{ least: 2, greatest: 2, step: 0 }] },
-      { identities: [[[129, 129]]], messages: [planOfMoveRelativeTwostep], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[209, 209]]], messages: [planOfDecreasePhaseAngle], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[210, 210]]], messages: [planOfIncreasePhaseAngle], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[254, 254]]], messages: [planOfMaintenance], fixed: null, greatest: 5, carried: [{ least: 4, greatest: 5, step: 1 }] },
-    ],
-    encodeOnly: [],
-  };
-}
-
-function brainFrame() {
-  return {
-    sender: "brain",
-    form: "",
+    start: "word",
+    end: rt.hex("ff"),
     parts: [
-      { kind: "number", name: "start", size: 1, part: { kind: "identity", name: "start", number: rt.number(8, "little"), slot: 0 } },
+      rt.single({ kind: "identity", name: "start", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "start", key: "start", slot: 0 },
     ],
-    sums: [],
-    start: "word",
-    startWords: [rt.hex("80"), rt.hex("81"), rt.hex("82"), rt.hex("83"), rt.hex("84"), rt.hex("85"), rt.hex("86"), rt.hex("87"), rt.hex("88"), rt.hex("89"), rt.hex("8a"), rt.hex("8b"), rt.hex("8c"), rt.hex("8d"), rt.hex("8e"), rt.hex("8f"), rt.hex("90"), rt.hex("91"), rt.hex("92"), rt.hex("93"), rt.hex("94"), rt.hex("95"), rt.hex("96"), rt.hex("97"), rt.hex("98"), rt.hex("99"), rt.hex("9a"), rt.hex("9b"), rt.hex("9c"), rt.hex("9d"), rt.hex("9e"), rt.hex("9f"), rt.hex("a0"), rt.hex("a1"), rt.hex("a2"), rt.hex("a3"), rt.hex("a4"), rt.hex("a5"), rt.hex("a6"), rt.hex("a7"), rt.hex("a8"), rt.hex("a9"), rt.hex("aa"), rt.hex("ab"), rt.hex("ac"), rt.hex("ad"), rt.hex("ae"), rt.hex("af"), rt.hex("b0"), rt.hex("b1"), rt.hex("b2"), rt.hex("b3"), rt.hex("b4"), rt.hex("b5"), rt.hex("b6"), rt.hex("b7"), rt.hex("b8"), rt.hex("b9"), rt.hex("ba"), rt.hex("bb"), rt.hex("bc"), rt.hex("bd"), rt.hex("be"), rt.hex("bf"), rt.hex("c0"), rt.hex("c1"), rt.hex("c2"), rt.hex("c3"), rt.hex("c4"), rt.hex("c5"), rt.hex("c6"), rt.hex("c7"), rt.hex("c8"), rt.hex("c9"), rt.hex("ca"), rt.hex("cb"), rt.hex("cc"), rt.hex("cd"), rt.hex("ce"), rt.hex("cf"), rt.hex("d0"), rt.hex("d1"), rt.hex("d2"), rt.hex("d3"), rt.hex("d4"), rt.hex("d5"), rt.hex("d6"), rt.hex("d7"), rt.hex("d8"), rt.hex("d9"), rt.hex("da"), rt.hex("db"), rt.hex("dc"), rt.hex("dd"), rt.hex("de"), rt.hex("df"), rt.hex("e0"), rt.hex("e1"), rt.hex("e2"), rt.hex("e3"), rt.hex("e4"), rt.hex("e5"), rt.hex("e6"), rt.hex("e7"), rt.hex("e8"), rt.hex("e9"), rt.hex("ea"), rt.hex("eb"), rt.hex("ec"), rt.hex("ed"), rt.hex("ee"), rt.hex("ef"), rt.hex("f0"), rt.hex("f1"), rt.hex("f2"), rt.hex("f3"), rt.hex("f4"), rt.hex("f5"), rt.hex("f6"), rt.hex("f7"), rt.hex("f8"), rt.hex("f9"), rt.hex("fa"), rt.hex("fb"), rt.hex("fc"), rt.hex("fd"), rt.hex("fe")],
-    startBytes: rt.hex(""),
-    startIsUnique: true,
-    end: rt.hex(""),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
-    transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
+    greatestPayload: 5,
+    groups: [
+      rt.group([planOfMoveManual]),
+      rt.group([planOfMoveRelativeTwostep]),
+      rt.group([planOfDecreasePhaseAngle]),
+      rt.group([planOfIncreasePhaseAngle]),
+      rt.group([planOfMaintenance]),
+    ],
+  });
+}
+
+function brainFrame() {
+  return rt.frame({
+    sender: "brain",
+    headSize: 1,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [rt.hex("80"), rt.hex("81"), rt.hex("82"), rt.hex("83"), rt.hex("84"), rt.hex("85"), rt.hex("86"), rt.hex("87"), rt.hex("88"), rt.hex("89"), rt.hex("8a"), rt.hex("8b"), rt.hex("8c"), rt.hex("8d"), rt.hex("8e"), rt.hex("8f"), rt.hex("90"), rt.hex("91"), rt.hex("92"), rt.hex("93"), rt.hex("94"), rt.hex("95"), rt.hex("96"), rt.hex("97"), rt.hex("98"), rt.hex("99"), rt.hex("9a"), rt.hex("9b"), rt.hex("9c"), rt.hex("9d"), rt.hex("9e"), rt.hex("9f"), rt.hex("a0"), rt.hex("a1"), rt.hex("a2"), rt.hex("a3"), rt.hex("a4"), rt.hex("a5"), rt.hex("a6"), rt.hex("a7"), rt.hex("a8"), rt.hex("a9"), rt.hex("aa"), rt.hex("ab"), rt.hex("ac"), rt.hex("ad"), rt.hex("ae"), rt.hex("af"), rt.hex("b0"), rt.hex("b1"), rt.hex("b2"), rt.hex("b3"), rt.hex("b4"), rt.hex("b5"), rt.hex("b6"), rt.hex("b7"), rt.hex("b8"), rt.hex("b9"), rt.hex("ba"), rt.hex("bb"), rt.hex("bc"), rt.hex("bd"), rt.hex("be"), rt.hex("bf"), rt.hex("c0"), rt.hex("c1"), rt.hex("c2"), rt.hex("c3"), rt.hex("c4"), rt.hex("c5"), rt.hex("c6"), rt.hex("c7"), rt.hex("c8"), rt.hex("c9"), rt.hex("ca"), rt.hex("cb"), rt.hex("cc"), rt.hex("cd"), rt.hex("ce"), rt.hex("cf"), rt.hex("d0"), rt.hex("d1"), rt.hex("d2"), rt.hex("d3"), rt.hex("d4"), rt.hex("d5"), rt.hex("d6"), rt.hex("d7"), rt.hex("d8"), rt.hex("d9"), rt.hex("da"), rt.hex("db"), rt.hex("dc"), rt.hex("dd"), rt.hex("de"), rt.hex("df"), rt.hex("e0"), rt.hex("e1"), rt.hex("e2"), rt.hex("e3"), rt.hex("e4"), rt.hex("e5"), rt.hex("e6"), rt.hex("e7"), rt.hex("e8"), rt.hex("e9"), rt.hex("ea"), rt.hex("eb"), rt.hex("ec"), rt.hex("ed"), rt.hex("ee"), rt.hex("ef"), rt.hex("f0"), rt.hex("f1"), rt.hex("f2"), rt.hex("f3"), rt.hex("f4"), rt.hex("f5"), rt.hex("f6"), rt.hex("f7"), rt.hex("f8"), rt.hex("f9"), rt.hex("fa"), rt.hex("fb"), rt.hex("fc"), rt.hex("fd"), rt.hex("fe")],
+    startBytes: rt.hex(""),
+    startIsUnique: true,
+    markSize: 0,
     least: 3,
     greatest: 722,
     givenUpAt: 722,
-    greatestPayload: 721,
     sevenBit: true,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
-    groups: [
-      { identities: [[[128, 128]]], messages: [planOfGyro], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[129, 129]]], messages: [planOfXcel], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[130, 130]]], messages: [planOfCompass], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[132, 132]]], messages: [planOfLidar], fixed: 721, greatest: 721, carried: [{ least: 721, greatest: 721, step: 0 }] },
-      { identities: [[[133, 133]]], messages: [planOfSonar], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[160, 160]]], messages: [planOfFacing], fixed: 5, greatest: 5, carried: [{ least: 5, greatest: 5, step: 0 }] },
-      { identities: [[[161, 161]]], messages: [planOfOptflowIntegral], fixed: 5, greatest: 5, carried: [{ least: 5, greatest: 5, step: 0 }] },
-      { identities: [[[209, 209]]], messages: [planOfMotorControllerMessage], fixed: 2, greatest: 2, carried: [{ least: 2, greatest: 2, step: 0 }] },
-      { identities: [[[210, 210]]], messages: [planOfDebugNumbers], fixed: 20, greatest: 20, carried: [{ least: 20, greatest: 20, step: 0 }] },
+    start: "word",
+    end: rt.hex(""),
+    parts: [
+      rt.single({ kind: "identity", name: "start", number: rt.number(8), slot: 0 }),
+      { kind: "payload", name: "payload", size: 0 },
     ],
-    encodeOnly: [],
-  };
+    payloadIndex: 1,
+    slots: 1,
+    identity: [0],
+    lastIdentity: 0,
+    shown: [
+      { name: "start", key: "start", slot: 0 },
+    ],
+    firstStuffed: -1,
+    lastStuffed: -1,
+    behindRegion: 0,
+    greatestPayload: 721,
+    groups: [
+      rt.group([planOfGyro]),
+      rt.group([planOfXcel]),
+      rt.group([planOfCompass]),
+      rt.group([planOfLidar]),
+      rt.group([planOfSonar]),
+      rt.group([planOfFacing]),
+      rt.group([planOfOptflowIntegral]),
+      rt.group([planOfMotorControllerMessage]),
+      rt.group([planOfDebugNumbers]),
+    ],
+  });
 }
 
 const protocol = /* @__PURE__ */ new rt.Protocol([hostFrame, brainFrame], []);
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder extends rt.Decoder {
-  constructor(sender) {
-    super(protocol.senders(sender));
-  }
+    constructor(sender) {
+        super(protocol.senders(sender));
+    }
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export class Encoder extends rt.Encoder {
-  constructor(sender) {
-    super(protocol, sender);
-  }
+    constructor(sender) {
+        super(protocol, sender);
+    }
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */
 export function decode(frame, options = {}) {
-  return protocol.decode(frame, options);
+    return protocol.decode(frame, options);
 }
 
 /** The frame of a message. Throws an EncodeError. */
 export function encode(message, options = {}) {
-  return protocol.encode(message, options);
+    return protocol.encode(message, options);
 }
 
 /** A stream of bytes into one of events. */
 export function decoderStream(sender) {
-  return rt.streamOf(new Decoder(sender));
+    return rt.streamOf(new Decoder(sender));
 }
 
 /** The events of chunks, as they come in. */
 export function events(chunks, sender) {
-  return rt.eventsOf(new Decoder(sender), chunks);
+    return rt.eventsOf(new Decoder(sender), chunks);
 }

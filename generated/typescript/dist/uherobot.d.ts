@@ -96,27 +96,12 @@ export interface Senders {
   readonly board: { readonly message: BoardMessage; readonly parts: BoardParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = MotorsServosLeds | MotorsTwoServos | MotorTest | Status;
-
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
 
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
 }
-
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Plan of MotorsServosLeds, for `readPayload` and `writePayload` of the runtime. */
 export declare const planOfMotorsServosLeds: rt.MessagePlan<MotorsServosLeds>;
@@ -142,14 +127,29 @@ export declare function statusTemperatureDegc(record: Pick<Status, "temperature"
 /** The raw `temperature` nearest to a value in degC. */
 export declare function statusTemperatureFromDegc(value: number): number;
 
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
+
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export declare class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {
-  constructor(sender?: S);
+    constructor(sender?: S);
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export declare class Encoder extends rt.Encoder<MessageInput, GivenParts> {
-  constructor(sender: SenderName);
+    constructor(sender: SenderName);
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */

@@ -29,10 +29,9 @@ export const MotorsServosLedsLeds = {
 function readMotorsServosLeds(r) {
   const motor_1 = r.i16be("motor_1");
   const motor_2 = r.i16be("motor_2");
-  const count = 8;
   const servos = [];
   r.enter("servos");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 8; i++) {
     servos.push(r.u16be(i));
   }
   r.leave();
@@ -53,15 +52,14 @@ function writeMotorsServosLeds(w, m) {
 }
 
 /** Plan of MotorsServosLeds, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsServosLeds = { name: "motors_servos_leds", identities: [[[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, tellsItsEnd: false, held: [], read: readMotorsServosLeds, write: writeMotorsServosLeds };
+export const planOfMotorsServosLeds = /* @__PURE__ */ rt.plan("motors_servos_leds", [[[0, 0]]], [21], readMotorsServosLeds, writeMotorsServosLeds);
 
 function readMotorsTwoServos(r) {
   const motor_1 = r.i16be("motor_1");
   const motor_2 = r.i16be("motor_2");
-  const count = 2;
   const servos = [];
   r.enter("servos");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 2; i++) {
     servos.push(r.u16be(i));
   }
   r.leave();
@@ -80,7 +78,7 @@ function writeMotorsTwoServos(w, m) {
 }
 
 /** Plan of MotorsTwoServos, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsTwoServos = { name: "motors_two_servos", identities: [[[1, 1]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readMotorsTwoServos, write: writeMotorsTwoServos };
+export const planOfMotorsTwoServos = /* @__PURE__ */ rt.plan("motors_two_servos", [[[1, 1]]], [8], readMotorsTwoServos, writeMotorsTwoServos);
 
 function readMotorTest(r) {
   const motor_1 = r.i16be("motor_1");
@@ -94,7 +92,7 @@ function writeMotorTest(w, m) {
 }
 
 /** Plan of MotorTest, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorTest = { name: "motor_test", identities: [[[3, 3]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readMotorTest, write: writeMotorTest };
+export const planOfMotorTest = /* @__PURE__ */ rt.plan("motor_test", [[[3, 3]]], [4], readMotorTest, writeMotorTest);
 
 function readStatus(r) {
   const voltage = r.i16be("voltage");
@@ -110,7 +108,7 @@ function writeStatus(w, m) {
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStatus = { name: "status", identities: [[[1, 1]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, tellsItsEnd: false, held: [], read: readStatus, write: writeStatus };
+export const planOfStatus = /* @__PURE__ */ rt.plan("status", [[[1, 1]]], [6], readStatus, writeStatus);
 
 /** Voltage in V. */
 export function statusVoltageV(record) {
@@ -133,149 +131,123 @@ export function statusTemperatureFromDegc(value) {
 }
 
 function daemonFrame() {
-  return {
+  return rt.frame({
     sender: "daemon",
-    form: "",
-    parts: [
-      { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, least: 2, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "payload", name: "payload", size: 0 },
-    ],
-    payloadIndex: 3,
     headSize: 3,
     tailSize: 0,
     tailSizeEmpty: 0,
-    slots: 2,
-    identity: [0],
-    lastIdentity: 0,
     identityIsEarly: true,
-    told: [],
-    virtual: [],
-    shown: [
-      { name: "type", key: "type", slot: 0 },
-    ],
-    sums: [],
-    start: "word",
     startWords: [rt.hex("62")],
     startBytes: rt.hex("62"),
     startIsUnique: true,
-    end: rt.hex("65"),
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 1,
-    endsIdle: false,
-    transparency: rt.base16(),
-    firstStuffed: 1,
-    lastStuffed: 3,
-    behindRegion: 0,
     least: 14,
     greatest: 512,
     givenUpAt: 512,
-    greatestPayload: 253,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
-    groups: [
-      { identities: [[[0, 0]]], messages: [planOfMotorsServosLeds], fixed: 21, greatest: 21, carried: [{ least: 21, greatest: 21, step: 0 }] },
-      { identities: [[[1, 1]]], messages: [planOfMotorsTwoServos], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[3, 3]]], messages: [planOfMotorTest], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-    ],
-    encodeOnly: [],
-  };
-}
-
-function boardFrame() {
-  return {
-    sender: "board",
-    form: "",
+    start: "word",
+    end: rt.hex("65"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, least: 2, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8, "little"), slot: 0 } },
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, least: 2 }),
+      rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
-    headSize: 3,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "type", key: "type", slot: 0 },
     ],
-    sums: [],
-    start: "word",
-    startWords: [rt.hex("62")],
-    startBytes: rt.hex("62"),
-    startIsUnique: true,
-    end: rt.hex("65"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
     behindRegion: 0,
+    greatestPayload: 253,
+    groups: [
+      rt.group([planOfMotorsServosLeds]),
+      rt.group([planOfMotorsTwoServos]),
+      rt.group([planOfMotorTest]),
+    ],
+  });
+}
+
+function boardFrame() {
+  return rt.frame({
+    sender: "board",
+    headSize: 3,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [rt.hex("62")],
+    startBytes: rt.hex("62"),
+    startIsUnique: true,
+    endIsUnique: true,
+    markSize: 1,
     least: 18,
     greatest: 512,
     givenUpAt: 512,
-    greatestPayload: 253,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
-    groups: [
-      { identities: [[[1, 1]]], messages: [planOfStatus], fixed: 6, greatest: 6, carried: [{ least: 6, greatest: 6, step: 0 }] },
+    start: "word",
+    end: rt.hex("65"),
+    parts: [
+      { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, least: 2 }),
+      rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
+      { kind: "payload", name: "payload", size: 0 },
     ],
-    encodeOnly: [],
-  };
+    payloadIndex: 3,
+    slots: 2,
+    identity: [0],
+    lastIdentity: 0,
+    shown: [
+      { name: "type", key: "type", slot: 0 },
+    ],
+    transparency: rt.base16(),
+    firstStuffed: 1,
+    lastStuffed: 3,
+    behindRegion: 0,
+    greatestPayload: 253,
+    groups: [
+      rt.group([planOfStatus]),
+    ],
+  });
 }
 
 const protocol = /* @__PURE__ */ new rt.Protocol([daemonFrame, boardFrame], [["daemon", "board"]]);
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder extends rt.Decoder {
-  constructor(sender) {
-    super(protocol.senders(sender));
-  }
+    constructor(sender) {
+        super(protocol.senders(sender));
+    }
 }
 
 /** Makes the frames of an endpoint, and advances their counters. */
 export class Encoder extends rt.Encoder {
-  constructor(sender) {
-    super(protocol, sender);
-  }
+    constructor(sender) {
+        super(protocol, sender);
+    }
 }
 
 /** The message of exactly one frame. Throws a DecodeError. */
 export function decode(frame, options = {}) {
-  return protocol.decode(frame, options);
+    return protocol.decode(frame, options);
 }
 
 /** The frame of a message. Throws an EncodeError. */
 export function encode(message, options = {}) {
-  return protocol.encode(message, options);
+    return protocol.encode(message, options);
 }
 
 /** A stream of bytes into one of events. */
 export function decoderStream(sender) {
-  return rt.streamOf(new Decoder(sender));
+    return rt.streamOf(new Decoder(sender));
 }
 
 /** The events of chunks, as they come in. */
 export function events(chunks, sender) {
-  return rt.eventsOf(new Decoder(sender), chunks);
+    return rt.eventsOf(new Decoder(sender), chunks);
 }

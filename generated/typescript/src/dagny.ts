@@ -213,12 +213,6 @@ export interface Senders {
   readonly robot: { readonly message: RobotMessage; readonly parts: RobotParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = 
   | Sonar
@@ -238,18 +232,9 @@ export type MessageInput =
   | Laser
   | Command;
 
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
-
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
 }
-
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 function readSonar(r: rt.Reader): Sonar {
   const data = r.rest(0, 128, false, "data");
@@ -261,7 +246,7 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar: rt.MessagePlan<Sonar> = { name: "sonar", identities: [[[83, 83]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar: rt.MessagePlan<Sonar> = /* @__PURE__ */ rt.plan("sonar", [[[83, 83]]], [0, 128, 1], readSonar, writeSonar);
 
 function readGps(r: rt.Reader): Gps {
   const data = r.rest(0, 128, false, "data");
@@ -273,7 +258,7 @@ function writeGps(w: rt.Writer, m: Gps): void {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps: rt.MessagePlan<Gps> = { name: "gps", identities: [[[71, 71]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readGps, write: writeGps };
+export const planOfGps: rt.MessagePlan<Gps> = /* @__PURE__ */ rt.plan("gps", [[[71, 71]]], [0, 128, 1], readGps, writeGps);
 
 function readBump(r: rt.Reader): Bump {
   const data = r.rest(0, 128, false, "data");
@@ -285,7 +270,7 @@ function writeBump(w: rt.Writer, m: Bump): void {
 }
 
 /** Plan of Bump, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBump: rt.MessagePlan<Bump> = { name: "bump", identities: [[[66, 66]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readBump, write: writeBump };
+export const planOfBump: rt.MessagePlan<Bump> = /* @__PURE__ */ rt.plan("bump", [[[66, 66]]], [0, 128, 1], readBump, writeBump);
 
 function readOdometry(r: rt.Reader): Odometry {
   const data = r.rest(0, 128, false, "data");
@@ -297,7 +282,7 @@ function writeOdometry(w: rt.Writer, m: Odometry): void {
 }
 
 /** Plan of Odometry, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOdometry: rt.MessagePlan<Odometry> = { name: "odometry", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readOdometry, write: writeOdometry };
+export const planOfOdometry: rt.MessagePlan<Odometry> = /* @__PURE__ */ rt.plan("odometry", [[[79, 79]]], [0, 128, 1], readOdometry, writeOdometry);
 
 function readSpeed(r: rt.Reader): Speed {
   const data = r.rest(0, 128, false, "data");
@@ -309,7 +294,7 @@ function writeSpeed(w: rt.Writer, m: Speed): void {
 }
 
 /** Plan of Speed, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSpeed: rt.MessagePlan<Speed> = { name: "speed", identities: [[[79, 79]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readSpeed, write: writeSpeed };
+export const planOfSpeed: rt.MessagePlan<Speed> = /* @__PURE__ */ rt.plan("speed", [[[79, 79]]], [0, 128, 1], readSpeed, writeSpeed);
 
 function readWheelSlip(r: rt.Reader): WheelSlip {
   const data = r.rest(0, 128, false, "data");
@@ -321,7 +306,7 @@ function writeWheelSlip(w: rt.Writer, m: WheelSlip): void {
 }
 
 /** Plan of WheelSlip, for `readPayload` and `writePayload` of the runtime. */
-export const planOfWheelSlip: rt.MessagePlan<WheelSlip> = { name: "wheel_slip", identities: [[[87, 87]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readWheelSlip, write: writeWheelSlip };
+export const planOfWheelSlip: rt.MessagePlan<WheelSlip> = /* @__PURE__ */ rt.plan("wheel_slip", [[[87, 87]]], [0, 128, 1], readWheelSlip, writeWheelSlip);
 
 function readBattery(r: rt.Reader): Battery {
   const data = r.rest(0, 128, false, "data");
@@ -333,7 +318,7 @@ function writeBattery(w: rt.Writer, m: Battery): void {
 }
 
 /** Plan of Battery, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBattery: rt.MessagePlan<Battery> = { name: "battery", identities: [[[98, 98]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readBattery, write: writeBattery };
+export const planOfBattery: rt.MessagePlan<Battery> = /* @__PURE__ */ rt.plan("battery", [[[98, 98]]], [0, 128, 1], readBattery, writeBattery);
 
 function readReflexSettings(r: rt.Reader): ReflexSettings {
   const data = r.rest(0, 128, false, "data");
@@ -345,7 +330,7 @@ function writeReflexSettings(w: rt.Writer, m: ReflexSettings): void {
 }
 
 /** Plan of ReflexSettings, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReflexSettings: rt.MessagePlan<ReflexSettings> = { name: "reflex_settings", identities: [[[82, 82]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readReflexSettings, write: writeReflexSettings };
+export const planOfReflexSettings: rt.MessagePlan<ReflexSettings> = /* @__PURE__ */ rt.plan("reflex_settings", [[[82, 82]]], [0, 128, 1], readReflexSettings, writeReflexSettings);
 
 function readHardwareStatus(r: rt.Reader): HardwareStatus {
   const data = r.rest(0, 128, false, "data");
@@ -357,7 +342,7 @@ function writeHardwareStatus(w: rt.Writer, m: HardwareStatus): void {
 }
 
 /** Plan of HardwareStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfHardwareStatus: rt.MessagePlan<HardwareStatus> = { name: "hardware_status", identities: [[[72, 72]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readHardwareStatus, write: writeHardwareStatus };
+export const planOfHardwareStatus: rt.MessagePlan<HardwareStatus> = /* @__PURE__ */ rt.plan("hardware_status", [[[72, 72]]], [0, 128, 1], readHardwareStatus, writeHardwareStatus);
 
 function readMotor(r: rt.Reader): Motor {
   const s = r.u8("s");
@@ -369,7 +354,7 @@ function writeMotor(w: rt.Writer, m: Motor): void {
 }
 
 /** Plan of Motor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor: rt.MessagePlan<Motor> = { name: "motor", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMotor, write: writeMotor };
+export const planOfMotor: rt.MessagePlan<Motor> = /* @__PURE__ */ rt.plan("motor", [[[77, 77]]], [1], readMotor, writeMotor);
 
 function readSteering(r: rt.Reader): Steering {
   const s = r.u8("s");
@@ -381,7 +366,7 @@ function writeSteering(w: rt.Writer, m: Steering): void {
 }
 
 /** Plan of Steering, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSteering: rt.MessagePlan<Steering> = { name: "steering", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readSteering, write: writeSteering };
+export const planOfSteering: rt.MessagePlan<Steering> = /* @__PURE__ */ rt.plan("steering", [[[83, 83]]], [1], readSteering, writeSteering);
 
 function readReflex(r: rt.Reader): Reflex {
   const reflex = r.u8("reflex");
@@ -393,7 +378,7 @@ function writeReflex(w: rt.Writer, m: Reflex): void {
 }
 
 /** Plan of Reflex, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReflex: rt.MessagePlan<Reflex> = { name: "reflex", identities: [[[82, 82]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readReflex, write: writeReflex };
+export const planOfReflex: rt.MessagePlan<Reflex> = /* @__PURE__ */ rt.plan("reflex", [[[82, 82]]], [1], readReflex, writeReflex);
 
 function readPowerDown(r: rt.Reader): PowerDown {
   const code = r.constant(r.u8("code"), 3, "code");
@@ -405,7 +390,7 @@ function writePowerDown(w: rt.Writer, m: PowerDownInput): void {
 }
 
 /** Plan of PowerDown, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPowerDown: rt.MessagePlan<PowerDown> = { name: "power_down", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readPowerDown, write: writePowerDown };
+export const planOfPowerDown: rt.MessagePlan<PowerDown> = /* @__PURE__ */ rt.plan("power_down", [[[80, 80]]], [1], readPowerDown, writePowerDown);
 
 function readPower(r: rt.Reader): Power {
   const code = r.u8("code");
@@ -417,16 +402,15 @@ function writePower(w: rt.Writer, m: Power): void {
 }
 
 /** Plan of Power, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPower: rt.MessagePlan<Power> = { name: "power", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readPower, write: writePower };
+export const planOfPower: rt.MessagePlan<Power> = /* @__PURE__ */ rt.plan("power", [[[80, 80]]], [1], readPower, writePower);
 
 function readLaser(r: rt.Reader): Laser {
   const readings = [];
-  while (r.left > 0) {
-    r.count(readings.length + 1, 0, 512, "fill", "readings");
-    r.enter("readings");
-    readings.push(r.u8(readings.length));
-    r.leave();
+  r.enter("readings");
+  for (let i = 0, lastAt = -1; (lastAt = r.next(lastAt, i, 0, 512)) >= 0; i++) {
+    readings.push(r.u8(i));
   }
+  r.leave();
   return { message: "laser", readings };
 }
 
@@ -440,7 +424,7 @@ function writeLaser(w: rt.Writer, m: Laser): void {
 }
 
 /** Plan of Laser, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLaser: rt.MessagePlan<Laser> = { name: "laser", identities: [[[76, 76]]], sizes: { least: 0, greatest: 512, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readLaser, write: writeLaser };
+export const planOfLaser: rt.MessagePlan<Laser> = /* @__PURE__ */ rt.plan("laser", [[[76, 76]]], [0, 512, 1], readLaser, writeLaser);
 
 function readCommand(r: rt.Reader): Command {
   const data = r.rest(0, 128, false, "data");
@@ -452,7 +436,7 @@ function writeCommand(w: rt.Writer, m: Command): void {
 }
 
 /** Plan of Command, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCommand: rt.MessagePlan<Command> = { name: "command", identities: [[[67, 67]]], sizes: { least: 0, greatest: 128, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readCommand, write: writeCommand };
+export const planOfCommand: rt.MessagePlan<Command> = /* @__PURE__ */ rt.plan("command", [[[67, 67]]], [0, 128, 1], readCommand, writeCommand);
 
 /** What to do with the reflex; bits 6 to 7 of reflex. */
 export function reflexReflexCommand(record: Pick<Reflex, "reflex">): ReflexReflexCommand | (number & {}) {
@@ -466,7 +450,7 @@ export function reflexReflexNumber(record: Pick<Reflex, "reflex">): number {
 
 /** Distance; the metres times 50 in cm. */
 export function laserReadingsCm(record: Pick<Laser, "readings">): number[] {
-  return record.readings.map((raw) => rt.physical(raw, 2n, 0n, 1n));
+  return rt.physical(record.readings, 2n, 0n, 1n);
 }
 
 /** The raw `readings` nearest to a value in cm. */
@@ -475,132 +459,127 @@ export function laserReadingsFromCm(value: number): number {
 }
 
 function hostFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "host",
-    form: "",
+    headSize: 1,
+    tailSize: 1,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    markSize: 0,
+    least: 2,
+    greatest: 515,
+    givenUpAt: 515,
+    rescans: true,
+    takesWhole: true,
+    cutAmbiguous: true,
+    start: "after_end",
+    end: rt.hex("0a"),
     parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
+      rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 1,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: true, isBits: false, lowest: 0, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0a"),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
-    transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
-    least: 2,
-    greatest: 515,
-    givenUpAt: 515,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: true,
-    takesWhole: true,
-    cutAmbiguous: true,
-    isBounded: false,
-    kept: null,
-    isCut: false,
     groups: [
-      { identities: [[[77, 77]]], messages: [planOfMotor], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[83, 83]]], messages: [planOfSteering], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[82, 82]]], messages: [planOfReflex], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[80, 80]]], messages: [planOfPower], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[76, 76]]], messages: [planOfLaser], fixed: null, greatest: 512, carried: [{ least: 0, greatest: 512, step: 1 }] },
-      { identities: [[[67, 67]]], messages: [planOfCommand], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
+      rt.group([planOfMotor]),
+      rt.group([planOfSteering]),
+      rt.group([planOfReflex]),
+      rt.group([planOfPower]),
+      rt.group([planOfLaser]),
+      rt.group([planOfCommand]),
     ],
-    encodeOnly: [planOfPowerDown],
-  };
+    encodeOnly: [
+      planOfPowerDown,
+    ],
+  });
 }
 
 function robotFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "robot",
-    form: "",
+    headSize: 1,
+    tailSize: 1,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    markSize: 0,
+    least: 2,
+    greatest: 515,
+    givenUpAt: 515,
+    rescans: true,
+    takesWhole: true,
+    cutAmbiguous: true,
+    start: "after_end",
+    end: rt.hex("0a"),
     parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
+      rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 1,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: true, isBits: false, lowest: 0, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0a"),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
-    transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
-    least: 2,
-    greatest: 515,
-    givenUpAt: 515,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: true,
-    takesWhole: true,
-    cutAmbiguous: true,
-    isBounded: false,
-    kept: null,
-    isCut: false,
     groups: [
-      { identities: [[[83, 83]]], messages: [planOfSonar], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[71, 71]]], messages: [planOfGps], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[66, 66]]], messages: [planOfBump], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[79, 79]]], messages: [planOfOdometry], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[87, 87]]], messages: [planOfWheelSlip], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[98, 98]]], messages: [planOfBattery], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[82, 82]]], messages: [planOfReflexSettings], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[72, 72]]], messages: [planOfHardwareStatus], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
-      { identities: [[[76, 76]]], messages: [planOfLaser], fixed: null, greatest: 512, carried: [{ least: 0, greatest: 512, step: 1 }] },
-      { identities: [[[67, 67]]], messages: [planOfCommand], fixed: null, greatest: 128, carried: [{ least: 0, greatest: 128, step: 1 }] },
+      rt.group([planOfSonar]),
+      rt.group([planOfGps]),
+      rt.group([planOfBump]),
+      rt.group([planOfOdometry]),
+      rt.group([planOfWheelSlip]),
+      rt.group([planOfBattery]),
+      rt.group([planOfReflexSettings]),
+      rt.group([planOfHardwareStatus]),
+      rt.group([planOfLaser]),
+      rt.group([planOfCommand]),
     ],
-    encodeOnly: [planOfSpeed],
-  };
+    encodeOnly: [
+      planOfSpeed,
+    ],
+  });
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([hostFrame, robotFrame], [["host", "robot"]]);
+
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {

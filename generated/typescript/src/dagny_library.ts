@@ -282,12 +282,6 @@ export interface Senders {
   readonly robot: { readonly message: RobotMessage; readonly parts: RobotParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = 
   | Sonar
@@ -303,24 +297,14 @@ export type MessageInput =
   | Laser
   | ShutdownInput;
 
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
-
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
 }
 
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
-
 function readSonar(r: rt.Reader): Sonar {
-  const count = 5;
   const distances = [];
   r.enter("distances");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 5; i++) {
     distances.push(r.u8(i));
   }
   r.leave();
@@ -337,7 +321,7 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar: rt.MessagePlan<Sonar> = { name: "sonar", identities: [[[83, 83]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar: rt.MessagePlan<Sonar> = /* @__PURE__ */ rt.plan("sonar", [[[83, 83]]], [5], readSonar, writeSonar);
 
 function readGps(r: rt.Reader): Gps {
   const nmea = rt.latin1(r.rest(0, 126, false, "nmea"));
@@ -349,7 +333,7 @@ function writeGps(w: rt.Writer, m: Gps): void {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps: rt.MessagePlan<Gps> = { name: "gps", identities: [[[71, 71]]], sizes: { least: 0, greatest: 126, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readGps, write: writeGps };
+export const planOfGps: rt.MessagePlan<Gps> = /* @__PURE__ */ rt.plan("gps", [[[71, 71]]], [0, 126, 1], readGps, writeGps);
 
 function readOdometry(r: rt.Reader): Odometry {
   const right_count = r.u16("right_count");
@@ -382,7 +366,7 @@ function writeOdometry(w: rt.Writer, m: Odometry): void {
 }
 
 /** Plan of Odometry, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOdometry: rt.MessagePlan<Odometry> = { name: "odometry", identities: [[[79, 79]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, tellsItsEnd: false, held: [], read: readOdometry, write: writeOdometry };
+export const planOfOdometry: rt.MessagePlan<Odometry> = /* @__PURE__ */ rt.plan("odometry", [[[79, 79]]], [13], readOdometry, writeOdometry);
 
 function readBattery(r: rt.Reader): Battery {
   const main_battery = r.u8("main_battery");
@@ -398,7 +382,7 @@ function writeBattery(w: rt.Writer, m: Battery): void {
 }
 
 /** Plan of Battery, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBattery: rt.MessagePlan<Battery> = { name: "battery", identities: [[[98, 98]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, tellsItsEnd: false, held: [], read: readBattery, write: writeBattery };
+export const planOfBattery: rt.MessagePlan<Battery> = /* @__PURE__ */ rt.plan("battery", [[[98, 98]]], [6], readBattery, writeBattery);
 
 function readCompass(r: rt.Reader): Compass {
   const x = r.i16("x");
@@ -412,7 +396,7 @@ function writeCompass(w: rt.Writer, m: Compass): void {
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCompass: rt.MessagePlan<Compass> = { name: "compass", identities: [[[67, 67]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readCompass, write: writeCompass };
+export const planOfCompass: rt.MessagePlan<Compass> = /* @__PURE__ */ rt.plan("compass", [[[67, 67]]], [4], readCompass, writeCompass);
 
 function readMotor(r: rt.Reader): Motor {
   const speed = r.i8("speed");
@@ -424,7 +408,7 @@ function writeMotor(w: rt.Writer, m: Motor): void {
 }
 
 /** Plan of Motor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotor: rt.MessagePlan<Motor> = { name: "motor", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMotor, write: writeMotor };
+export const planOfMotor: rt.MessagePlan<Motor> = /* @__PURE__ */ rt.plan("motor", [[[77, 77]]], [1], readMotor, writeMotor);
 
 function readDrive(r: rt.Reader): Drive {
   const speed = r.i8("speed");
@@ -438,7 +422,7 @@ function writeDrive(w: rt.Writer, m: Drive): void {
 }
 
 /** Plan of Drive, for `readPayload` and `writePayload` of the runtime. */
-export const planOfDrive: rt.MessagePlan<Drive> = { name: "drive", identities: [[[77, 77]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readDrive, write: writeDrive };
+export const planOfDrive: rt.MessagePlan<Drive> = /* @__PURE__ */ rt.plan("drive", [[[77, 77]]], [2], readDrive, writeDrive);
 
 function readSteering(r: rt.Reader): Steering {
   const position = r.u8("position");
@@ -450,7 +434,7 @@ function writeSteering(w: rt.Writer, m: Steering): void {
 }
 
 /** Plan of Steering, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSteering: rt.MessagePlan<Steering> = { name: "steering", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readSteering, write: writeSteering };
+export const planOfSteering: rt.MessagePlan<Steering> = /* @__PURE__ */ rt.plan("steering", [[[83, 83]]], [1], readSteering, writeSteering);
 
 function readPower(r: rt.Reader): Power {
   const code = r.u8("code");
@@ -462,7 +446,7 @@ function writePower(w: rt.Writer, m: Power): void {
 }
 
 /** Plan of Power, for `readPayload` and `writePayload` of the runtime. */
-export const planOfPower: rt.MessagePlan<Power> = { name: "power", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readPower, write: writePower };
+export const planOfPower: rt.MessagePlan<Power> = /* @__PURE__ */ rt.plan("power", [[[80, 80]]], [1], readPower, writePower);
 
 function readGpsPosition(r: rt.Reader): GpsPosition {
   const latitude = r.i32("latitude");
@@ -476,16 +460,15 @@ function writeGpsPosition(w: rt.Writer, m: GpsPosition): void {
 }
 
 /** Plan of GpsPosition, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGpsPosition: rt.MessagePlan<GpsPosition> = { name: "gps_position", identities: [[[71, 71]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readGpsPosition, write: writeGpsPosition };
+export const planOfGpsPosition: rt.MessagePlan<GpsPosition> = /* @__PURE__ */ rt.plan("gps_position", [[[71, 71]]], [8], readGpsPosition, writeGpsPosition);
 
 function readLaser(r: rt.Reader): Laser {
   const readings = [];
-  while (r.left > 0) {
-    r.count(readings.length + 1, 0, 512, "fill", "readings");
-    r.enter("readings");
-    readings.push(r.u8(readings.length));
-    r.leave();
+  r.enter("readings");
+  for (let i = 0, lastAt = -1; (lastAt = r.next(lastAt, i, 0, 512)) >= 0; i++) {
+    readings.push(r.u8(i));
   }
+  r.leave();
   return { message: "laser", readings };
 }
 
@@ -499,7 +482,7 @@ function writeLaser(w: rt.Writer, m: Laser): void {
 }
 
 /** Plan of Laser, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLaser: rt.MessagePlan<Laser> = { name: "laser", identities: [[[76, 76]]], sizes: { least: 0, greatest: 512, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readLaser, write: writeLaser };
+export const planOfLaser: rt.MessagePlan<Laser> = /* @__PURE__ */ rt.plan("laser", [[[76, 76]]], [0, 512, 1], readLaser, writeLaser);
 
 function readShutdown(r: rt.Reader): Shutdown {
   const confirmation = r.constant(r.text(7, rt.PLAIN_TEXT, false, "confirmation"), "ZZZZZZZ", "confirmation");
@@ -511,7 +494,7 @@ function writeShutdown(w: rt.Writer, m: ShutdownInput): void {
 }
 
 /** Plan of Shutdown, for `readPayload` and `writePayload` of the runtime. */
-export const planOfShutdown: rt.MessagePlan<Shutdown> = { name: "shutdown", identities: [[[90, 90]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readShutdown, write: writeShutdown };
+export const planOfShutdown: rt.MessagePlan<Shutdown> = /* @__PURE__ */ rt.plan("shutdown", [[[90, 90]]], [7], readShutdown, writeShutdown);
 
 /** Latitude in deg. */
 export function gpsPositionLatitudeDeg(record: Pick<GpsPosition, "latitude">): number {
@@ -535,7 +518,7 @@ export function gpsPositionLongitudeFromDeg(value: number): number {
 
 /** Distance; the metres times 50 in cm. */
 export function laserReadingsCm(record: Pick<Laser, "readings">): number[] {
-  return record.readings.map((raw) => rt.physical(raw, 2n, 0n, 1n));
+  return rt.physical(record.readings, 2n, 0n, 1n);
 }
 
 /** The raw `readings` nearest to a value in cm. */
@@ -544,123 +527,110 @@ export function laserReadingsFromCm(value: number): number {
 }
 
 function hostFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "host",
-    form: "",
-    parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "payload", name: "payload", size: 0 },
-    ],
-    payloadIndex: 1,
     headSize: 1,
     tailSize: 0,
     tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    endIsUnique: true,
+    markSize: 0,
+    least: 2,
+    greatest: 1027,
+    givenUpAt: 1027,
+    takesWhole: true,
+    start: "after_end",
+    end: rt.hex("0d"),
+    parts: [
+      rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
+      { kind: "payload", name: "payload", size: 0 },
+    ],
+    payloadIndex: 1,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
-    sums: [],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0d"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
     firstStuffed: 0,
     lastStuffed: 1,
     behindRegion: 0,
-    least: 2,
-    greatest: 1027,
-    givenUpAt: 1027,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
     groups: [
-      { identities: [[[77, 77]]], messages: [planOfMotor, planOfDrive], fixed: null, greatest: 2, carried: [{ least: 1, greatest: 1, step: 0 }, { least: 2, greatest: 2, step: 0 }] },
-      { identities: [[[83, 83]]], messages: [planOfSteering], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[80, 80]]], messages: [planOfPower], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[71, 71]]], messages: [planOfGpsPosition], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[76, 76]]], messages: [planOfLaser], fixed: null, greatest: 512, carried: [{ least: 0, greatest: 512, step: 1 }] },
-      { identities: [[[90, 90]]], messages: [planOfShutdown], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
+      rt.group([planOfMotor, planOfDrive]),
+      rt.group([planOfSteering]),
+      rt.group([planOfPower]),
+      rt.group([planOfGpsPosition]),
+      rt.group([planOfLaser]),
+      rt.group([planOfShutdown]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 function robotFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "robot",
-    form: "",
-    parts: [
-      { kind: "number", name: "id", size: 1, part: { kind: "identity", name: "id", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "payload", name: "payload", size: 0 },
-    ],
-    payloadIndex: 1,
     headSize: 1,
     tailSize: 0,
     tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [],
+    startBytes: rt.hex(""),
+    endIsUnique: true,
+    markSize: 0,
+    least: 2,
+    greatest: 1027,
+    givenUpAt: 1027,
+    takesWhole: true,
+    start: "after_end",
+    end: rt.hex("0d"),
+    parts: [
+      rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
+      { kind: "payload", name: "payload", size: 0 },
+    ],
+    payloadIndex: 1,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "id", key: "id", slot: 0 },
     ],
-    sums: [],
-    start: "after_end",
-    startWords: [],
-    startBytes: rt.hex(""),
-    startIsUnique: false,
-    end: rt.hex("0d"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
     firstStuffed: 0,
     lastStuffed: 1,
     behindRegion: 0,
-    least: 2,
-    greatest: 1027,
-    givenUpAt: 1027,
     greatestPayload: 512,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
     groups: [
-      { identities: [[[83, 83]]], messages: [planOfSonar], fixed: 5, greatest: 5, carried: [{ least: 5, greatest: 5, step: 0 }] },
-      { identities: [[[71, 71]]], messages: [planOfGps], fixed: null, greatest: 126, carried: [{ least: 0, greatest: 126, step: 1 }] },
-      { identities: [[[79, 79]]], messages: [planOfOdometry], fixed: 13, greatest: 13, carried: [{ least: 13, greatest: 13, step: 0 }] },
-      { identities: [[[98, 98]]], messages: [planOfBattery], fixed: 6, greatest: 6, carried: [{ least: 6, greatest: 6, step: 0 }] },
-      { identities: [[[67, 67]]], messages: [planOfCompass], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[76, 76]]], messages: [planOfLaser], fixed: null, greatest: 512, carried: [{ least: 0, greatest: 512, step: 1 }] },
-      { identities: [[[90, 90]]], messages: [planOfShutdown], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
+      rt.group([planOfSonar]),
+      rt.group([planOfGps]),
+      rt.group([planOfOdometry]),
+      rt.group([planOfBattery]),
+      rt.group([planOfCompass]),
+      rt.group([planOfLaser]),
+      rt.group([planOfShutdown]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([hostFrame, robotFrame], [["host", "robot"]]);
+
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {

@@ -234,12 +234,6 @@ export interface Senders {
   readonly esp: { readonly message: EspMessage; readonly parts: EspParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = 
   | Stop
@@ -257,19 +251,10 @@ export type MessageInput =
   | Gps
   | Version;
 
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
-
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
   readonly counter?: number | undefined;
 }
-
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 function readStop(r: rt.Reader): Stop {
   const mode = r.u8("mode");
@@ -281,7 +266,7 @@ function writeStop(w: rt.Writer, m: Stop): void {
 }
 
 /** Plan of Stop, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStop: rt.MessagePlan<Stop> = { name: "stop", identities: [[[83, 83]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readStop, write: writeStop };
+export const planOfStop: rt.MessagePlan<Stop> = /* @__PURE__ */ rt.plan("stop", [[[83, 83]]], [1], readStop, writeStop);
 
 function readReset(r: rt.Reader): Reset {
   return { message: "reset" };
@@ -290,7 +275,7 @@ function readReset(r: rt.Reader): Reset {
 function writeReset(w: rt.Writer, m: Reset): void {}
 
 /** Plan of Reset, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReset: rt.MessagePlan<Reset> = { name: "reset", identities: [[[82, 82]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readReset, write: writeReset };
+export const planOfReset: rt.MessagePlan<Reset> = /* @__PURE__ */ rt.plan("reset", [[[82, 82]]], [0], readReset, writeReset);
 
 function readMode(r: rt.Reader): Mode {
   const mode = r.u8("mode");
@@ -302,7 +287,7 @@ function writeMode(w: rt.Writer, m: Mode): void {
 }
 
 /** Plan of Mode, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMode: rt.MessagePlan<Mode> = { name: "mode", identities: [[[77, 77]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readMode, write: writeMode };
+export const planOfMode: rt.MessagePlan<Mode> = /* @__PURE__ */ rt.plan("mode", [[[77, 77]]], [1], readMode, writeMode);
 
 function readGo(r: rt.Reader): Go {
   const speed = r.i16("speed");
@@ -316,7 +301,7 @@ function writeGo(w: rt.Writer, m: Go): void {
 }
 
 /** Plan of Go, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGo: rt.MessagePlan<Go> = { name: "go", identities: [[[71, 71]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readGo, write: writeGo };
+export const planOfGo: rt.MessagePlan<Go> = /* @__PURE__ */ rt.plan("go", [[[71, 71]]], [4], readGo, writeGo);
 
 function readLimits(r: rt.Reader): Limits {
   const max_speed = r.i16("max_speed");
@@ -330,7 +315,7 @@ function writeLimits(w: rt.Writer, m: Limits): void {
 }
 
 /** Plan of Limits, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLimits: rt.MessagePlan<Limits> = { name: "limits", identities: [[[76, 76]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readLimits, write: writeLimits };
+export const planOfLimits: rt.MessagePlan<Limits> = /* @__PURE__ */ rt.plan("limits", [[[76, 76]]], [4], readLimits, writeLimits);
 
 function readTiming(r: rt.Reader): Timing {
   const period = r.u16("period");
@@ -344,7 +329,7 @@ function writeTiming(w: rt.Writer, m: Timing): void {
 }
 
 /** Plan of Timing, for `readPayload` and `writePayload` of the runtime. */
-export const planOfTiming: rt.MessagePlan<Timing> = { name: "timing", identities: [[[84, 84]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readTiming, write: writeTiming };
+export const planOfTiming: rt.MessagePlan<Timing> = /* @__PURE__ */ rt.plan("timing", [[[84, 84]]], [4], readTiming, writeTiming);
 
 function readGpsMode(r: rt.Reader): GpsMode {
   const mode = r.u8("mode");
@@ -356,7 +341,7 @@ function writeGpsMode(w: rt.Writer, m: GpsMode): void {
 }
 
 /** Plan of GpsMode, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGpsMode: rt.MessagePlan<GpsMode> = { name: "gps_mode", identities: [[[80, 80]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readGpsMode, write: writeGpsMode };
+export const planOfGpsMode: rt.MessagePlan<GpsMode> = /* @__PURE__ */ rt.plan("gps_mode", [[[80, 80]]], [1], readGpsMode, writeGpsMode);
 
 function readVersionQuery(r: rt.Reader): VersionQuery {
   return { message: "version_query" };
@@ -365,7 +350,7 @@ function readVersionQuery(r: rt.Reader): VersionQuery {
 function writeVersionQuery(w: rt.Writer, m: VersionQuery): void {}
 
 /** Plan of VersionQuery, for `readPayload` and `writePayload` of the runtime. */
-export const planOfVersionQuery: rt.MessagePlan<VersionQuery> = { name: "version_query", identities: [[[86, 86]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readVersionQuery, write: writeVersionQuery };
+export const planOfVersionQuery: rt.MessagePlan<VersionQuery> = /* @__PURE__ */ rt.plan("version_query", [[[86, 86]]], [0], readVersionQuery, writeVersionQuery);
 
 function readLed(r: rt.Reader): Led {
   const index = r.u8("index");
@@ -379,7 +364,7 @@ function writeLed(w: rt.Writer, m: Led): void {
 }
 
 /** Plan of Led, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLed: rt.MessagePlan<Led> = { name: "led", identities: [[[68, 68]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readLed, write: writeLed };
+export const planOfLed: rt.MessagePlan<Led> = /* @__PURE__ */ rt.plan("led", [[[68, 68]]], [4], readLed, writeLed);
 
 function readAck(r: rt.Reader): Ack {
   return { message: "ack" };
@@ -388,7 +373,7 @@ function readAck(r: rt.Reader): Ack {
 function writeAck(w: rt.Writer, m: Ack): void {}
 
 /** Plan of Ack, for `readPayload` and `writePayload` of the runtime. */
-export const planOfAck: rt.MessagePlan<Ack> = { name: "ack", identities: [[[65, 65]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readAck, write: writeAck };
+export const planOfAck: rt.MessagePlan<Ack> = /* @__PURE__ */ rt.plan("ack", [[[65, 65]]], [0], readAck, writeAck);
 
 function readNack(r: rt.Reader): Nack {
   return { message: "nack" };
@@ -397,7 +382,7 @@ function readNack(r: rt.Reader): Nack {
 function writeNack(w: rt.Writer, m: Nack): void {}
 
 /** Plan of Nack, for `readPayload` and `writePayload` of the runtime. */
-export const planOfNack: rt.MessagePlan<Nack> = { name: "nack", identities: [[[78, 78]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readNack, write: writeNack };
+export const planOfNack: rt.MessagePlan<Nack> = /* @__PURE__ */ rt.plan("nack", [[[78, 78]]], [0], readNack, writeNack);
 
 function readStatus(r: rt.Reader): Status {
   const status = r.u8("status");
@@ -448,7 +433,7 @@ function writeStatus(w: rt.Writer, m: Status): void {
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStatus: rt.MessagePlan<Status> = { name: "status", identities: [[[73, 73]]], sizes: { least: 24, greatest: 24, step: 0 }, known: 24, tellsItsEnd: false, held: [], read: readStatus, write: writeStatus };
+export const planOfStatus: rt.MessagePlan<Status> = /* @__PURE__ */ rt.plan("status", [[[73, 73]]], [24], readStatus, writeStatus);
 
 function readGps(r: rt.Reader): Gps {
   const nmea = rt.latin1(r.rest(0, 121, false, "nmea"));
@@ -460,7 +445,7 @@ function writeGps(w: rt.Writer, m: Gps): void {
 }
 
 /** Plan of Gps, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGps: rt.MessagePlan<Gps> = { name: "gps", identities: [[[80, 80]]], sizes: { least: 0, greatest: 121, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readGps, write: writeGps };
+export const planOfGps: rt.MessagePlan<Gps> = /* @__PURE__ */ rt.plan("gps", [[[80, 80]]], [0, 121, 1], readGps, writeGps);
 
 function readVersion(r: rt.Reader): Version {
   const serial_number = r.u8("serial_number");
@@ -474,7 +459,7 @@ function writeVersion(w: rt.Writer, m: Version): void {
 }
 
 /** Plan of Version, for `readPayload` and `writePayload` of the runtime. */
-export const planOfVersion: rt.MessagePlan<Version> = { name: "version", identities: [[[86, 86]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readVersion, write: writeVersion };
+export const planOfVersion: rt.MessagePlan<Version> = /* @__PURE__ */ rt.plan("version", [[[86, 86]]], [2], readVersion, writeVersion);
 
 /** Wanted angle of the joint in deg. */
 export function goSteerDeg(record: Pick<Go, "steer">): number {
@@ -537,138 +522,127 @@ export function statusYawFromDeg(value: number): number {
 }
 
 function pcFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "pc",
-    form: "",
+    headSize: 4,
+    tailSize: 1,
+    tailSizeEmpty: 1,
+    identityIsEarly: true,
+    startWords: [rt.hex("55")],
+    startBytes: rt.hex("55"),
+    startIsUnique: true,
+    markSize: 1,
+    least: 5,
+    greatest: 252,
+    givenUpAt: 252,
+    takesWhole: true,
+    start: "word",
+    end: rt.hex(""),
     parts: [
       { kind: "literal", name: "sync", size: 1, bytes: rt.hex("55") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 2, base: 2, optional: 0, least: 2, greatest: 124, overWire: false, isFurther: false, regionEnd: 0 } },
-      { kind: "number", name: "counter", size: 1, part: { kind: "value", name: "counter", number: rt.number(8, "little"), slot: 0, least: 0, greatest: 255, default: null, isCounter: true, values: null, between: null, isHeld: false } },
-      { kind: "number", name: "command", size: 1, part: { kind: "identity", name: "command", number: rt.number(8, "little"), slot: 1 } },
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 2, base: 2, optional: 0, greatest: 124, least: 2 }),
+      rt.single({ kind: "value", name: "counter", number: rt.number(8), slot: 0, least: 0, greatest: 255, default: null, isCounter: true }),
+      rt.single({ kind: "identity", name: "command", number: rt.number(8), slot: 1 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
     payloadIndex: 4,
-    headSize: 4,
-    tailSize: 1,
-    tailSizeEmpty: 1,
     slots: 3,
     identity: [1],
     lastIdentity: 1,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "counter", key: "counter", slot: 0 },
       { name: "command", key: "command", slot: 1 },
     ],
     sums: [
-      { name: "crc", number: rt.number(8, "little"), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
+      { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    start: "word",
-    startWords: [rt.hex("55")],
-    startBytes: rt.hex("55"),
-    startIsUnique: true,
-    end: rt.hex(""),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
     firstStuffed: 1,
     lastStuffed: 5,
     behindRegion: 0,
-    least: 5,
-    greatest: 252,
-    givenUpAt: 252,
     greatestPayload: 122,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
     groups: [
-      { identities: [[[83, 83]]], messages: [planOfStop], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[82, 82]]], messages: [planOfReset], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[77, 77]]], messages: [planOfMode], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[71, 71]]], messages: [planOfGo], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[76, 76]]], messages: [planOfLimits], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[84, 84]]], messages: [planOfTiming], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[80, 80]]], messages: [planOfGpsMode], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[86, 86]]], messages: [planOfVersionQuery], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[68, 68]]], messages: [planOfLed], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
+      rt.group([planOfStop]),
+      rt.group([planOfReset]),
+      rt.group([planOfMode]),
+      rt.group([planOfGo]),
+      rt.group([planOfLimits]),
+      rt.group([planOfTiming]),
+      rt.group([planOfGpsMode]),
+      rt.group([planOfVersionQuery]),
+      rt.group([planOfLed]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 function espFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "esp",
-    form: "",
+    headSize: 4,
+    tailSize: 1,
+    tailSizeEmpty: 1,
+    identityIsEarly: true,
+    startWords: [rt.hex("55")],
+    startBytes: rt.hex("55"),
+    startIsUnique: true,
+    markSize: 1,
+    least: 5,
+    greatest: 252,
+    givenUpAt: 252,
+    takesWhole: true,
+    start: "word",
+    end: rt.hex(""),
     parts: [
       { kind: "literal", name: "sync", size: 1, bytes: rt.hex("55") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 2, base: 2, optional: 0, least: 2, greatest: 124, overWire: false, isFurther: false, regionEnd: 0 } },
-      { kind: "number", name: "counter", size: 1, part: { kind: "value", name: "counter", number: rt.number(8, "little"), slot: 0, least: 0, greatest: 255, default: null, isCounter: true, values: null, between: null, isHeld: false } },
-      { kind: "number", name: "command", size: 1, part: { kind: "identity", name: "command", number: rt.number(8, "little"), slot: 1 } },
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 2, base: 2, optional: 0, greatest: 124, least: 2 }),
+      rt.single({ kind: "value", name: "counter", number: rt.number(8), slot: 0, least: 0, greatest: 255, default: null, isCounter: true }),
+      rt.single({ kind: "identity", name: "command", number: rt.number(8), slot: 1 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
     payloadIndex: 4,
-    headSize: 4,
-    tailSize: 1,
-    tailSizeEmpty: 1,
     slots: 3,
     identity: [1],
     lastIdentity: 1,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "counter", key: "counter", slot: 0 },
       { name: "command", key: "command", slot: 1 },
     ],
     sums: [
-      { name: "crc", number: rt.number(8, "little"), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
+      { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    start: "word",
-    startWords: [rt.hex("55")],
-    startBytes: rt.hex("55"),
-    startIsUnique: true,
-    end: rt.hex(""),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
     firstStuffed: 1,
     lastStuffed: 5,
     behindRegion: 0,
-    least: 5,
-    greatest: 252,
-    givenUpAt: 252,
     greatestPayload: 122,
-    sevenBit: false,
-    rescans: false,
-    takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
     groups: [
-      { identities: [[[65, 65]]], messages: [planOfAck], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[78, 78]]], messages: [planOfNack], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[73, 73]]], messages: [planOfStatus], fixed: 24, greatest: 24, carried: [{ least: 24, greatest: 24, step: 0 }] },
-      { identities: [[[80, 80]]], messages: [planOfGps], fixed: null, greatest: 121, carried: [{ least: 0, greatest: 121, step: 1 }] },
-      { identities: [[[86, 86]]], messages: [planOfVersion], fixed: 2, greatest: 2, carried: [{ least: 2, greatest: 2, step: 0 }] },
+      rt.group([planOfAck]),
+      rt.group([planOfNack]),
+      rt.group([planOfStatus]),
+      rt.group([planOfGps]),
+      rt.group([planOfVersion]),
     ],
-    encodeOnly: [],
-  };
+  });
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([pcFrame, espFrame], [["pc", "esp"]]);
+
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {

@@ -485,12 +485,6 @@ export interface Senders {
   readonly flex: { readonly message: FlexMessage; readonly parts: FlexParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = 
   | RequestSystemStatus
@@ -520,19 +514,10 @@ export type MessageInput =
   | IrRun
   | IrReport;
 
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
-
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
   readonly number?: number | undefined;
 }
-
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 function readRequestSystemStatus(r: rt.Reader): RequestSystemStatus {
   return { message: "request_system_status" };
@@ -541,7 +526,7 @@ function readRequestSystemStatus(r: rt.Reader): RequestSystemStatus {
 function writeRequestSystemStatus(w: rt.Writer, m: RequestSystemStatus): void {}
 
 /** Plan of RequestSystemStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfRequestSystemStatus: rt.MessagePlan<RequestSystemStatus> = { name: "request_system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readRequestSystemStatus, write: writeRequestSystemStatus };
+export const planOfRequestSystemStatus: rt.MessagePlan<RequestSystemStatus> = /* @__PURE__ */ rt.plan("request_system_status", [[[1, 1]], [[1, 1]]], [0], readRequestSystemStatus, writeRequestSystemStatus);
 
 function readSystemStatus(r: rt.Reader): SystemStatus {
   const timestamp = r.u32be("timestamp");
@@ -557,7 +542,7 @@ function writeSystemStatus(w: rt.Writer, m: SystemStatus): void {
 }
 
 /** Plan of SystemStatus, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSystemStatus: rt.MessagePlan<SystemStatus> = { name: "system_status", identities: [[[1, 1]], [[1, 1]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, tellsItsEnd: false, held: [], read: readSystemStatus, write: writeSystemStatus };
+export const planOfSystemStatus: rt.MessagePlan<SystemStatus> = /* @__PURE__ */ rt.plan("system_status", [[[1, 1]], [[1, 1]]], [9], readSystemStatus, writeSystemStatus);
 
 function readLcdDump(r: rt.Reader): LcdDump {
   const timestamp = r.u32be("timestamp");
@@ -570,14 +555,14 @@ function readLcdDump(r: rt.Reader): LcdDump {
 function writeLcdDump(w: rt.Writer, m: LcdDumpInput): void {
   w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
   w.u8(w.int(m.row, 0, 255, "row"));
-  const byte_count = w.int(m.byte_count ?? (rt.sizeOf(m.pixels)), 0, 255, "byte_count");
+  const byte_count = w.int(m.byte_count ?? rt.counted(m.pixels, 1, 0, 1), 0, 255, "byte_count");
   w.u8(byte_count);
   const count = byte_count;
   w.octets(m.pixels, count, count, false, "pixels");
 }
 
 /** Plan of LcdDump, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLcdDump: rt.MessagePlan<LcdDump> = { name: "lcd_dump", identities: [[[1, 1]], [[0, 0]]], sizes: { least: 6, greatest: 255, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readLcdDump, write: writeLcdDump };
+export const planOfLcdDump: rt.MessagePlan<LcdDump> = /* @__PURE__ */ rt.plan("lcd_dump", [[[1, 1]], [[0, 0]]], [6, 255, 1], readLcdDump, writeLcdDump);
 
 function readAxisGetSystem(r: rt.Reader): AxisGetSystem {
   const axis = r.u8("axis");
@@ -589,7 +574,7 @@ function writeAxisGetSystem(w: rt.Writer, m: AxisGetSystem): void {
 }
 
 /** Plan of AxisGetSystem, for `readPayload` and `writePayload` of the runtime. */
-export const planOfAxisGetSystem: rt.MessagePlan<AxisGetSystem> = { name: "axis_get_system", identities: [[[2, 2]], [[0, 0]]], sizes: { least: 1, greatest: 1, step: 0 }, known: 1, tellsItsEnd: false, held: [], read: readAxisGetSystem, write: writeAxisGetSystem };
+export const planOfAxisGetSystem: rt.MessagePlan<AxisGetSystem> = /* @__PURE__ */ rt.plan("axis_get_system", [[[2, 2]], [[0, 0]]], [1], readAxisGetSystem, writeAxisGetSystem);
 
 function readMotorCommand(r: rt.Reader): MotorCommand {
   const axis = r.u8("axis");
@@ -609,7 +594,7 @@ function writeMotorCommand(w: rt.Writer, m: MotorCommand): void {
 }
 
 /** Plan of MotorCommand, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorCommand: rt.MessagePlan<MotorCommand> = { name: "motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 14, greatest: 14, step: 0 }, known: 14, tellsItsEnd: false, held: [], read: readMotorCommand, write: writeMotorCommand };
+export const planOfMotorCommand: rt.MessagePlan<MotorCommand> = /* @__PURE__ */ rt.plan("motor_command", [[[2, 2]], [[7, 7]]], [14], readMotorCommand, writeMotorCommand);
 
 function readConfirmMotorCommand(r: rt.Reader): ConfirmMotorCommand {
   const retval = r.u32be("retval");
@@ -625,7 +610,7 @@ function writeConfirmMotorCommand(w: rt.Writer, m: ConfirmMotorCommand): void {
 }
 
 /** Plan of ConfirmMotorCommand, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmMotorCommand: rt.MessagePlan<ConfirmMotorCommand> = { name: "confirm_motor_command", identities: [[[2, 2]], [[7, 7]]], sizes: { least: 9, greatest: 9, step: 0 }, known: 9, tellsItsEnd: false, held: [], read: readConfirmMotorCommand, write: writeConfirmMotorCommand };
+export const planOfConfirmMotorCommand: rt.MessagePlan<ConfirmMotorCommand> = /* @__PURE__ */ rt.plan("confirm_motor_command", [[[2, 2]], [[7, 7]]], [9], readConfirmMotorCommand, writeConfirmMotorCommand);
 
 function readSetDefaults(r: rt.Reader): SetDefaults {
   return { message: "set_defaults" };
@@ -634,7 +619,7 @@ function readSetDefaults(r: rt.Reader): SetDefaults {
 function writeSetDefaults(w: rt.Writer, m: SetDefaults): void {}
 
 /** Plan of SetDefaults, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSetDefaults: rt.MessagePlan<SetDefaults> = { name: "set_defaults", identities: [[[2, 2]], [[10, 10]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readSetDefaults, write: writeSetDefaults };
+export const planOfSetDefaults: rt.MessagePlan<SetDefaults> = /* @__PURE__ */ rt.plan("set_defaults", [[[2, 2]], [[10, 10]]], [0], readSetDefaults, writeSetDefaults);
 
 function readBrakeSet(r: rt.Reader): BrakeSet {
   return { message: "brake_set" };
@@ -643,7 +628,7 @@ function readBrakeSet(r: rt.Reader): BrakeSet {
 function writeBrakeSet(w: rt.Writer, m: BrakeSet): void {}
 
 /** Plan of BrakeSet, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBrakeSet: rt.MessagePlan<BrakeSet> = { name: "brake_set", identities: [[[2, 2]], [[11, 11]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readBrakeSet, write: writeBrakeSet };
+export const planOfBrakeSet: rt.MessagePlan<BrakeSet> = /* @__PURE__ */ rt.plan("brake_set", [[[2, 2]], [[11, 11]]], [0], readBrakeSet, writeBrakeSet);
 
 function readBrakeRelease(r: rt.Reader): BrakeRelease {
   return { message: "brake_release" };
@@ -652,7 +637,7 @@ function readBrakeRelease(r: rt.Reader): BrakeRelease {
 function writeBrakeRelease(w: rt.Writer, m: BrakeRelease): void {}
 
 /** Plan of BrakeRelease, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBrakeRelease: rt.MessagePlan<BrakeRelease> = { name: "brake_release", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readBrakeRelease, write: writeBrakeRelease };
+export const planOfBrakeRelease: rt.MessagePlan<BrakeRelease> = /* @__PURE__ */ rt.plan("brake_release", [[[2, 2]], [[12, 12]]], [0], readBrakeRelease, writeBrakeRelease);
 
 function readBrakeReleaseAnswer(r: rt.Reader): BrakeReleaseAnswer {
   const retval = r.u32be("retval");
@@ -666,7 +651,7 @@ function writeBrakeReleaseAnswer(w: rt.Writer, m: BrakeReleaseAnswer): void {
 }
 
 /** Plan of BrakeReleaseAnswer, for `readPayload` and `writePayload` of the runtime. */
-export const planOfBrakeReleaseAnswer: rt.MessagePlan<BrakeReleaseAnswer> = { name: "brake_release_answer", identities: [[[2, 2]], [[12, 12]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readBrakeReleaseAnswer, write: writeBrakeReleaseAnswer };
+export const planOfBrakeReleaseAnswer: rt.MessagePlan<BrakeReleaseAnswer> = /* @__PURE__ */ rt.plan("brake_release_answer", [[[2, 2]], [[12, 12]]], [8], readBrakeReleaseAnswer, writeBrakeReleaseAnswer);
 
 function readReadMotor(r: rt.Reader): ReadMotor {
   const retval = r.u32be("retval");
@@ -699,7 +684,7 @@ function writeReadMotor(w: rt.Writer, m: ReadMotor): void {
 }
 
 /** Plan of ReadMotor, for `readPayload` and `writePayload` of the runtime. */
-export const planOfReadMotor: rt.MessagePlan<ReadMotor> = { name: "read_motor", identities: [[[2, 2]], [[33, 33]]], sizes: { least: 25, greatest: 25, step: 0 }, known: 25, tellsItsEnd: false, held: [], read: readReadMotor, write: writeReadMotor };
+export const planOfReadMotor: rt.MessagePlan<ReadMotor> = /* @__PURE__ */ rt.plan("read_motor", [[[2, 2]], [[33, 33]]], [25], readReadMotor, writeReadMotor);
 
 function readStartStopMotorPackets(r: rt.Reader): StartStopMotorPackets {
   const period = r.u32be("period");
@@ -713,7 +698,7 @@ function writeStartStopMotorPackets(w: rt.Writer, m: StartStopMotorPackets): voi
 }
 
 /** Plan of StartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStartStopMotorPackets: rt.MessagePlan<StartStopMotorPackets> = { name: "start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readStartStopMotorPackets, write: writeStartStopMotorPackets };
+export const planOfStartStopMotorPackets: rt.MessagePlan<StartStopMotorPackets> = /* @__PURE__ */ rt.plan("start_stop_motor_packets", [[[2, 2]], [[34, 34]]], [8], readStartStopMotorPackets, writeStartStopMotorPackets);
 
 function readConfirmStartStopMotorPackets(r: rt.Reader): ConfirmStartStopMotorPackets {
   const retval = r.u32be("retval");
@@ -727,7 +712,7 @@ function writeConfirmStartStopMotorPackets(w: rt.Writer, m: ConfirmStartStopMoto
 }
 
 /** Plan of ConfirmStartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmStartStopMotorPackets: rt.MessagePlan<ConfirmStartStopMotorPackets> = { name: "confirm_start_stop_motor_packets", identities: [[[2, 2]], [[34, 34]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readConfirmStartStopMotorPackets, write: writeConfirmStartStopMotorPackets };
+export const planOfConfirmStartStopMotorPackets: rt.MessagePlan<ConfirmStartStopMotorPackets> = /* @__PURE__ */ rt.plan("confirm_start_stop_motor_packets", [[[2, 2]], [[34, 34]]], [8], readConfirmStartStopMotorPackets, writeConfirmStartStopMotorPackets);
 
 function readRequestJoystickData(r: rt.Reader): RequestJoystickData {
   return { message: "request_joystick_data" };
@@ -736,7 +721,7 @@ function readRequestJoystickData(r: rt.Reader): RequestJoystickData {
 function writeRequestJoystickData(w: rt.Writer, m: RequestJoystickData): void {}
 
 /** Plan of RequestJoystickData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfRequestJoystickData: rt.MessagePlan<RequestJoystickData> = { name: "request_joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 0, greatest: 0, step: 0 }, known: 0, tellsItsEnd: false, held: [], read: readRequestJoystickData, write: writeRequestJoystickData };
+export const planOfRequestJoystickData: rt.MessagePlan<RequestJoystickData> = /* @__PURE__ */ rt.plan("request_joystick_data", [[[3, 3]], [[0, 0]]], [0], readRequestJoystickData, writeRequestJoystickData);
 
 function readJoystickData(r: rt.Reader): JoystickData {
   const timestamp = r.u32be("timestamp");
@@ -754,7 +739,7 @@ function writeJoystickData(w: rt.Writer, m: JoystickData): void {
 }
 
 /** Plan of JoystickData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfJoystickData: rt.MessagePlan<JoystickData> = { name: "joystick_data", identities: [[[3, 3]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, tellsItsEnd: false, held: [], read: readJoystickData, write: writeJoystickData };
+export const planOfJoystickData: rt.MessagePlan<JoystickData> = /* @__PURE__ */ rt.plan("joystick_data", [[[3, 3]], [[0, 0]]], [13], readJoystickData, writeJoystickData);
 
 function readStartStopSonarPackets(r: rt.Reader): StartStopSonarPackets {
   const echo_delay = r.u32be("echo_delay");
@@ -778,7 +763,7 @@ function writeStartStopSonarPackets(w: rt.Writer, m: StartStopSonarPackets): voi
 }
 
 /** Plan of StartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStartStopSonarPackets: rt.MessagePlan<StartStopSonarPackets> = { name: "start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 13, greatest: 13, step: 0 }, known: 13, tellsItsEnd: false, held: [], read: readStartStopSonarPackets, write: writeStartStopSonarPackets };
+export const planOfStartStopSonarPackets: rt.MessagePlan<StartStopSonarPackets> = /* @__PURE__ */ rt.plan("start_stop_sonar_packets", [[[4, 4]], [[0, 0]]], [13], readStartStopSonarPackets, writeStartStopSonarPackets);
 
 function readConfirmStartStopSonarPackets(r: rt.Reader): ConfirmStartStopSonarPackets {
   const retval = r.u32be("retval");
@@ -792,23 +777,22 @@ function writeConfirmStartStopSonarPackets(w: rt.Writer, m: ConfirmStartStopSona
 }
 
 /** Plan of ConfirmStartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmStartStopSonarPackets: rt.MessagePlan<ConfirmStartStopSonarPackets> = { name: "confirm_start_stop_sonar_packets", identities: [[[4, 4]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readConfirmStartStopSonarPackets, write: writeConfirmStartStopSonarPackets };
+export const planOfConfirmStartStopSonarPackets: rt.MessagePlan<ConfirmStartStopSonarPackets> = /* @__PURE__ */ rt.plan("confirm_start_stop_sonar_packets", [[[4, 4]], [[0, 0]]], [8], readConfirmStartStopSonarPackets, writeConfirmStartStopSonarPackets);
 
 function readSonarData(r: rt.Reader): SonarData {
   const retval = r.u32be("retval");
   const timestamp = r.u32be("timestamp");
   const readings = [];
-  while (r.left > 0) {
-    r.count(readings.length + 1, 0, 82, "fill", "readings");
-    r.enter("readings");
-    r.enter(readings.length);
+  r.enter("readings");
+  for (let i = 0, lastAt = -1; (lastAt = r.next(lastAt, i, 0, 82)) >= 0; i++) {
+    r.enter(i);
     const cluster = r.u8("cluster");
     const distance = r.u16be("distance");
     const value = { cluster, distance };
     r.leave();
     readings.push(value);
-    r.leave();
   }
+  r.leave();
   return { message: "sonar_data", retval, timestamp, readings };
 }
 
@@ -828,7 +812,7 @@ function writeSonarData(w: rt.Writer, m: SonarDataInput): void {
 }
 
 /** Plan of SonarData, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonarData: rt.MessagePlan<SonarData> = { name: "sonar_data", identities: [[[4, 4]], [[2, 2]]], sizes: { least: 8, greatest: 254, step: 3 }, known: null, tellsItsEnd: false, held: [], read: readSonarData, write: writeSonarData };
+export const planOfSonarData: rt.MessagePlan<SonarData> = /* @__PURE__ */ rt.plan("sonar_data", [[[4, 4]], [[2, 2]]], [8, 254, 3], readSonarData, writeSonarData);
 
 function readInitializeDigitalIo(r: rt.Reader): InitializeDigitalIo {
   const period = r.u32be("period");
@@ -840,7 +824,7 @@ function writeInitializeDigitalIo(w: rt.Writer, m: InitializeDigitalIo): void {
 }
 
 /** Plan of InitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
-export const planOfInitializeDigitalIo: rt.MessagePlan<InitializeDigitalIo> = { name: "initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readInitializeDigitalIo, write: writeInitializeDigitalIo };
+export const planOfInitializeDigitalIo: rt.MessagePlan<InitializeDigitalIo> = /* @__PURE__ */ rt.plan("initialize_digital_io", [[[5, 5]], [[0, 0]]], [4], readInitializeDigitalIo, writeInitializeDigitalIo);
 
 function readConfirmInitializeDigitalIo(r: rt.Reader): ConfirmInitializeDigitalIo {
   const retval = r.u32be("retval");
@@ -854,7 +838,7 @@ function writeConfirmInitializeDigitalIo(w: rt.Writer, m: ConfirmInitializeDigit
 }
 
 /** Plan of ConfirmInitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
-export const planOfConfirmInitializeDigitalIo: rt.MessagePlan<ConfirmInitializeDigitalIo> = { name: "confirm_initialize_digital_io", identities: [[[5, 5]], [[0, 0]]], sizes: { least: 8, greatest: 8, step: 0 }, known: 8, tellsItsEnd: false, held: [], read: readConfirmInitializeDigitalIo, write: writeConfirmInitializeDigitalIo };
+export const planOfConfirmInitializeDigitalIo: rt.MessagePlan<ConfirmInitializeDigitalIo> = /* @__PURE__ */ rt.plan("confirm_initialize_digital_io", [[[5, 5]], [[0, 0]]], [8], readConfirmInitializeDigitalIo, writeConfirmInitializeDigitalIo);
 
 function readChangedBumpers(r: rt.Reader): ChangedBumpers {
   const timestamp = r.u32be("timestamp");
@@ -870,7 +854,7 @@ function writeChangedBumpers(w: rt.Writer, m: ChangedBumpers): void {
 }
 
 /** Plan of ChangedBumpers, for `readPayload` and `writePayload` of the runtime. */
-export const planOfChangedBumpers: rt.MessagePlan<ChangedBumpers> = { name: "changed_bumpers", identities: [[[5, 5]], [[1, 1]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readChangedBumpers, write: writeChangedBumpers };
+export const planOfChangedBumpers: rt.MessagePlan<ChangedBumpers> = /* @__PURE__ */ rt.plan("changed_bumpers", [[[5, 5]], [[1, 1]]], [7], readChangedBumpers, writeChangedBumpers);
 
 function readCheckIoChanged(r: rt.Reader): CheckIoChanged {
   const timestamp = r.u32be("timestamp");
@@ -882,7 +866,7 @@ function writeCheckIoChanged(w: rt.Writer, m: CheckIoChanged): void {
 }
 
 /** Plan of CheckIoChanged, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCheckIoChanged: rt.MessagePlan<CheckIoChanged> = { name: "check_io_changed", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readCheckIoChanged, write: writeCheckIoChanged };
+export const planOfCheckIoChanged: rt.MessagePlan<CheckIoChanged> = /* @__PURE__ */ rt.plan("check_io_changed", [[[5, 5]], [[2, 2]]], [4], readCheckIoChanged, writeCheckIoChanged);
 
 function readCheckIoChangedAnswer(r: rt.Reader): CheckIoChangedAnswer {
   const retval = r.u32be("retval");
@@ -898,7 +882,7 @@ function writeCheckIoChangedAnswer(w: rt.Writer, m: CheckIoChangedAnswer): void 
 }
 
 /** Plan of CheckIoChangedAnswer, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCheckIoChangedAnswer: rt.MessagePlan<CheckIoChangedAnswer> = { name: "check_io_changed_answer", identities: [[[5, 5]], [[2, 2]]], sizes: { least: 12, greatest: 12, step: 0 }, known: 12, tellsItsEnd: false, held: [], read: readCheckIoChangedAnswer, write: writeCheckIoChangedAnswer };
+export const planOfCheckIoChangedAnswer: rt.MessagePlan<CheckIoChangedAnswer> = /* @__PURE__ */ rt.plan("check_io_changed_answer", [[[5, 5]], [[2, 2]]], [12], readCheckIoChangedAnswer, writeCheckIoChangedAnswer);
 
 function readChangedByte(r: rt.Reader): ChangedByte {
   const timestamp = r.u32be("timestamp");
@@ -914,7 +898,7 @@ function writeChangedByte(w: rt.Writer, m: ChangedByte): void {
 }
 
 /** Plan of ChangedByte, for `readPayload` and `writePayload` of the runtime. */
-export const planOfChangedByte: rt.MessagePlan<ChangedByte> = { name: "changed_byte", identities: [[[5, 5]], [[3, 3]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readChangedByte, write: writeChangedByte };
+export const planOfChangedByte: rt.MessagePlan<ChangedByte> = /* @__PURE__ */ rt.plan("changed_byte", [[[5, 5]], [[3, 3]]], [7], readChangedByte, writeChangedByte);
 
 function readIrRun(r: rt.Reader): IrRun {
   const unknown_1 = r.u32be("unknown_1");
@@ -944,7 +928,7 @@ function writeIrRun(w: rt.Writer, m: IrRun): void {
 }
 
 /** Plan of IrRun, for `readPayload` and `writePayload` of the runtime. */
-export const planOfIrRun: rt.MessagePlan<IrRun> = { name: "ir_run", identities: [[[6, 6]], [[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, tellsItsEnd: false, held: [], read: readIrRun, write: writeIrRun };
+export const planOfIrRun: rt.MessagePlan<IrRun> = /* @__PURE__ */ rt.plan("ir_run", [[[6, 6]], [[0, 0]]], [21], readIrRun, writeIrRun);
 
 function readIrReport(r: rt.Reader): IrReport {
   const data = r.rest(0, 255, false, "data");
@@ -956,7 +940,7 @@ function writeIrReport(w: rt.Writer, m: IrReport): void {
 }
 
 /** Plan of IrReport, for `readPayload` and `writePayload` of the runtime. */
-export const planOfIrReport: rt.MessagePlan<IrReport> = { name: "ir_report", identities: [[[6, 6]], [[1, 1]]], sizes: { least: 1, greatest: 255, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readIrReport, write: writeIrReport };
+export const planOfIrReport: rt.MessagePlan<IrReport> = /* @__PURE__ */ rt.plan("ir_report", [[[6, 6]], [[1, 1]]], [1, 255, 1], readIrReport, writeIrReport);
 
 /** To be corrected by the power offset of each robot; see the decision battery_scale in V. */
 export function systemStatusBatteryVoltageV(record: Pick<SystemStatus, "battery_voltage">): number {
@@ -969,154 +953,145 @@ export function systemStatusBatteryVoltageFromV(value: number): number {
 }
 
 function linuxFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "linux",
-    form: "",
-    parts: [
-      { kind: "literal", name: "start", size: 2, bytes: rt.hex("1b02") },
-      { kind: "number", name: "class", size: 1, part: { kind: "identity", name: "class", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "number", name: "number", size: 1, part: { kind: "value", name: "number", number: rt.number(8, "little"), slot: 1, least: 0, greatest: 255, default: 0, isCounter: false, values: null, between: null, isHeld: false } },
-      { kind: "number", name: "subclass", size: 1, part: { kind: "identity", name: "subclass", number: rt.number(8, "little"), slot: 2 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 3, base: 0, optional: 0, least: 0, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
-      { kind: "payload", name: "payload", size: 0 },
-      { kind: "sum", name: "checksum", size: 1, sum: 0 },
-    ],
-    payloadIndex: 5,
     headSize: 6,
     tailSize: 1,
     tailSizeEmpty: 1,
-    slots: 4,
-    identity: [0, 2],
-    lastIdentity: 2,
     identityIsEarly: true,
-    told: [],
-    virtual: [],
-    shown: [
-      { name: "class", key: "class", slot: 0 },
-      { name: "number", key: "number", slot: 1 },
-      { name: "subclass", key: "subclass", slot: 2 },
-    ],
-    sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
-    ],
-    start: "word",
     startWords: [rt.hex("1b02")],
     startBytes: rt.hex("1b02"),
     startIsUnique: true,
-    end: rt.hex("1b03"),
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 2,
-    endsIdle: false,
-    transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
-    firstStuffed: 1,
-    lastStuffed: 6,
-    behindRegion: 0,
     least: 9,
     greatest: 780,
     givenUpAt: 780,
-    greatestPayload: 255,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
-    groups: [
-      { identities: [[[1, 1]], [[1, 1]]], messages: [planOfRequestSystemStatus], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[2, 2]], [[0, 0]]], messages: [planOfAxisGetSystem], fixed: 1, greatest: 1, carried: [{ least: 1, greatest: 1, step: 0 }] },
-      { identities: [[[2, 2]], [[7, 7]]], messages: [planOfMotorCommand], fixed: 14, greatest: 14, carried: [{ least: 14, greatest: 14, step: 0 }] },
-      { identities: [[[2, 2]], [[10, 10]]], messages: [planOfSetDefaults], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[2, 2]], [[11, 11]]], messages: [planOfBrakeSet], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[2, 2]], [[12, 12]]], messages: [planOfBrakeRelease], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[2, 2]], [[34, 34]]], messages: [planOfStartStopMotorPackets], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[3, 3]], [[0, 0]]], messages: [planOfRequestJoystickData], fixed: 0, greatest: 0, carried: [{ least: 0, greatest: 0, step: 0 }] },
-      { identities: [[[4, 4]], [[0, 0]]], messages: [planOfStartStopSonarPackets], fixed: 13, greatest: 13, carried: [{ least: 13, greatest: 13, step: 0 }] },
-      { identities: [[[5, 5]], [[0, 0]]], messages: [planOfInitializeDigitalIo], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[5, 5]], [[2, 2]]], messages: [planOfCheckIoChanged], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[6, 6]], [[0, 0]]], messages: [planOfIrRun], fixed: 21, greatest: 21, carried: [{ least: 21, greatest: 21, step: 0 }] },
-    ],
-    encodeOnly: [],
-  };
-}
-
-function flexFrame(): rt.Frame {
-  return {
-    sender: "flex",
-    form: "",
+    start: "word",
+    end: rt.hex("1b03"),
     parts: [
       { kind: "literal", name: "start", size: 2, bytes: rt.hex("1b02") },
-      { kind: "number", name: "class", size: 1, part: { kind: "identity", name: "class", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "number", name: "number", size: 1, part: { kind: "value", name: "number", number: rt.number(8, "little"), slot: 1, least: 0, greatest: 255, default: 0, isCounter: false, values: null, between: null, isHeld: false } },
-      { kind: "number", name: "subclass", size: 1, part: { kind: "identity", name: "subclass", number: rt.number(8, "little"), slot: 2 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 3, base: 0, optional: 0, least: 0, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
+      rt.single({ kind: "identity", name: "class", number: rt.number(8), slot: 0 }),
+      rt.single({ kind: "value", name: "number", number: rt.number(8), slot: 1, least: 0, greatest: 255, default: 0 }),
+      rt.single({ kind: "identity", name: "subclass", number: rt.number(8), slot: 2 }),
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 3, base: 0, optional: 0, greatest: 255, least: 0 }),
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
     payloadIndex: 5,
-    headSize: 6,
-    tailSize: 1,
-    tailSizeEmpty: 1,
     slots: 4,
     identity: [0, 2],
     lastIdentity: 2,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "class", key: "class", slot: 0 },
       { name: "number", key: "number", slot: 1 },
       { name: "subclass", key: "subclass", slot: 2 },
     ],
     sums: [
-      { name: "checksum", number: rt.number(8, "little"), algorithm: rt.xor(8, {}), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], overWire: false, place: { isTail: true, offset: 0, absent: 0 }, size: 1, isOptional: false, isBits: false, lowest: 0, greatest: 255 },
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    start: "word",
-    startWords: [rt.hex("1b02")],
-    startBytes: rt.hex("1b02"),
-    startIsUnique: true,
-    end: rt.hex("1b03"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 2,
-    endsIdle: false,
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
     firstStuffed: 1,
     lastStuffed: 6,
     behindRegion: 0,
+    greatestPayload: 255,
+    groups: [
+      rt.group([planOfRequestSystemStatus]),
+      rt.group([planOfAxisGetSystem]),
+      rt.group([planOfMotorCommand]),
+      rt.group([planOfSetDefaults]),
+      rt.group([planOfBrakeSet]),
+      rt.group([planOfBrakeRelease]),
+      rt.group([planOfStartStopMotorPackets]),
+      rt.group([planOfRequestJoystickData]),
+      rt.group([planOfStartStopSonarPackets]),
+      rt.group([planOfInitializeDigitalIo]),
+      rt.group([planOfCheckIoChanged]),
+      rt.group([planOfIrRun]),
+    ],
+  });
+}
+
+function flexFrame(): rt.Frame {
+  return rt.frame({
+    sender: "flex",
+    headSize: 6,
+    tailSize: 1,
+    tailSizeEmpty: 1,
+    identityIsEarly: true,
+    startWords: [rt.hex("1b02")],
+    startBytes: rt.hex("1b02"),
+    startIsUnique: true,
+    endIsUnique: true,
+    markSize: 2,
     least: 10,
     greatest: 780,
     givenUpAt: 780,
-    greatestPayload: 255,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
-    groups: [
-      { identities: [[[1, 1]], [[1, 1]]], messages: [planOfSystemStatus], fixed: 9, greatest: 9, carried: [{ least: 9, greatest: 9, step: 0 }] },
-      { identities: [[[1, 1]], [[0, 0]]], messages: [planOfLcdDump], fixed: null, greatest: 255, carried: [{ least: 6, greatest: 255, step: 1 }] },
-      { identities: [[[2, 2]], [[7, 7]]], messages: [planOfConfirmMotorCommand], fixed: 9, greatest: 9, carried: [{ least: 9, greatest: 9, step: 0 }] },
-      { identities: [[[2, 2]], [[12, 12]]], messages: [planOfBrakeReleaseAnswer], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[2, 2]], [[33, 33]]], messages: [planOfReadMotor], fixed: 25, greatest: 25, carried: [{ least: 25, greatest: 25, step: 0 }] },
-      { identities: [[[2, 2]], [[34, 34]]], messages: [planOfConfirmStartStopMotorPackets], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[3, 3]], [[0, 0]]], messages: [planOfJoystickData], fixed: 13, greatest: 13, carried: [{ least: 13, greatest: 13, step: 0 }] },
-      { identities: [[[4, 4]], [[0, 0]]], messages: [planOfConfirmStartStopSonarPackets], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[4, 4]], [[2, 2]]], messages: [planOfSonarData], fixed: null, greatest: 254, carried: [{ least: 8, greatest: 254, step: 3 }] },
-      { identities: [[[5, 5]], [[0, 0]]], messages: [planOfConfirmInitializeDigitalIo], fixed: 8, greatest: 8, carried: [{ least: 8, greatest: 8, step: 0 }] },
-      { identities: [[[5, 5]], [[1, 1]]], messages: [planOfChangedBumpers], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[5, 5]], [[2, 2]]], messages: [planOfCheckIoChangedAnswer], fixed: 12, greatest: 12, carried: [{ least: 12, greatest: 12, step: 0 }] },
-      { identities: [[[5, 5]], [[3, 3]]], messages: [planOfChangedByte], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[6, 6]], [[1, 1]]], messages: [planOfIrReport], fixed: null, greatest: 255, carried: [{ least: 1, greatest: 255, step: 1 }] },
+    start: "word",
+    end: rt.hex("1b03"),
+    parts: [
+      { kind: "literal", name: "start", size: 2, bytes: rt.hex("1b02") },
+      rt.single({ kind: "identity", name: "class", number: rt.number(8), slot: 0 }),
+      rt.single({ kind: "value", name: "number", number: rt.number(8), slot: 1, least: 0, greatest: 255, default: 0 }),
+      rt.single({ kind: "identity", name: "subclass", number: rt.number(8), slot: 2 }),
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 3, base: 0, optional: 0, greatest: 255, least: 0 }),
+      { kind: "payload", name: "payload", size: 0 },
+      { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
-    encodeOnly: [],
-  };
+    payloadIndex: 5,
+    slots: 4,
+    identity: [0, 2],
+    lastIdentity: 2,
+    shown: [
+      { name: "class", key: "class", slot: 0 },
+      { name: "number", key: "number", slot: 1 },
+      { name: "subclass", key: "subclass", slot: 2 },
+    ],
+    sums: [
+      { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
+    ],
+    transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
+    firstStuffed: 1,
+    lastStuffed: 6,
+    behindRegion: 0,
+    greatestPayload: 255,
+    groups: [
+      rt.group([planOfSystemStatus]),
+      rt.group([planOfLcdDump]),
+      rt.group([planOfConfirmMotorCommand]),
+      rt.group([planOfBrakeReleaseAnswer]),
+      rt.group([planOfReadMotor]),
+      rt.group([planOfConfirmStartStopMotorPackets]),
+      rt.group([planOfJoystickData]),
+      rt.group([planOfConfirmStartStopSonarPackets]),
+      rt.group([planOfSonarData]),
+      rt.group([planOfConfirmInitializeDigitalIo]),
+      rt.group([planOfChangedBumpers]),
+      rt.group([planOfCheckIoChangedAnswer]),
+      rt.group([planOfChangedByte]),
+      rt.group([planOfIrReport]),
+    ],
+  });
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([linuxFrame, flexFrame], [["linux", "flex"]]);
+
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {

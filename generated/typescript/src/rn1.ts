@@ -256,12 +256,6 @@ export interface Senders {
   readonly brain: { readonly message: BrainMessage; readonly parts: BrainParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = 
   | MoveManual
@@ -276,18 +270,9 @@ export type MessageInput =
   | Sonar
   | Facing;
 
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
-
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
 }
-
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 function readMoveManual(r: rt.Reader): MoveManual {
   const speed = r.sint(1, 7, true, 128, "speed");
@@ -301,7 +286,7 @@ function writeMoveManual(w: rt.Writer, m: MoveManual): void {
 }
 
 /** Plan of MoveManual, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveManual: rt.MessagePlan<MoveManual> = { name: "move_manual", identities: [[[128, 128]]], sizes: { least: 2, greatest: 2, step: 0 }, known: 2, tellsItsEnd: false, held: [], read: readMoveManual, write: writeMoveManual };
+export const planOfMoveManual: rt.MessagePlan<MoveManual> = /* @__PURE__ */ rt.plan("move_manual", [[[128, 128]]], [2], readMoveManual, writeMoveManual);
 
 function readMoveRelativeTwostep(r: rt.Reader): MoveRelativeTwostep {
   const angle = r.sint(2, 14, true, 128, "angle");
@@ -315,7 +300,7 @@ function writeMoveRelativeTwostep(w: rt.Writer, m: MoveRelativeTwostep): void {
 }
 
 /** Plan of MoveRelativeTwostep, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveRelativeTwostep: rt.MessagePlan<MoveRelativeTwostep> = { name: "move_relative_twostep", identities: [[[129, 129]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readMoveRelativeTwostep, write: writeMoveRelativeTwostep };
+export const planOfMoveRelativeTwostep: rt.MessagePlan<MoveRelativeTwostep> = /* @__PURE__ */ rt.plan("move_relative_twostep", [[[129, 129]]], [4], readMoveRelativeTwostep, writeMoveRelativeTwostep);
 
 function readMoveRelativeArc(r: rt.Reader): MoveRelativeArc {
   const angle = r.sint(2, 14, true, 128, "angle");
@@ -329,13 +314,12 @@ function writeMoveRelativeArc(w: rt.Writer, m: MoveRelativeArc): void {
 }
 
 /** Plan of MoveRelativeArc, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMoveRelativeArc: rt.MessagePlan<MoveRelativeArc> = { name: "move_relative_arc", identities: [[[130, 130]]], sizes: { least: 4, greatest: 4, step: 0 }, known: 4, tellsItsEnd: false, held: [], read: readMoveRelativeArc, write: writeMoveRelativeArc };
+export const planOfMoveRelativeArc: rt.MessagePlan<MoveRelativeArc> = /* @__PURE__ */ rt.plan("move_relative_arc", [[[130, 130]]], [4], readMoveRelativeArc, writeMoveRelativeArc);
 
 function readMaintenance(r: rt.Reader): Maintenance {
-  const count = 3;
   const magic = [];
   r.enter("magic");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 3; i++) {
     magic.push(r.uint(1, 7, true, 128, i));
   }
   r.leave();
@@ -378,33 +362,33 @@ function writeMaintenance(w: rt.Writer, m: MaintenanceInput): void {
   w.leave();
   const operation = w.int(m.operation, 0, 127, "operation");
   w.uint(operation, 1, 7, true, 128);
-  const value = m.argument;
+  const argument = m.argument;
   const selector = operation;
   if (selector === 65) {
-    const reconfig_uart = w.record(value, "argument");
+    const reconfig_uart = w.record(argument, "argument");
     w.enter("argument");
     w.uint(w.int(reconfig_uart.baud_rate_register, 0, 65535, "baud_rate_register"), 3, 16, true, 128);
     w.leave();
   }
   else if (selector === 81) {
-    w.nothing(value, "argument");
+    w.nothing(argument, "argument");
   }
   else if (selector === 82) {
-    w.nothing(value, "argument");
+    w.nothing(argument, "argument");
   }
   else if (selector === 83) {
-    const run_motor_controller_flasher = w.record(value, "argument");
+    const run_motor_controller_flasher = w.record(argument, "argument");
     w.enter("argument");
     w.uint(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), 1, 7, true, 128);
     w.leave();
   }
   else {
-    w.octets(value, 0, 3, true, "argument");
+    w.octets(argument, 0, 3, true, "argument");
   }
 }
 
 /** Plan of Maintenance, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMaintenance: rt.MessagePlan<Maintenance> = { name: "maintenance", identities: [[[254, 254]]], sizes: { least: 4, greatest: 7, step: 1 }, known: null, tellsItsEnd: false, held: [], read: readMaintenance, write: writeMaintenance };
+export const planOfMaintenance: rt.MessagePlan<Maintenance> = /* @__PURE__ */ rt.plan("maintenance", [[[254, 254]]], [4, 7, 1], readMaintenance, writeMaintenance);
 
 function readGyro(r: rt.Reader): Gyro {
   const status = r.uint(1, 7, true, 128, "status");
@@ -422,7 +406,7 @@ function writeGyro(w: rt.Writer, m: Gyro): void {
 }
 
 /** Plan of Gyro, for `readPayload` and `writePayload` of the runtime. */
-export const planOfGyro: rt.MessagePlan<Gyro> = { name: "gyro", identities: [[[128, 128]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readGyro, write: writeGyro };
+export const planOfGyro: rt.MessagePlan<Gyro> = /* @__PURE__ */ rt.plan("gyro", [[[128, 128]]], [7], readGyro, writeGyro);
 
 function readXcel(r: rt.Reader): Xcel {
   const status = r.uint(1, 7, true, 128, "status");
@@ -440,7 +424,7 @@ function writeXcel(w: rt.Writer, m: Xcel): void {
 }
 
 /** Plan of Xcel, for `readPayload` and `writePayload` of the runtime. */
-export const planOfXcel: rt.MessagePlan<Xcel> = { name: "xcel", identities: [[[129, 129]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readXcel, write: writeXcel };
+export const planOfXcel: rt.MessagePlan<Xcel> = /* @__PURE__ */ rt.plan("xcel", [[[129, 129]]], [7], readXcel, writeXcel);
 
 function readCompass(r: rt.Reader): Compass {
   const status = r.uint(1, 7, true, 128, "status");
@@ -458,7 +442,7 @@ function writeCompass(w: rt.Writer, m: Compass): void {
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
-export const planOfCompass: rt.MessagePlan<Compass> = { name: "compass", identities: [[[130, 130]]], sizes: { least: 7, greatest: 7, step: 0 }, known: 7, tellsItsEnd: false, held: [], read: readCompass, write: writeCompass };
+export const planOfCompass: rt.MessagePlan<Compass> = /* @__PURE__ */ rt.plan("compass", [[[130, 130]]], [7], readCompass, writeCompass);
 
 function readOptflow(r: rt.Reader): Optflow {
   const status = r.uint(1, 7, true, 128, "status");
@@ -476,14 +460,13 @@ function writeOptflow(w: rt.Writer, m: Optflow): void {
 }
 
 /** Plan of Optflow, for `readPayload` and `writePayload` of the runtime. */
-export const planOfOptflow: rt.MessagePlan<Optflow> = { name: "optflow", identities: [[[131, 131]]], sizes: { least: 6, greatest: 6, step: 0 }, known: 6, tellsItsEnd: false, held: [], read: readOptflow, write: writeOptflow };
+export const planOfOptflow: rt.MessagePlan<Optflow> = /* @__PURE__ */ rt.plan("optflow", [[[131, 131]]], [6], readOptflow, writeOptflow);
 
 function readLidar(r: rt.Reader): Lidar {
   const status = r.uint(1, 7, true, 128, "status");
-  const count = 360;
   const distances = [];
   r.enter("distances");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 360; i++) {
     distances.push(r.uint(2, 14, true, 128, i));
   }
   r.leave();
@@ -501,14 +484,13 @@ function writeLidar(w: rt.Writer, m: Lidar): void {
 }
 
 /** Plan of Lidar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfLidar: rt.MessagePlan<Lidar> = { name: "lidar", identities: [[[132, 132]]], sizes: { least: 721, greatest: 721, step: 0 }, known: 721, tellsItsEnd: false, held: [], read: readLidar, write: writeLidar };
+export const planOfLidar: rt.MessagePlan<Lidar> = /* @__PURE__ */ rt.plan("lidar", [[[132, 132]]], [721], readLidar, writeLidar);
 
 function readSonar(r: rt.Reader): Sonar {
   const status = r.uint(1, 7, true, 128, "status");
-  const count = 7;
   const distances = [];
   r.enter("distances");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 7; i++) {
     distances.push(r.uint(2, 14, true, 128, i));
   }
   r.leave();
@@ -526,7 +508,7 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
 }
 
 /** Plan of Sonar, for `readPayload` and `writePayload` of the runtime. */
-export const planOfSonar: rt.MessagePlan<Sonar> = { name: "sonar", identities: [[[133, 133]]], sizes: { least: 15, greatest: 15, step: 0 }, known: 15, tellsItsEnd: false, held: [], read: readSonar, write: writeSonar };
+export const planOfSonar: rt.MessagePlan<Sonar> = /* @__PURE__ */ rt.plan("sonar", [[[133, 133]]], [15], readSonar, writeSonar);
 
 function readFacing(r: rt.Reader): Facing {
   const status = r.uint(1, 7, true, 128, "status");
@@ -542,7 +524,7 @@ function writeFacing(w: rt.Writer, m: Facing): void {
 }
 
 /** Plan of Facing, for `readPayload` and `writePayload` of the runtime. */
-export const planOfFacing: rt.MessagePlan<Facing> = { name: "facing", identities: [[[160, 160]]], sizes: { least: 5, greatest: 5, step: 0 }, known: 5, tellsItsEnd: false, held: [], read: readFacing, write: writeFacing };
+export const planOfFacing: rt.MessagePlan<Facing> = /* @__PURE__ */ rt.plan("facing", [[[160, 160]]], [5], readFacing, writeFacing);
 
 /** How far to turn in deg. */
 export function moveRelativeTwostepAngleDeg(record: Pick<MoveRelativeTwostep, "angle">): number {
@@ -565,121 +547,109 @@ export function moveRelativeArcAngleFromDeg(value: number): number {
 }
 
 function hostFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "host",
-    form: "",
-    parts: [
-      { kind: "number", name: "start", size: 1, part: { kind: "identity", name: "start", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "payload", name: "payload", size: 0 },
-    ],
-    payloadIndex: 1,
     headSize: 1,
     tailSize: 0,
     tailSizeEmpty: 0,
-    slots: 1,
-    identity: [0],
-    lastIdentity: 0,
     identityIsEarly: true,
-    told: [],
-    virtual: [],
-    shown: [
-      { name: "start", key: "start", slot: 0 },
-    ],
-    sums: [],
-    start: "word",
     startWords: [rt.hex("80"), rt.hex("81"), rt.hex("82"), rt.hex("83"), rt.hex("84"), rt.hex("85"), rt.hex("86"), rt.hex("87"), rt.hex("88"), rt.hex("89"), rt.hex("8a"), rt.hex("8b"), rt.hex("8c"), rt.hex("8d"), rt.hex("8e"), rt.hex("8f"), rt.hex("90"), rt.hex("91"), rt.hex("92"), rt.hex("93"), rt.hex("94"), rt.hex("95"), rt.hex("96"), rt.hex("97"), rt.hex("98"), rt.hex("99"), rt.hex("9a"), rt.hex("9b"), rt.hex("9c"), rt.hex("9d"), rt.hex("9e"), rt.hex("9f"), rt.hex("a0"), rt.hex("a1"), rt.hex("a2"), rt.hex("a3"), rt.hex("a4"), rt.hex("a5"), rt.hex("a6"), rt.hex("a7"), rt.hex("a8"), rt.hex("a9"), rt.hex("aa"), rt.hex("ab"), rt.hex("ac"), rt.hex("ad"), rt.hex("ae"), rt.hex("af"), rt.hex("b0"), rt.hex("b1"), rt.hex("b2"), rt.hex("b3"), rt.hex("b4"), rt.hex("b5"), rt.hex("b6"), rt.hex("b7"), rt.hex("b8"), rt.hex("b9"), rt.hex("ba"), rt.hex("bb"), rt.hex("bc"), rt.hex("bd"), rt.hex("be"), rt.hex("bf"), rt.hex("c0"), rt.hex("c1"), rt.hex("c2"), rt.hex("c3"), rt.hex("c4"), rt.hex("c5"), rt.hex("c6"), rt.hex("c7"), rt.hex("c8"), rt.hex("c9"), rt.hex("ca"), rt.hex("cb"), rt.hex("cc"), rt.hex("cd"), rt.hex("ce"), rt.hex("cf"), rt.hex("d0"), rt.hex("d1"), rt.hex("d2"), rt.hex("d3"), rt.hex("d4"), rt.hex("d5"), rt.hex("d6"), rt.hex("d7"), rt.hex("d8"), rt.hex("d9"), rt.hex("da"), rt.hex("db"), rt.hex("dc"), rt.hex("dd"), rt.hex("de"), rt.hex("df"), rt.hex("e0"), rt.hex("e1"), rt.hex("e2"), rt.hex("e3"), rt.hex("e4"), rt.hex("e5"), rt.hex("e6"), rt.hex("e7"), rt.hex("e8"), rt.hex("e9"), rt.hex("ea"), rt.hex("eb"), rt.hex("ec"), rt.hex("ed"), rt.hex("ee"), rt.hex("ef"), rt.hex("f0"), rt.hex("f1"), rt.hex("f2"), rt.hex("f3"), rt.hex("f4"), rt.hex("f5"), rt.hex("f6"), rt.hex("f7"), rt.hex("f8"), rt.hex("f9"), rt.hex("fa"), rt.hex("fb"), rt.hex("fc"), rt.hex("fd"), rt.hex("fe")],
     startBytes: rt.hex(""),
     startIsUnique: true,
-    end: rt.hex("ff"),
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 0,
-    endsIdle: false,
-    transparency: null,
-    firstStuffed: -1,
-    lastStuffed: -1,
-    behindRegion: 0,
     least: 4,
     greatest: 9,
     givenUpAt: 9,
-    greatestPayload: 7,
     sevenBit: true,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
-    groups: [
-      { identities: [[[128, 128]]], messages: [planOfMoveManual], fixed: 2, greatest: 2, carried: [{ least: 2, greatest: 2, step: 0 }] },
-      { identities: [[[129, 129]]], messages: [planOfMoveRelativeTwostep], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[130, 130]]], messages: [planOfMoveRelativeArc], fixed: 4, greatest: 4, carried: [{ least: 4, greatest: 4, step: 0 }] },
-      { identities: [[[254, 254]]], messages: [planOfMaintenance], fixed: null, greatest: 7, carried: [{ least: 4, greatest: 7, step: 1 }] },
-    ],
-    encodeOnly: [],
-  };
-}
-
-function brainFrame(): rt.Frame {
-  return {
-    sender: "brain",
-    form: "",
+    start: "word",
+    end: rt.hex("ff"),
     parts: [
-      { kind: "number", name: "start", size: 1, part: { kind: "identity", name: "start", number: rt.number(8, "little"), slot: 0 } },
+      rt.single({ kind: "identity", name: "start", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
-    headSize: 1,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "start", key: "start", slot: 0 },
     ],
-    sums: [],
-    start: "word",
-    startWords: [rt.hex("80"), rt.hex("81"), rt.hex("82"), rt.hex("83"), rt.hex("84"), rt.hex("85"), rt.hex("86"), rt.hex("87"), rt.hex("88"), rt.hex("89"), rt.hex("8a"), rt.hex("8b"), rt.hex("8c"), rt.hex("8d"), rt.hex("8e"), rt.hex("8f"), rt.hex("90"), rt.hex("91"), rt.hex("92"), rt.hex("93"), rt.hex("94"), rt.hex("95"), rt.hex("96"), rt.hex("97"), rt.hex("98"), rt.hex("99"), rt.hex("9a"), rt.hex("9b"), rt.hex("9c"), rt.hex("9d"), rt.hex("9e"), rt.hex("9f"), rt.hex("a0"), rt.hex("a1"), rt.hex("a2"), rt.hex("a3"), rt.hex("a4"), rt.hex("a5"), rt.hex("a6"), rt.hex("a7"), rt.hex("a8"), rt.hex("a9"), rt.hex("aa"), rt.hex("ab"), rt.hex("ac"), rt.hex("ad"), rt.hex("ae"), rt.hex("af"), rt.hex("b0"), rt.hex("b1"), rt.hex("b2"), rt.hex("b3"), rt.hex("b4"), rt.hex("b5"), rt.hex("b6"), rt.hex("b7"), rt.hex("b8"), rt.hex("b9"), rt.hex("ba"), rt.hex("bb"), rt.hex("bc"), rt.hex("bd"), rt.hex("be"), rt.hex("bf"), rt.hex("c0"), rt.hex("c1"), rt.hex("c2"), rt.hex("c3"), rt.hex("c4"), rt.hex("c5"), rt.hex("c6"), rt.hex("c7"), rt.hex("c8"), rt.hex("c9"), rt.hex("ca"), rt.hex("cb"), rt.hex("cc"), rt.hex("cd"), rt.hex("ce"), rt.hex("cf"), rt.hex("d0"), rt.hex("d1"), rt.hex("d2"), rt.hex("d3"), rt.hex("d4"), rt.hex("d5"), rt.hex("d6"), rt.hex("d7"), rt.hex("d8"), rt.hex("d9"), rt.hex("da"), rt.hex("db"), rt.hex("dc"), rt.hex("dd"), rt.hex("de"), rt.hex("df"), rt.hex("e0"), rt.hex("e1"), rt.hex("e2"), rt.hex("e3"), rt.hex("e4"), rt.hex("e5"), rt.hex("e6"), rt.hex("e7"), rt.hex("e8"), rt.hex("e9"), rt.hex("ea"), rt.hex("eb"), rt.hex("ec"), rt.hex("ed"), rt.hex("ee"), rt.hex("ef"), rt.hex("f0"), rt.hex("f1"), rt.hex("f2"), rt.hex("f3"), rt.hex("f4"), rt.hex("f5"), rt.hex("f6"), rt.hex("f7"), rt.hex("f8"), rt.hex("f9"), rt.hex("fa"), rt.hex("fb"), rt.hex("fc"), rt.hex("fd"), rt.hex("fe")],
-    startBytes: rt.hex(""),
-    startIsUnique: true,
-    end: rt.hex(""),
-    endIsUnique: false,
-    sharesDelimiter: false,
-    markSize: 0,
-    endsIdle: false,
-    transparency: null,
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
+    greatestPayload: 7,
+    groups: [
+      rt.group([planOfMoveManual]),
+      rt.group([planOfMoveRelativeTwostep]),
+      rt.group([planOfMoveRelativeArc]),
+      rt.group([planOfMaintenance]),
+    ],
+  });
+}
+
+function brainFrame(): rt.Frame {
+  return rt.frame({
+    sender: "brain",
+    headSize: 1,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [rt.hex("80"), rt.hex("81"), rt.hex("82"), rt.hex("83"), rt.hex("84"), rt.hex("85"), rt.hex("86"), rt.hex("87"), rt.hex("88"), rt.hex("89"), rt.hex("8a"), rt.hex("8b"), rt.hex("8c"), rt.hex("8d"), rt.hex("8e"), rt.hex("8f"), rt.hex("90"), rt.hex("91"), rt.hex("92"), rt.hex("93"), rt.hex("94"), rt.hex("95"), rt.hex("96"), rt.hex("97"), rt.hex("98"), rt.hex("99"), rt.hex("9a"), rt.hex("9b"), rt.hex("9c"), rt.hex("9d"), rt.hex("9e"), rt.hex("9f"), rt.hex("a0"), rt.hex("a1"), rt.hex("a2"), rt.hex("a3"), rt.hex("a4"), rt.hex("a5"), rt.hex("a6"), rt.hex("a7"), rt.hex("a8"), rt.hex("a9"), rt.hex("aa"), rt.hex("ab"), rt.hex("ac"), rt.hex("ad"), rt.hex("ae"), rt.hex("af"), rt.hex("b0"), rt.hex("b1"), rt.hex("b2"), rt.hex("b3"), rt.hex("b4"), rt.hex("b5"), rt.hex("b6"), rt.hex("b7"), rt.hex("b8"), rt.hex("b9"), rt.hex("ba"), rt.hex("bb"), rt.hex("bc"), rt.hex("bd"), rt.hex("be"), rt.hex("bf"), rt.hex("c0"), rt.hex("c1"), rt.hex("c2"), rt.hex("c3"), rt.hex("c4"), rt.hex("c5"), rt.hex("c6"), rt.hex("c7"), rt.hex("c8"), rt.hex("c9"), rt.hex("ca"), rt.hex("cb"), rt.hex("cc"), rt.hex("cd"), rt.hex("ce"), rt.hex("cf"), rt.hex("d0"), rt.hex("d1"), rt.hex("d2"), rt.hex("d3"), rt.hex("d4"), rt.hex("d5"), rt.hex("d6"), rt.hex("d7"), rt.hex("d8"), rt.hex("d9"), rt.hex("da"), rt.hex("db"), rt.hex("dc"), rt.hex("dd"), rt.hex("de"), rt.hex("df"), rt.hex("e0"), rt.hex("e1"), rt.hex("e2"), rt.hex("e3"), rt.hex("e4"), rt.hex("e5"), rt.hex("e6"), rt.hex("e7"), rt.hex("e8"), rt.hex("e9"), rt.hex("ea"), rt.hex("eb"), rt.hex("ec"), rt.hex("ed"), rt.hex("ee"), rt.hex("ef"), rt.hex("f0"), rt.hex("f1"), rt.hex("f2"), rt.hex("f3"), rt.hex("f4"), rt.hex("f5"), rt.hex("f6"), rt.hex("f7"), rt.hex("f8"), rt.hex("f9"), rt.hex("fa"), rt.hex("fb"), rt.hex("fc"), rt.hex("fd"), rt.hex("fe")],
+    startBytes: rt.hex(""),
+    startIsUnique: true,
+    markSize: 0,
     least: 6,
     greatest: 722,
     givenUpAt: 722,
-    greatestPayload: 721,
     sevenBit: true,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
-    groups: [
-      { identities: [[[128, 128]]], messages: [planOfGyro], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[129, 129]]], messages: [planOfXcel], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[130, 130]]], messages: [planOfCompass], fixed: 7, greatest: 7, carried: [{ least: 7, greatest: 7, step: 0 }] },
-      { identities: [[[131, 131]]], messages: [planOfOptflow], fixed: 6, greatest: 6, carried: [{ least: 6, greatest: 6, step: 0 }] },
-      { identities: [[[132, 132]]], messages: [planOfLidar], fixed: 721, greatest: 721, carried: [{ least: 721, greatest: 721, step: 0 }] },
-      { identities: [[[133, 133]]], messages: [planOfSonar], fixed: 15, greatest: 15, carried: [{ least: 15, greatest: 15, step: 0 }] },
-      { identities: [[[160, 160]]], messages: [planOfFacing], fixed: 5, greatest: 5, carried: [{ least: 5, greatest: 5, step: 0 }] },
+    start: "word",
+    end: rt.hex(""),
+    parts: [
+      rt.single({ kind: "identity", name: "start", number: rt.number(8), slot: 0 }),
+      { kind: "payload", name: "payload", size: 0 },
     ],
-    encodeOnly: [],
-  };
+    payloadIndex: 1,
+    slots: 1,
+    identity: [0],
+    lastIdentity: 0,
+    shown: [
+      { name: "start", key: "start", slot: 0 },
+    ],
+    firstStuffed: -1,
+    lastStuffed: -1,
+    behindRegion: 0,
+    greatestPayload: 721,
+    groups: [
+      rt.group([planOfGyro]),
+      rt.group([planOfXcel]),
+      rt.group([planOfCompass]),
+      rt.group([planOfOptflow]),
+      rt.group([planOfLidar]),
+      rt.group([planOfSonar]),
+      rt.group([planOfFacing]),
+    ],
+  });
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([hostFrame, brainFrame], []);
+
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {

@@ -110,35 +110,19 @@ export interface Senders {
   readonly board: { readonly message: BoardMessage; readonly parts: BoardParts };
 }
 
-/** Name of an endpoint that sends. */
-export type SenderName = keyof Senders;
-
-/** Any message. */
-export type Message = Senders[SenderName]["message"];
-
 /** What an encoder takes for a message. */
 export type MessageInput = MotorsServosLeds | StatusInput;
-
-/** What a decoder yields. */
-export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
 
 /** Parts of frames whose values callers give. */
 export interface GivenParts {
 }
 
-/** Choices of an encoder. */
-export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
-
-/** Choices of `decode`. */
-export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
-
 function readMotorsServosLeds(r: rt.Reader): MotorsServosLeds {
   const right_motor = r.i16be("right_motor");
   const left_motor = r.i16be("left_motor");
-  const count = 8;
   const servos = [];
   r.enter("servos");
-  for (let i = 0; i < count; i++) {
+  for (let i = 0; i < 8; i++) {
     servos.push(r.u16be(i));
   }
   r.leave();
@@ -159,7 +143,7 @@ function writeMotorsServosLeds(w: rt.Writer, m: MotorsServosLeds): void {
 }
 
 /** Plan of MotorsServosLeds, for `readPayload` and `writePayload` of the runtime. */
-export const planOfMotorsServosLeds: rt.MessagePlan<MotorsServosLeds> = { name: "motors_servos_leds", identities: [[[0, 0]]], sizes: { least: 21, greatest: 21, step: 0 }, known: 21, tellsItsEnd: false, held: [], read: readMotorsServosLeds, write: writeMotorsServosLeds };
+export const planOfMotorsServosLeds: rt.MessagePlan<MotorsServosLeds> = /* @__PURE__ */ rt.plan("motors_servos_leds", [[[0, 0]]], [21], readMotorsServosLeds, writeMotorsServosLeds);
 
 function readStatus(r: rt.Reader): Status {
   const reserved = r.i16be("reserved");
@@ -189,7 +173,7 @@ function writeStatus(w: rt.Writer, m: StatusInput): void {
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
-export const planOfStatus: rt.MessagePlan<Status> = { name: "status", identities: [[[1, 1]]], sizes: { least: 12, greatest: 12, step: 0 }, known: 12, tellsItsEnd: false, held: [], read: readStatus, write: writeStatus };
+export const planOfStatus: rt.MessagePlan<Status> = /* @__PURE__ */ rt.plan("status", [[[1, 1]]], [12], readStatus, writeStatus);
 
 /** Drive of the right motor in percent. */
 export function motorsServosLedsRightMotorPercent(record: Pick<MotorsServosLeds, "right_motor">): number {
@@ -222,116 +206,105 @@ export function statusPcbTemperatureFromDegc(value: number): number {
 }
 
 function daemonFrame(): rt.Frame {
-  return {
+  return rt.frame({
     sender: "daemon",
-    form: "",
-    parts: [
-      { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 2, optional: 0, least: 2, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "payload", name: "payload", size: 0 },
-    ],
-    payloadIndex: 3,
     headSize: 3,
     tailSize: 0,
     tailSizeEmpty: 0,
-    slots: 2,
-    identity: [0],
-    lastIdentity: 0,
     identityIsEarly: true,
-    told: [],
-    virtual: [],
-    shown: [
-      { name: "type", key: "type", slot: 0 },
-    ],
-    sums: [],
-    start: "word",
     startWords: [rt.hex("62")],
     startBytes: rt.hex("62"),
     startIsUnique: true,
-    end: rt.hex("0a"),
     endIsUnique: true,
-    sharesDelimiter: false,
     markSize: 1,
-    endsIdle: false,
-    transparency: rt.base16(),
-    firstStuffed: 1,
-    lastStuffed: 3,
-    behindRegion: 0,
     least: 48,
     greatest: 512,
     givenUpAt: 512,
-    greatestPayload: 253,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
-    groups: [
-      { identities: [[[0, 0]]], messages: [planOfMotorsServosLeds], fixed: 21, greatest: 21, carried: [{ least: 21, greatest: 21, step: 0 }] },
-    ],
-    encodeOnly: [],
-  };
-}
-
-function boardFrame(): rt.Frame {
-  return {
-    sender: "board",
-    form: "",
+    start: "word",
+    end: rt.hex("0a"),
     parts: [
       { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
-      { kind: "number", name: "type", size: 1, part: { kind: "identity", name: "type", number: rt.number(8, "little"), slot: 0 } },
-      { kind: "number", name: "length", size: 1, part: { kind: "length", name: "length", number: rt.number(8, "little"), slot: 1, base: 0, optional: 0, least: 0, greatest: 255, overWire: false, isFurther: false, regionEnd: 0 } },
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 1, base: 2, optional: 0, greatest: 255, least: 2 }),
+      rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 3,
-    headSize: 3,
-    tailSize: 0,
-    tailSizeEmpty: 0,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
-    identityIsEarly: true,
-    told: [],
-    virtual: [],
     shown: [
       { name: "type", key: "type", slot: 0 },
     ],
-    sums: [],
-    start: "word",
-    startWords: [rt.hex("62")],
-    startBytes: rt.hex("62"),
-    startIsUnique: true,
-    end: rt.hex("0d0a"),
-    endIsUnique: true,
-    sharesDelimiter: false,
-    markSize: 1,
-    endsIdle: false,
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
     behindRegion: 0,
+    greatestPayload: 253,
+    groups: [
+      rt.group([planOfMotorsServosLeds]),
+    ],
+  });
+}
+
+function boardFrame(): rt.Frame {
+  return rt.frame({
+    sender: "board",
+    headSize: 3,
+    tailSize: 0,
+    tailSizeEmpty: 0,
+    identityIsEarly: true,
+    startWords: [rt.hex("62")],
+    startBytes: rt.hex("62"),
+    startIsUnique: true,
+    endIsUnique: true,
+    markSize: 1,
     least: 31,
     greatest: 517,
     givenUpAt: 517,
-    greatestPayload: 255,
-    sevenBit: false,
-    rescans: false,
     takesWhole: true,
-    cutAmbiguous: false,
-    isBounded: false,
-    kept: null,
-    isCut: false,
-    groups: [
-      { identities: [[[1, 1]]], messages: [planOfStatus], fixed: 12, greatest: 12, carried: [{ least: 12, greatest: 12, step: 0 }] },
+    start: "word",
+    end: rt.hex("0d0a"),
+    parts: [
+      { kind: "literal", name: "begin", size: 1, bytes: rt.hex("62") },
+      rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
+      rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 1, base: 0, optional: 0, greatest: 255, least: 0 }),
+      { kind: "payload", name: "payload", size: 0 },
     ],
-    encodeOnly: [],
-  };
+    payloadIndex: 3,
+    slots: 2,
+    identity: [0],
+    lastIdentity: 0,
+    shown: [
+      { name: "type", key: "type", slot: 0 },
+    ],
+    transparency: rt.base16(),
+    firstStuffed: 1,
+    lastStuffed: 3,
+    behindRegion: 0,
+    greatestPayload: 255,
+    groups: [
+      rt.group([planOfStatus]),
+    ],
+  });
 }
 
 const protocol: rt.Protocol = /* @__PURE__ */ new rt.Protocol([daemonFrame, boardFrame], []);
+
+/** Name of an endpoint that sends. */
+export type SenderName = keyof Senders;
+
+/** Any message. */
+export type Message = Senders[SenderName]["message"];
+
+/** What a decoder yields. */
+export type Event<S extends SenderName = SenderName> = rt.Event<Senders[S]["message"], Senders[S]["parts"]>;
+
+/** Choices of an encoder. */
+export type EncodeOptions = rt.EncodeOptions<GivenParts, SenderName>;
+
+/** Choices of `decode`. */
+export type DecodeOptions<S extends SenderName = SenderName> = rt.DecodeOptions<S>;
 
 /** Cuts what an endpoint sends into events. Without a name: what all of them send. */
 export class Decoder<S extends SenderName = SenderName> extends rt.Decoder<Senders[S]["message"], Senders[S]["parts"]> {

@@ -7,20 +7,13 @@ from protogen.model.types import Field, Float
 from protogen.targets import descriptions
 from protogen.targets.c.lines import WIDTH
 from protogen.targets.escape import c_comment
-from protogen.targets.folding import folded
+from protogen.targets.folding import block_comment
 
 
 def comment(texts: list[str], indent: int = 0) -> tuple[str, ...]:
     """A documentation comment of these paragraphs, without the indent of its lines."""
     escaped = [c_comment(text) for text in texts if text]
-    if len(escaped) == 1 and indent + len(escaped[0]) + 7 <= WIDTH:
-        return (f"/** {escaped[0]} */",)
-    lines = ["/**"]
-    for number, text in enumerate(escaped):
-        if number:
-            lines.append(" *")
-        lines += [f" * {line}" for line in folded(text, WIDTH - indent - 3, at_hyphens=False)]
-    return (*lines, " */")
+    return block_comment(escaped, WIDTH - indent, at_hyphens=False)
 
 
 def of_field(item: Field) -> list[str]:

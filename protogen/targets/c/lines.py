@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import lru_cache
 
+from protogen.targets.braces import BracedLines
+
 WIDTH = 100
 INDENT = 4
 
@@ -18,35 +20,24 @@ _PLACE = re.compile(
 _DECLARATION = re.compile(r"const |size_t |bool |uint8_t \*")
 
 
-class Lines:
-    """A growing list of lines, each with its indent."""
+class Lines(BracedLines):
+    """Statements of C."""
 
     def __init__(self, depth: int = 1) -> None:
-        self._lines: list[str] = []
-        self._depth = depth
+        super().__init__(INDENT, depth)
 
     def add(self, *lines: str) -> None:
         """Add lines at the current depth; those of the preprocessor have no indent."""
-        indent = " " * (INDENT * self._depth)
-        for line in lines:
-            self._lines.append(line if line.startswith("#") else indent + line)
+        margin = self.margin
+        self._lines += [line if line.startswith("#") else margin + line for line in lines]
 
     def put_first(self, *lines: str) -> None:
         """Put lines in front of all others."""
-        self._lines[:0] = [" " * (INDENT * self._depth) + line for line in lines]
+        self.put_at(0, *lines)
 
     def put_at(self, place: int, *lines: str) -> None:
         """Put lines of the current depth in front of those from a place on."""
-        self._lines[place:place] = [" " * (INDENT * self._depth) + line for line in lines]
-
-    @contextmanager
-    def block(self, head: str, end: str = "}") -> Iterator[None]:
-        """Lines between braces."""
-        self.add(f"{head} {{")
-        self._depth += 1
-        yield
-        self._depth -= 1
-        self.add(end)
+        self._lines[place:place] = [self.margin + line for line in lines]
 
     @contextmanager
     def switch(self, selector: str) -> Iterator[None]:
@@ -84,11 +75,6 @@ class Lines:
             if not name or any(re.search(rf"\b{name}\b", other) for other in kept):
                 kept.append(line)
         self._lines = kept[::-1]
-
-    @property
-    def lines(self) -> tuple[str, ...]:
-        """All lines."""
-        return tuple(self._lines)
 
     def __len__(self) -> int:
         return len(self._lines)

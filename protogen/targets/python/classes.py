@@ -16,6 +16,7 @@ from protogen.model.sizes import SizeSet
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type
 from protogen.runtime.attributes import attribute
 from protogen.targets.escape import paragraphs, python_comment
+from protogen.targets.module_names import RecordNames
 from protogen.targets.python import describing
 from protogen.targets.python import frames as tables
 from protogen.targets.python.formats import constant, field_format, is_empty
@@ -27,7 +28,7 @@ from protogen.targets.python.literals import (
     text,
     tuple_of,
 )
-from protogen.targets.python.names import Names, RecordNames
+from protogen.targets.python.names import Names
 from protogen.targets.python.rules import field_rule
 from protogen.targets.python.spelling import member_name
 from protogen.targets.python.wrapping import (
@@ -99,7 +100,7 @@ def enum_class(item: Enum, names: Names) -> EnumClass:
         for entry in item.values
     )
     doc = docstring(describing.named(item.name, item.about), _INDENT)
-    return EnumClass(names.classes[item.name], "_rt.OpenEnum", doc, members)
+    return EnumClass(names.types[item.name], "_rt.OpenEnum", doc, members)
 
 
 def flags_class(item: Flags, names: Names) -> EnumClass:
@@ -109,7 +110,7 @@ def flags_class(item: Flags, names: Names) -> EnumClass:
         for entry in item.bits
     )
     doc = docstring(describing.named(item.name, item.about), _INDENT)
-    return EnumClass(names.classes[item.name], "_rt.Flags", doc, members)
+    return EnumClass(names.types[item.name], "_rt.Flags", doc, members)
 
 
 def _comment(doc: str) -> str:
@@ -185,7 +186,7 @@ def _record(
     own, fields, counts = names.records[item.name], item.fields, computed(item.fields)
     scope = _Scope(names, own, frozenset(own.fields.values()))
     return RecordClass(
-        name=names.classes[item.name],
+        name=names.types[item.name],
         base=base,
         doc=doc,
         attributes=tuple(_attribute(field, scope, counts) for field in fields),
@@ -310,7 +311,7 @@ def _annotation(type_: Type, scope: _Scope) -> str:
         case Octets():
             return _builtin("bytes", scope)
         case Struct():
-            return scope.module.classes[type_.name]
+            return scope.module.types[type_.name]
         case Array():
             return f"{_builtin('list', scope)}[{_annotation(type_.element, scope)}]"
         case Switch():
@@ -326,7 +327,7 @@ def _integer_annotation(type_: Integer, scope: _Scope) -> str:
         return _builtin("bool", scope)
     named = type_.enum or type_.flags
     number = _builtin("int", scope)
-    return f"{scope.module.classes[named.name]} | {number}" if named else number
+    return f"{scope.module.types[named.name]} | {number}" if named else number
 
 
 def _switch_annotation(type_: Switch, scope: _Scope) -> str:
@@ -365,7 +366,7 @@ def _named_default(type_: Integer, value: int, names: Names) -> str:
     if type_.enum:
         members = {entry.value: entry.name for entry in type_.enum.values}
         if value in members:
-            return f"{names.classes[type_.enum.name]}.{member_name(members[value])}"
+            return f"{names.types[type_.enum.name]}.{member_name(members[value])}"
     return str(value)
 
 
@@ -414,7 +415,7 @@ def _bits(field: Field, item: BitField, scope: _Scope) -> Attribute:
     bounds = (text(field.name), str(item.low), str(item.high))
     gaps = f"0x{item.gaps:X}" if item.gaps else None
     if item.enum:
-        view = call("_rt.EnumRange", *bounds, scope.module.classes[item.enum.name], gaps=gaps)
+        view = call("_rt.EnumRange", *bounds, scope.module.types[item.enum.name], gaps=gaps)
     else:
         view = call("_rt.BitRange", *bounds, gaps=gaps)
     what = next(iter(paragraphs(item.about.doc)), item.name.replace("_", " ").capitalize())

@@ -52,7 +52,7 @@ def _part(field: Field, names: Names) -> str:
     """The declaration of a number that the frame has."""
     found = call("_c.Part", text(held_argument(field.name)), *(["bool"] if field.is_bool else []))
     if isinstance(field.type, Integer) and field.type.enum and field.type.is_closed:
-        return call("_c.Closed", found, names.classes[field.type.enum.name])
+        return call("_c.Closed", found, names.types[field.type.enum.name])
     return found
 
 
@@ -76,7 +76,7 @@ def _seven_bit(type_: Text | Octets | Switch) -> str | None:
 def _checked(type_: Type, names: Names) -> str:
     """The declaration of a type that refuses values outside of a closed enum."""
     if isinstance(type_, Integer) and type_.enum and type_.enum.closed:
-        return call("_c.Closed", type_format(type_, names), names.classes[type_.enum.name])
+        return call("_c.Closed", type_format(type_, names), names.types[type_.enum.name])
     return type_format(type_, names)
 
 
@@ -105,7 +105,7 @@ def type_format(type_: Type, names: Names) -> str:
         case Text() | Octets():
             return _string(type_)
         case Struct():
-            return f"{names.classes[type_.name]}.FORMAT"
+            return f"{names.types[type_.name]}.FORMAT"
         case Array():
             return _array(type_, names)
         case Switch():

@@ -298,7 +298,7 @@ def _endpoints(
         forms = protocol.forms(name)
         sent = {message.name: None for sender in forms for message in sender.messages}
         messages = names.unions[name]
-        union_text = one_of(names.classes[message] for message in sent)
+        union_text = one_of(names.types[message] for message in sent)
         views.append(
             EndpointView(
                 name=name,
@@ -388,8 +388,8 @@ def _unless(expression: str, default: str) -> str | None:
 def _sender_spec(sender: Sender, frame: str, parts: str, names: Names) -> str:
     messages = names.unions[sender.endpoint]
     name = f"{sender.name.upper()}_SENDER: _rt.SenderSpec[{messages}, {parts}] = "
-    shown = {m.name: names.classes[m.name] for m in sender.received}
-    encode_only = [names.classes[m.name] for m in sender.messages if m.name not in shown]
+    shown = {m.name: names.types[m.name] for m in sender.received}
+    encode_only = [names.types[m.name] for m in sender.encode_only]
     expression = call(
         "_rt.SenderSpec",
         text(sender.endpoint),
@@ -419,5 +419,5 @@ def _formats(senders: tuple[SenderView, ...]) -> str:
 
 def _registry(protocol: Protocol, names: Names) -> str:
     """Message classes by name."""
-    lines = [f"    {text(m.name)}: {names.classes[m.name]}," for m in protocol.messages]
+    lines = [f"    {text(m.name)}: {names.types[m.name]}," for m in protocol.messages]
     return "\n".join(["{", *lines, "}"])

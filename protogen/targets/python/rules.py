@@ -51,7 +51,7 @@ def _rule(type_: Type, field: Field | None, names: Names) -> str:
         case Octets():
             return call("_rt.OctetsRule", **_extent("size", type_.extent), const=_const(field))
         case Struct():
-            return call("_rt.StructRule", names.classes[type_.name])
+            return call("_rt.StructRule", names.types[type_.name])
         case Array():
             return _array(type_, field, names)
         case Switch():
@@ -67,7 +67,7 @@ def _integer(type_: Integer, field: Field | None, names: Names) -> str:
         "_rt.IntegerRule",
         str(type_.bits),
         *signed,
-        named=names.classes[named.name] if named else None,
+        named=names.types[named.name] if named else None,
         closed="True" if type_.enum and type_.enum.closed else None,
         **(_range(field) if field else {}),
         const=_const(field),

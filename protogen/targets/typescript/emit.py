@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
+from functools import cache
 from importlib.resources import files
 from pathlib import PurePosixPath
 
@@ -15,6 +17,8 @@ from protogen.targets.typescript.names import names_of
 from protogen.version import VERSION
 
 _PACKAGE = "protogen.targets.typescript"
+_RUNTIME = files(_PACKAGE) / "runtime"
+_LAST_IMPORT = 'from "./shape.js";\n'
 _SOURCES, _BUILT = PurePosixPath("src"), PurePosixPath("dist")
 
 
@@ -41,14 +45,23 @@ def _module(protocol: Protocol) -> Iterator[File]:
         _BUILT / f"{name}.d.ts": [item.types for item in made if item.types],
     }
     for path, declarations in contents.items():
-        text = template.render(doc=module.doc(), declarations=declarations)
+        calls = _calls(path.name.removeprefix(name))
+        text = template.render(doc=module.doc(), declarations=declarations, calls=calls)
         yield File(path, text, first)
+
+
+@cache
+def _calls(ending: str) -> str:
+    """What users call, which every module has alike: all behind the imports of its source."""
+    folder = _RUNTIME if ending == ".ts" else _RUNTIME / "dist"
+    text = (folder / "module" / f"calls{ending}").read_text(encoding="utf-8")
+    behind = text.partition(_LAST_IMPORT)[2].strip("\n")
+    return re.sub("\n+/\\*", "\n\n/*", behind)
 
 
 def _runtime() -> Iterator[File]:
     """The runtime, as it was compiled when it was last changed."""
-    folder = files(_PACKAGE) / "runtime"
-    for source, target in ((folder, _SOURCES), (folder / "dist", _BUILT)):
+    for source, target in ((_RUNTIME, _SOURCES), (_RUNTIME / "dist", _BUILT)):
         for item in source.iterdir():
             if item.name.endswith((".ts", ".js")):
                 path = target / "runtime" / item.name

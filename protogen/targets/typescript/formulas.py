@@ -16,7 +16,7 @@ from protogen.model.expressions import (
     Quotient,
 )
 from protogen.model.payload_plan import Formula, Reference
-from protogen.targets.typescript.literals import GREATEST_BITS, is_big
+from protogen.targets.typescript.literals import GREATEST_BITS, integer, is_big
 
 Look = Callable[[Reference], str]
 """Gives the JavaScript for an earlier number."""
@@ -35,7 +35,7 @@ class _JavaScript(Printer):
         self.big = _needs_big(formula)
 
     def numeral(self, numeral: Number) -> str:
-        return f"{numeral.value}n" if self.big else str(numeral.value)
+        return integer(numeral.value, big=self.big)
 
     def operand(self, operand: Operand) -> str:
         reference = self._formula.references[operand.name]
@@ -63,11 +63,11 @@ class _JavaScript(Printer):
             return super().arithmetic(arithmetic)
         name = "floor" if arithmetic.operator == "//" else "modulo"
         given = f"{self.text(arithmetic.left)}, {self.text(arithmetic.right)}"
-        return f"rt.{name}{'Big' if self.big else ''}({given})"
+        return f"rt.{name}({given})"
 
     def quotient(self, quotient: Quotient) -> str:
-        size = f"{quotient.size}n" if self.big else str(quotient.size)
-        return f"rt.elements{'Big' if self.big else ''}({self.text(quotient.operand)}, {size})"
+        size = integer(quotient.size, big=self.big)
+        return f"rt.elements({self.text(quotient.operand)}, {size})"
 
     def bare(self, expression: Expression) -> str:
         if isinstance(expression, Not):
@@ -106,4 +106,4 @@ def condition(formula: int | Formula, look: Look) -> str:
     found = printer.text(formula.expression)
     if formula.expression.is_condition:
         return found
-    return f"{found} !== {'0n' if printer.big else '0'}"
+    return f"{found} !== {integer(0, big=printer.big)}"

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Iterable, Mapping
+from typing import Any
+
+from protogen.targets.module_names import pascal
 
 _NAME = re.compile(r"[A-Za-z_$][A-Za-z0-9_$]*")
 
@@ -12,24 +16,70 @@ GREATEST_BITS = 53
 """Bits of the greatest integer that is a number; one with more is a `bigint`."""
 
 
-def text(value: str) -> str:
-    """A string."""
-    return json.dumps(value)
+class Code(str):
+    """JavaScript, which is printed as it is."""
+
+    __slots__ = ()
+
+
+Data = Any
+"""A truth value, number, text, bytes, or JavaScript; None, which is `null`; or such in iterables or
+mappings from names."""
+
+
+def literal(value: Data) -> Code:
+    """The expression of a value."""
+    match value:
+        case Code():
+            return value
+        case None | bool() | str():
+            return Code(json.dumps(value))
+        case float():
+            return Code(_real(value))
+        case bytes():
+            return Code(f'rt.hex("{value.hex()}")')
+        case Mapping():
+            inside = ", ".join(members(value))
+            return Code(f"{{ {inside} }}" if inside else "{}")
+        case Iterable():
+            return Code(f"[{', '.join(map(literal, value))}]")
+    return Code(value)
+
+
+def members(items: Mapping[str, Data]) -> Iterable[str]:
+    """The members of an object."""
+    for name, value in items.items():
+        found = literal(value)
+        yield name if name == found else f"{key(name)}: {found}"
+
+
+def lines(value: Data, indent: str = "") -> Code:
+    """An object or array with each of its members in a line of its own."""
+    ends, inside = "{}", members(value) if isinstance(value, Mapping) else map(literal, value)
+    if not isinstance(value, Mapping):
+        ends = "[]"
+    found = "".join(f"\n{indent}  {item}," for item in inside)
+    return Code(f"{ends[0]}{found}\n{indent}{ends[1]}" if found else ends)
+
+
+def call(name: str, *arguments: Data) -> Code:
+    """A call; arguments that are None, which have to be the last ones, are left out."""
+    return Code(f"{name}({', '.join(literal(item) for item in arguments if item is not None)})")
+
+
+def told(thing: object, names: str) -> dict[str, Data]:
+    """Some of what a thing says of itself, by the same names in JavaScript."""
+    return {camel(name): getattr(thing, name) for name in names.split()}
+
+
+def given(**items: Data) -> dict[str, Data]:
+    """The items that are there."""
+    return {name: value for name, value in items.items() if value is not None}
 
 
 def characters(data: bytes) -> str:
     """A string of which each character is a byte."""
-    return text(data.decode("latin-1"))
-
-
-def octets(data: bytes) -> str:
-    """Bytes."""
-    return f'rt.hex("{data.hex()}")'
-
-
-def boolean(value: bool) -> str:
-    """A truth value."""
-    return "true" if value else "false"
+    return data.decode("latin-1")
 
 
 def is_big(bits: int) -> bool:
@@ -37,40 +87,29 @@ def is_big(bits: int) -> bool:
     return bits > GREATEST_BITS
 
 
-def integer(value: int, *, big: bool = False) -> str:
+def integer(value: int, *, big: bool = True) -> Code:
     """An integer, as a number or as a `bigint`."""
-    return f"{value}n" if big else str(value)
+    return Code(f"{value}n" if big else value)
 
 
-def real(value: float) -> str:
-    """A float."""
-    if value != value:
+def _real(value: float) -> str:
+    if math.isnan(value):
         return "NaN"
-    if value in (float("inf"), float("-inf")):
-        return "Infinity" if value > 0 else "-Infinity"
-    return repr(value)
-
-
-def listed(items: Iterable[str]) -> str:
-    """An array."""
-    return f"[{', '.join(items)}]"
+    return repr(value).replace("inf", "Infinity")
 
 
 def key(name: str) -> str:
     """A key of an object; JavaScript gives `__proto__` another meaning."""
-    return name if _NAME.fullmatch(name) and name != "__proto__" else f"[{text(name)}]"
+    return name if _NAME.fullmatch(name) and name != "__proto__" else f"[{json.dumps(name)}]"
 
 
-def mapping(items: Mapping[str, str | None]) -> str:
-    """An object; what is None is left out."""
-    inside = ", ".join(
-        name if name == value else f"{key(name)}: {value}"
-        for name, value in items.items()
-        if value is not None
-    )
-    return f"{{ {inside} }}" if inside else "{}"
+def member(holder: str, name: str) -> Code:
+    """A member of an object."""
+    own = key(name)
+    return Code(f"{holder}{own}" if own.startswith("[") else f"{holder}.{own}")
 
 
-def call(name: str, *arguments: str | None) -> str:
-    """A call; arguments that are None, which have to be the last ones, are left out."""
-    return f"{name}({', '.join(item for item in arguments if item is not None)})"
+def camel(name: str) -> str:
+    """`move_manual` is `moveManual`."""
+    found = pascal(name)
+    return found[:1].lower() + found[1:]

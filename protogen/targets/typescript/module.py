@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from protogen.model.messages import Message
 from protogen.model.parts import NumberPart
@@ -11,36 +11,29 @@ from protogen.model.types import Struct
 from protogen.targets import descriptions
 from protogen.targets.typescript.declarations import (
     Declaration,
-    Parameter,
     alias,
     comment,
     constant,
     function,
     interface,
-    subclass,
     union,
 )
-from protogen.targets.typescript.frames import FramePrinter, runs_of, sizes_of
-from protogen.targets.typescript.literals import boolean, is_big, key, listed, mapping, text
+from protogen.targets.typescript.frames import FramePrinter, runs_of
+from protogen.targets.typescript.literals import Code, call, given, is_big, key, literal
 from protogen.targets.typescript.names import Names, names_of
-from protogen.targets.typescript.reading import ReadFunction
+from protogen.targets.typescript.payloads import PayloadFunction
 from protogen.targets.typescript.scope import Constants, Scope
 from protogen.targets.typescript.types import (
-    enum_of,
-    flags_of,
+    constants_of,
     input_name,
     message_of,
     struct_of,
     views_of,
 )
-from protogen.targets.typescript.writing import WriteFunction
-
-_NAME = "<S extends SenderName = SenderName>"
-_OPTIONAL_SENDER = Parameter("sender", "S", is_optional=True)
 
 
 class Module:
-    """Declarations of a module."""
+    """Declarations of a module, but for the calls that every one has alike."""
 
     def __init__(self, protocol: Protocol) -> None:
         self._protocol = protocol
@@ -51,7 +44,7 @@ class Module:
         """All, with the constants that functions share in front of these."""
         types, functions = list(self._types()), list(self._functions())
         shared = [constant(*item) for item in self._constants]
-        return [*types, *shared, *functions, *self._senders(), *self._interface()]
+        return [*types, *shared, *functions, *self._senders()]
 
     def doc(self) -> str:
         """The comment in front of it."""
@@ -70,11 +63,11 @@ class Module:
     def _types(self) -> Iterator[Declaration]:
         protocol, names = self._protocol, self._names
         doc = comment(["Hash of the layout, framing and meaning; both ends can compare it."])
-        yield constant("SPEC_HASH", "string", text(protocol.spec_hash), doc, exported=True)
+        yield constant("SPEC_HASH", "string", literal(protocol.spec_hash), doc, exported=True)
         for enum in protocol.enums:
-            yield from enum_of(enum, names)
+            yield from constants_of(enum, names)
         for flags in protocol.flags:
-            yield from flags_of(flags, names)
+            yield from constants_of(flags, names)
         for struct in protocol.structs:
             yield from struct_of(struct, names)
         for message in protocol.messages:
@@ -98,23 +91,14 @@ class Module:
         for endpoint in protocol.sending:
             forms = protocol.forms(endpoint)
             sent = union([names.types[item.name] for form in forms for item in form.messages])
-            doc = comment([f"A message of {endpoint}."])
-            yield alias(names.unions[endpoint], sent, doc)
+            yield alias(names.unions[endpoint], sent, comment([f"A message of {endpoint}."]))
             parts = " | ".join(names.parts[form.name] for form in forms)
             inside = f"readonly message: {names.unions[endpoint]}; readonly parts: {parts}"
             members.append(f"  readonly {key(endpoint)}: {{ {inside} }};")
         yield interface("Senders", members, comment(["What each endpoint sends."]))
-        yield alias("SenderName", "keyof Senders", comment(["Name of an endpoint that sends."]))
-        yield alias("Message", 'Senders[SenderName]["message"]', comment(["Any message."]))
-        given = union([input_name(item, names) for item in protocol.messages])
-        yield alias("MessageInput", given, comment(["What an encoder takes for a message."]))
-        found = 'rt.Event<Senders[S]["message"], Senders[S]["parts"]>'
-        yield alias(f"Event{_NAME}", found, comment(["What a decoder yields."]))
+        taken = union([input_name(item, names) for item in protocol.messages])
+        yield alias("MessageInput", taken, comment(["What an encoder takes for a message."]))
         yield self._given_parts()
-        doc = comment(["Choices of an encoder."])
-        yield alias("EncodeOptions", "rt.EncodeOptions<GivenParts, SenderName>", doc)
-        doc = comment(["Choices of `decode`."])
-        yield alias(f"DecodeOptions{_NAME}", "rt.DecodeOptions<S>", doc)
 
     def _given_parts(self) -> Declaration:
         found: dict[str, list[str]] = {}
@@ -140,114 +124,36 @@ class Module:
     def _codec(self, message: Message) -> Iterator[Declaration]:
         names, type_ = self._names, self._names.types[message.name]
         read, write, plan = names.functions[message.name]
-        first = [("message", text(message.name))]
-        body = ReadFunction(Scope(names, self._constants)).body(
-            message.plan.steps, message.name, first
-        )
-        yield function(read, [Parameter("r", "rt.Reader")], type_, body)
-        scope = Scope(names, self._constants)
-        body = WriteFunction(scope).body(message.plan.steps, message.name, message.fields)
-        parameters = [Parameter("w", "rt.Writer"), Parameter("m", input_name(message, names))]
-        yield function(write, parameters, "void", body)
-        value = mapping(self._plan(message, read, write))
+        yield function(read, {"r": "rt.Reader"}, type_, self._body(message, reads=True))
+        taken = {"w": "rt.Writer", "m": input_name(message, names)}
+        yield function(write, taken, "void", self._body(message, reads=False))
         doc = comment([f"Plan of {type_}, for `readPayload` and `writePayload` of the runtime."])
+        value = f"/* @__PURE__ */ {self._plan(message, Code(read), Code(write))}"
         yield constant(plan, f"rt.MessagePlan<{type_}>", value, doc, exported=True)
 
-    def _plan(self, message: Message, read: str, write: str) -> dict[str, str]:
-        frame = self._protocol.senders_of(message)[0].frame
-        forms = self._protocol.senders_of(message)
-        tells = any(form.plan.is_cut for form in forms) and message.tells_its_end
-        known = message.cut_size
-        return {
-            "name": text(message.name),
-            "identities": runs_of(frame.identity, message.told_by),
-            "sizes": sizes_of(message.sizes),
-            "known": "null" if known is None else str(known),
-            "tellsItsEnd": boolean(tells),
-            "held": listed(text(field.part) for field in message.held),
-            "read": read,
-            "write": write,
-        }
+    def _plan(self, message: Message, read: Code, write: Code) -> Code:
+        forms, sizes = self._protocol.senders_of(message), message.sizes
+        is_cut = any(form.plan.is_cut for form in forms)
+        identities = runs_of(forms[0].frame.identity, message.told_by)
+        is_fixed = sizes.fixed is not None
+        size = [sizes.least] if is_fixed else [sizes.least, sizes.greatest, sizes.step]
+        more = given(
+            known=literal(message.cut_size) if message.cut_size != sizes.fixed else None,
+            tellsItsEnd=(is_cut and message.tells_its_end) or None,
+            held=[field.part for field in message.held] or None,
+        )
+        return call("rt.plan", message.name, identities, size, read, write, more or None)
+
+    def _body(self, message: Message, *, reads: bool) -> tuple[str, ...]:
+        return PayloadFunction(Scope(self._names, self._constants), reads=reads).body(message)
 
     def _senders(self) -> Iterator[Declaration]:
-        protocol, names = self._protocol, self._names
+        protocol, frames = self._protocol, self._names.frames
         for sender in protocol.senders:
-            lines = FramePrinter(sender, names).text().split("\n")
-            body = [f"return {lines[0]}", *lines[1:-1], f"{lines[-1]};"]
-            yield function(names.frames[sender.name], [], "rt.Frame", body)
-        frames = listed(names.frames[sender.name] for sender in protocol.senders)
-        alike = listed(listed(map(text, group)) for group in protocol.alike)
-        made = f"/* @__PURE__ */ new rt.Protocol({frames}, {alike})"
-        yield constant("protocol", "rt.Protocol", made)
-
-    # --- what users call --------------------------------------------------------------------------
-
-    def _interface(self) -> Iterator[Declaration]:
-        yield subclass(
-            "Decoder",
-            _NAME,
-            'rt.Decoder<Senders[S]["message"], Senders[S]["parts"]>',
-            _OPTIONAL_SENDER,
-            "protocol.senders(sender)",
-            comment(
-                ["Cuts what an endpoint sends into events. Without a name: what all of them send."]
-            ),
-        )
-        yield subclass(
-            "Encoder",
-            "",
-            "rt.Encoder<MessageInput, GivenParts>",
-            Parameter("sender", "SenderName"),
-            "protocol, sender",
-            comment(["Makes the frames of an endpoint, and advances their counters."]),
-        )
-        yield from _calls()
-
-
-def _calls() -> Sequence[Declaration]:
-    chunks = Parameter("chunks", "AsyncIterable<Uint8Array> | Iterable<Uint8Array>")
-    given = [
-        Parameter("frame", "Uint8Array"),
-        Parameter("options", "DecodeOptions<S>", "{}"),
-    ]
-    taken = [Parameter("message", "MessageInput"), Parameter("options", "EncodeOptions", "{}")]
-    return (
-        function(
-            "decode",
-            given,
-            'Senders[S]["message"]',
-            ["return protocol.decode(frame, options);"],
-            comment(["The message of exactly one frame. Throws a DecodeError."]),
-            exported=True,
-            generic=_NAME,
-        ),
-        function(
-            "encode",
-            taken,
-            "Uint8Array",
-            ["return protocol.encode(message, options);"],
-            comment(["The frame of a message. Throws an EncodeError."]),
-            exported=True,
-        ),
-        function(
-            "decoderStream",
-            [_OPTIONAL_SENDER],
-            "TransformStream<Uint8Array, Event<S>>",
-            ["return rt.streamOf(new Decoder(sender));"],
-            comment(["A stream of bytes into one of events."]),
-            exported=True,
-            generic=_NAME,
-        ),
-        function(
-            "events",
-            [chunks, _OPTIONAL_SENDER],
-            "AsyncGenerator<Event<S>, void, undefined>",
-            ["return rt.eventsOf(new Decoder(sender), chunks);"],
-            comment(["The events of chunks, as they come in."]),
-            exported=True,
-            generic=_NAME,
-        ),
-    )
+            text = FramePrinter(sender, self._names).text()
+            yield function(frames[sender.name], {}, "rt.Frame", f"return {text};".split("\n"))
+        made = call("new rt.Protocol", map(Code, frames.values()), protocol.alike)
+        yield constant("protocol", "rt.Protocol", f"/* @__PURE__ */ {made}")
 
 
 def _part_type(part: NumberPart) -> str:

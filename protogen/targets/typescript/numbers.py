@@ -1,23 +1,23 @@
-"""Numbers of payloads: what reads and writes one."""
+"""Numbers of payloads: what reads, checks and writes one."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 from math import inf, nextafter
 
-from protogen.model.numbers import FreeNumeral, Numeral
+from protogen.model.numbers import FreeNumeral
 from protogen.model.payload_plan import FloatStep, IntegerStep, PartStep
-from protogen.model.types import Float, Integer, Type
+from protogen.model.types import Array, Constant, Float, Integer, Octets, Switch, Text, Type
 from protogen.targets.typescript.literals import (
-    boolean,
+    Code,
+    Data,
     call,
     characters,
+    given,
     integer,
     is_big,
-    listed,
-    mapping,
-    real,
-    text,
+    literal,
+    told,
 )
 from protogen.targets.typescript.scope import Scope
 
@@ -29,155 +29,147 @@ def is_bigint(type_: Integer) -> bool:
     return is_big(type_.bits) and type_.role != "bool"
 
 
-def _base(type_: Integer | Float) -> str:
-    return "128" if type_.byte_bits == 7 else "256"
+def is_little(item: Integer | Float) -> bool:
+    """True if the least significant byte stands first."""
+    return item.byte_order == "little"
 
 
-def _is_little(type_: Integer | Float) -> str:
-    return boolean(type_.byte_order == "little")
+def is_seven(type_: Integer | Float | Text | Octets | Switch) -> bool:
+    """True if no byte of a value has its most significant bit set."""
+    return type_.byte_bits == 7
 
 
-def _suffix(type_: Integer) -> str:
-    return "be" if type_.byte_order == "big" and type_.size > 1 else ""
-
-
-def _is_plain(type_: Integer) -> bool:
-    return type_.byte_bits == 8 and type_.bits in _PLAIN
-
-
-# --- reading --------------------------------------------------------------------------------------
-
-
-def read_number(step: IntegerStep | FloatStep, at: str, scope: Scope) -> str:
-    """The expression that reads a number."""
-    type_ = step.type
+def spelled(type_: Type, value: Constant | None) -> Data:
+    """A constant or default of a type."""
+    assert value is not None
+    match value:
+        case tuple():
+            assert isinstance(type_, Array)
+            return [spelled(type_.element, item) for item in value]
+        case str() | bytes():
+            return value
     if isinstance(type_, Float):
-        if type_.byte_bits == 7:
-            return f"r.float7({type_.bits}, {_is_little(type_)}, {at})"
-        return f"r.f{type_.bits}({_is_little(type_)}, {at})"
-    found = _read_part(step, at) if isinstance(step, PartStep) else _read_integer(type_, at, scope)
-    return closed("r", type_, found, at, scope)
+        return float(value)
+    assert isinstance(type_, Integer)
+    is_bool = type_.role == "bool"
+    return bool(value) if is_bool else integer(int(value), big=is_bigint(type_))
 
 
-def _read_part(step: PartStep, at: str) -> str:
-    """The expression of a number that the frame has."""
-    name = "r.bigPart" if is_bigint(step.type) else "r.part"
-    found = call(name, text(step.part), at)
-    return f"{found} !== 0" if step.type.role == "bool" else found
+def _sized(type_: Integer | Float) -> tuple[Data, ...]:
+    return type_.size, type_.bits, is_little(type_), 128 if is_seven(type_) else 256
 
 
-def closed(by: str, type_: Integer, found: str, at: str, scope: Scope) -> str:
+def _plain(type_: Integer) -> str:
+    """The name of what reads or writes whole bytes, such as `16be`; empty if nothing does."""
+    if is_seven(type_) or type_.bits not in _PLAIN:
+        return ""
+    return f"{type_.bits}{'' if is_little(type_) or type_.size == 1 else 'be'}"
+
+
+def closed(by: str, type_: Integer, found: str, at: str, scope: Scope) -> Code:
     """The expression, of which a closed enum refuses some values; `by` reads or writes."""
     if type_.enum is None or not type_.enum.closed:
-        return found
-    return f"{by}.one({found}, {values_of(type_, scope)}, {at})"
+        return Code(found)
+    return Code(f"{by}.one({found}, {values_of(type_, scope)}, {at})")
 
 
-def values_of(type_: Type, scope: Scope) -> str:
+def values_of(type_: Type, scope: Scope) -> Code:
     """The constant with the values of a closed enum."""
     assert isinstance(type_, Integer)
     assert type_.enum is not None
-    values = listed(integer(item.value, big=is_bigint(type_)) for item in type_.enum.values)
+    values = [integer(item.value, big=is_bigint(type_)) for item in type_.enum.values]
     kind = f"readonly {scope.names.types[type_.enum.name]}[]"
-    return scope.constants.add("VALUES", kind, values)
+    return scope.constants.add("VALUES", kind, literal(values))
 
 
-def _read_integer(type_: Integer, at: str, scope: Scope) -> str:
-    if type_.role == "bool":
-        return f"r.bool({at})"
-    if isinstance(type_.text, FreeNumeral):
-        name = "rt.readBigNumeral" if is_bigint(type_) else "rt.readNumeral"
-        return call(name, "r", _numeral(type_, type_.text, scope), at)
-    if isinstance(type_.text, Numeral):
-        name = "rt.readBigDigits" if is_bigint(type_) else "rt.readDigits"
-        return call(name, "r", *_digits(type_, type_.text), at)
-    sign = "i" if type_.signed else "u"
-    if _is_plain(type_):
-        return f"r.{sign}{type_.bits}{_suffix(type_)}({at})"
-    kind = "big" if is_bigint(type_) else "int"
-    name = f"r.{'s' if type_.signed else 'u'}{kind}"
-    return call(name, str(type_.size), str(type_.bits), _is_little(type_), _base(type_), at)
-
-
-def _digits(type_: Integer, form: Numeral) -> tuple[str, ...]:
-    given = (str(form.size), str(type_.bits), boolean(type_.signed))
-    return (characters(form.alphabet), *given)
-
-
-def _numeral(type_: Integer, form: FreeNumeral, scope: Scope) -> str:
-    big = is_bigint(type_)
-    value = mapping(
-        {
-            "base": str(form.base),
-            "padded": str(form.padded),
-            "fraction": str(form.fraction),
-            "signed": boolean(type_.signed),
-            "upper": boolean(form.upper),
+def _text(type_: Integer, scope: Scope) -> tuple[str, Code]:
+    """What reads and writes an integer as text, and the constant that says how."""
+    form, big = type_.text, is_bigint(type_)
+    if isinstance(form, FreeNumeral):
+        value = {
+            **told(form, "base padded fraction upper leads empty"),
+            **given(separator=form.separator),
+            "signed": type_.signed,
             "greatest": integer(form.greatest, big=big),
-            "longest": str(form.longest(signed=type_.signed)),
+            "longest": form.longest(signed=type_.signed),
             "absent": integer(form.absent, big=big),
-            "separator": None if form.separator is None else str(form.separator),
-            "leads": "true" if form.leads else None,
-            "empty": "true" if form.empty else None,
         }
-    )
-    return scope.constants.add("NUMERAL", "rt.Numeral", value)
+        return "Numeral", scope.constants.add("NUMERAL", "rt.Numeral", literal(value))
+    assert form is not None
+    value = {"alphabet": characters(form.alphabet), "size": form.size}
+    value |= told(type_, "bits signed")
+    return "Digits", scope.constants.add("DIGITS", "rt.Digits", literal(value))
 
 
-# --- writing --------------------------------------------------------------------------------------
-
-
-def check_number(step: IntegerStep | FloatStep, value: str, at: str, scope: Scope) -> str:
-    """The expression of a value that is one of the step's."""
-    type_, field = step.type, step.field
+def read_number(step: IntegerStep | FloatStep, at: Code, scope: Scope) -> Code:
+    """The expression that reads a number."""
+    type_ = step.type
     if isinstance(type_, Float):
-        found = f"w.real({value}, {type_.bits}, {at})"
+        if is_seven(type_):
+            return call("r.float7", type_.bits, is_little(type_), at)
+        return call(f"r.f{type_.bits}", is_little(type_), at)
+    if isinstance(step, PartStep):
+        found = call("r.bigPart" if is_bigint(type_) else "r.part", step.part, at)
+        found = Code(f"{found} !== 0") if type_.role == "bool" else found
+    else:
+        found = _read(type_, at, scope)
+    return closed("r", type_, found, at, scope)
+
+
+def _read(type_: Integer, at: Code, scope: Scope) -> Code:
+    if type_.role == "bool":
+        return call("r.bool", at)
+    if type_.text is not None:
+        kind, form = _text(type_, scope)
+        return call(f"rt.read{'Big' if is_bigint(type_) else ''}{kind}", Code("r"), form, at)
+    if plain := _plain(type_):
+        return call(f"r.{'i' if type_.signed else 'u'}{plain}", at)
+    kind = f"{'s' if type_.signed else 'u'}{'big' if is_bigint(type_) else 'int'}"
+    return call(f"r.{kind}", *_sized(type_), at)
+
+
+def write_number(step: IntegerStep | FloatStep, value: Code, at: Code, scope: Scope) -> Code:
+    """The expression that writes a checked value."""
+    type_ = step.type
+    if isinstance(step, PartStep):
+        return call("w.part", step.part, value)
+    if isinstance(type_, Float):
+        return call("w.float", value, *_sized(type_)[1:])
+    if type_.role == "bool":
+        return call("w.u8", value)
+    if type_.text is not None:
+        kind, form = _text(type_, scope)
+        return call(f"rt.write{kind}", Code("w"), value, form, at)
+    if (plain := _plain(type_)) and not is_bigint(type_):
+        return call(f"w.u{plain}", value)
+    return call("w.ubig" if is_bigint(type_) else "w.uint", value, *_sized(type_))
+
+
+def check_number(step: IntegerStep | FloatStep, value: str, at: Code, scope: Scope) -> Code:
+    """The expression of a value that is one of the step's."""
+    type_, field, own = step.type, step.field, Code(value)
+    if isinstance(type_, Float):
+        found = call("w.real", own, type_.bits, at)
         if not field.ranged:
             return found
-        least = None if field.least is None else _above(field.least)
-        greatest = None if field.greatest is None else _below(field.greatest)
-        bounds = ("null" if end is None else real(end) for end in (least, greatest))
-        return call("w.ranged", found, *bounds, "[]", at)
+        least = None if field.least is None else _float(field.least, inf)
+        greatest = None if field.greatest is None else _float(field.greatest, -inf)
+        return call("w.ranged", found, literal(least), literal(greatest), (), at)
     if type_.role == "bool":
-        return f"w.truth({value}, {at})"
+        return call("w.truth", own, at)
     assert isinstance(step, IntegerStep)
     big = is_bigint(type_)
-    capacity = (integer(item, big=big) for item in (type_.least, type_.greatest))
-    found = call(f"w.{'big' if big else 'int'}", value, *capacity, at)
+    ends = (integer(item, big=big) for item in (type_.least, type_.greatest))
+    found = call(f"w.{'big' if big else 'int'}", own, *ends, at)
     if field.ranged:
         bounds = (integer(item, big=big) for item in step.bounds)
-        special = listed(integer(item.value, big=big) for item in field.special)
+        special = [integer(item.value, big=big) for item in field.special]
         found = call("w.ranged", found, *bounds, special, at)
     return closed("w", type_, found, at, scope)
 
 
-def _above(bound: Fraction) -> float:
-    """The least float that is no less."""
+def _float(bound: Fraction, inside: float) -> float:
+    """The float nearest to a bound that is not beyond it; `inside` is the end behind it."""
     found = float(bound)
-    return nextafter(found, inf) if Fraction(found) < bound else found
-
-
-def _below(bound: Fraction) -> float:
-    """The greatest float that is no more."""
-    found = float(bound)
-    return nextafter(found, -inf) if Fraction(found) > bound else found
-
-
-def write_number(step: IntegerStep | FloatStep, value: str, at: str, scope: Scope) -> str:
-    """The statement that writes a checked value."""
-    if isinstance(step, PartStep):
-        return call("w.part", text(step.part), value) + ";"
-    type_ = step.type
-    if isinstance(type_, Float):
-        return f"w.float({value}, {type_.bits}, {_is_little(type_)}, {_base(type_)});"
-    if type_.role == "bool":
-        return f"w.u8({value});"
-    if isinstance(type_.text, FreeNumeral):
-        return call("rt.writeNumeral", "w", value, _numeral(type_, type_.text, scope), at) + ";"
-    if isinstance(type_.text, Numeral):
-        alphabet, size, bits, _ = _digits(type_, type_.text)
-        return call("rt.writeDigits", "w", value, alphabet, size, bits, at) + ";"
-    if _is_plain(type_) and not is_bigint(type_):
-        return f"w.u{type_.bits}{_suffix(type_)}({value});"
-    sizes = (str(type_.size), str(type_.bits), _is_little(type_), _base(type_))
-    return call("w.ubig" if is_bigint(type_) else "w.uint", value, *sizes) + ";"
+    is_beyond = Fraction(found) < bound if inside > 0 else Fraction(found) > bound
+    return nextafter(found, inside) if is_beyond else found

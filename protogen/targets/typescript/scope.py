@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 
 from protogen.model.payload_plan import Reference
+from protogen.targets.braces import BracedLines
 from protogen.targets.naming import NameTable, Thing
+from protogen.targets.typescript.literals import Code
 from protogen.targets.typescript.names import Names, locals_table
 
 
@@ -17,49 +18,35 @@ class Constants:
         self._names = names
         self._made: dict[tuple[str, str], str] = {}
 
-    def add(self, word: str, type_: str, value: str) -> str:
+    def add(self, word: str, type_: str, value: str) -> Code:
         """The name of a constant with this value."""
         found = self._made.get((type_, value))
         if found is None:
             found = self._names.module.add(f"{word}_{len(self._made) + 1}", Thing(value))
             self._made[type_, value] = found
-        return found
+        return Code(found)
 
     def __iter__(self) -> Iterator[tuple[str, str, str]]:
         """The name, the type and the value of each."""
         return ((name, type_, value) for (type_, value), name in self._made.items())
 
 
-class Scope:
+class Scope(BracedLines):
     """Lines and variables of one function."""
 
     def __init__(self, names: Names, constants: Constants) -> None:
+        super().__init__(indent=2)
         self.names = names
         self.constants = constants
-        self.lines: list[str] = []
         self._locals: NameTable = locals_table()
-        self._depth = 0
         self._count = 0
         self._numbers: dict[tuple[int, str], str] = {}
         """Expressions of earlier numbers, by the level of their record and their names."""
 
-    def line(self, text: str) -> None:
-        """Add a line."""
-        self.lines.append("  " * self._depth + text)
-
-    @contextmanager
-    def block(self, head: str, tail: str = "}") -> Iterator[None]:
-        """Lines inside of a block."""
-        self.line(f"{head} {{")
-        self._depth += 1
-        yield
-        self._depth -= 1
-        self.line(tail)
-
-    def variable(self, word: str) -> str:
+    def variable(self, word: str) -> Code:
         """A new variable, called like this if nothing else is."""
         self._count += 1
-        return self._locals.add(word or "value", Thing("variable", ("local", self._count)))
+        return Code(self._locals.add(word or "value", Thing("variable", ("local", self._count))))
 
     def know(self, level: int, name: str, expression: str) -> None:
         """Keep where an earlier number is."""

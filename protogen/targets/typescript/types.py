@@ -2,58 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from protogen.model.computed import computed
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.messages import Message
+from protogen.model.nesting import structs_in
 from protogen.model.physical import line_of
 from protogen.model.types import Array, Field, Float, Integer, Octets, Struct, Switch, Text, Type
 from protogen.targets import descriptions
 from protogen.targets.escape import paragraphs
 from protogen.targets.typescript.declarations import (
     Declaration,
-    Parameter,
     alias,
     comment,
     constants,
     function,
     interface,
 )
-from protogen.targets.typescript.literals import call, integer, key, listed, text
+from protogen.targets.typescript.literals import (
+    Code,
+    call,
+    integer,
+    is_big,
+    key,
+    literal,
+    member,
+)
 from protogen.targets.typescript.names import Names
-from protogen.targets.typescript.numbers import is_bigint
+from protogen.targets.typescript.numbers import is_bigint, spelled
 
 _IN = "  "
+_GREATEST_FLAG = 30
+"""The highest bit that JavaScript's operators leave a number above 0."""
 
 
-def enum_of(item: Enum, names: Names) -> Iterator[Declaration]:
-    """An enum: its values, and the type of them."""
-    name = names.types[item.name]
-    big = any(value.value.bit_length() > 53 for value in item.values)
+def constants_of(item: Enum | Flags, names: Names) -> Iterator[Declaration]:
+    """The values of an enum, and the type of them; of a set of flags the bit of each."""
+    name, doc = names.types[item.name], comment(descriptions.of_named(item.name, item.about))
+    if isinstance(item, Enum):
+        entries = [(it.name, it.value, it.about.doc) for it in item.values]
+        big = any(is_big(it.value.bit_length()) for it in item.values)
+    else:
+        entries = [(it.name, 1 << it.bit, it.about.doc) for it in item.bits]
+        big = any(it.bit > _GREATEST_FLAG for it in item.bits)
     values = [
-        (key(entry.name), integer(entry.value, big=big), _remark(entry.about.doc))
-        for entry in item.values
+        (key(entry), integer(value, big=big), comment(paragraphs(remark), _IN))
+        for entry, value, remark in entries
     ]
-    doc = comment(descriptions.of_named(item.name, item.about))
     yield constants(name, values, doc)
-    yield alias(name, f"(typeof {name})[keyof typeof {name}]", doc)
-
-
-def flags_of(item: Flags, names: Names) -> Iterator[Declaration]:
-    """A set of flags: the bit of each."""
-    big = any(entry.bit > 30 for entry in item.bits)
-    values = [
-        (key(entry.name), integer(1 << entry.bit, big=big), _remark(entry.about.doc))
-        for entry in item.bits
-    ]
-    yield constants(
-        names.types[item.name], values, comment(descriptions.of_named(item.name, item.about))
-    )
-
-
-def _remark(doc: str) -> str:
-    return comment(paragraphs(doc), _IN)
+    if isinstance(item, Enum):
+        yield alias(name, f"(typeof {name})[keyof typeof {name}]", doc)
 
 
 def struct_of(item: Struct, names: Names) -> Iterator[Declaration]:
@@ -65,7 +64,7 @@ def struct_of(item: Struct, names: Names) -> Iterator[Declaration]:
 def message_of(item: Message, names: Names) -> Iterator[Declaration]:
     """A message."""
     doc = comment(descriptions.of_message(item))
-    yield from _record(item, names, [f"{_IN}readonly message: {text(item.name)};"], doc)
+    yield from _record(item, names, [f"{_IN}readonly message: {literal(item.name)};"], doc)
 
 
 def input_name(record: Struct | Message, names: Names) -> str:
@@ -77,7 +76,7 @@ def _has_input(record: Struct | Message) -> bool:
     """True if an encoder takes less than a decoder gives."""
     counts = computed(record.fields)
     return any(_may_be_left_out(field) or field.name in counts for field in record.fields) or any(
-        _has_input(inner) for field in record.fields for inner in _structs(field.type)
+        _has_input(inner) for field in record.fields for inner in structs_in(field.type)
     )
 
 
@@ -85,44 +84,34 @@ def _may_be_left_out(field: Field) -> bool:
     return field.const is not None or field.default is not None or field.may_be_absent
 
 
-def _structs(type_: Type) -> Iterator[Struct]:
-    """The structs that a value of the type has directly inside."""
-    match type_:
-        case Struct():
-            yield type_
-        case Array():
-            yield from _structs(type_.element)
-        case Switch():
-            for case in type_.cases:
-                yield from _structs(case.type)
-
-
 def _record(
     item: Struct | Message, names: Names, first: Sequence[str], doc: str
 ) -> Iterator[Declaration]:
-    name, counts = names.types[item.name], computed(item.fields)
-    own = (_member(field, item.name, names, "", field.name in counts) for field in item.fields)
-    yield interface(name, [*first, *own], doc)
+    name = names.types[item.name]
+    yield interface(name, [*first, *_members(item, names, "")], doc)
     if _has_input(item):
-        taken = (
-            _member(field, item.name, names, "Input", field.name in counts) for field in item.fields
-        )
-        given = [*first, *taken]
         what = comment([f"What an encoder takes for {name}."])
-        yield interface(names.inputs[item.name], given, what)
+        yield interface(names.inputs[item.name], [*first, *_members(item, names, "Input")], what)
 
 
-def _member(field: Field, record: str, names: Names, kind: str, is_computed: bool) -> str:
-    own = key(names.records[record].fields[field.name])
-    type_ = field_type(field, names, kind)
-    if kind and (_may_be_left_out(field) or is_computed):
-        member = f"{_IN}readonly {own}?: {type_} | undefined;"
-    else:
-        member = f"{_IN}{'readonly ' if kind or field.const is not None else ''}{own}: {type_};"
-    if kind:
-        return member
-    facts = descriptions.facts_of(field, "null", is_computed=is_computed)
-    return comment(descriptions.of_field(field, facts), _IN) + member
+def _members(item: Struct | Message, names: Names, kind: str) -> Iterator[str]:
+    """The members of a record; of another kind than itself, of what an encoder takes for it."""
+    own, counts = names.records[item.name].fields, computed(item.fields)
+    for field in item.fields:
+        name, type_, is_computed = (
+            key(own[field.name]),
+            field_type(field, names, kind),
+            field.name in counts,
+        )
+        if not kind:
+            readonly = "readonly " if field.const is not None else ""
+            facts = descriptions.facts_of(field, "null", is_computed=is_computed)
+            doc = comment(descriptions.of_field(field, facts), _IN)
+            yield f"{doc}{_IN}{readonly}{name}: {type_};"
+        elif is_computed or _may_be_left_out(field):
+            yield f"{_IN}readonly {name}?: {type_} | undefined;"
+        else:
+            yield f"{_IN}readonly {name}: {type_};"
 
 
 def field_type(field: Field, names: Names, kind: str = "") -> str:
@@ -137,17 +126,10 @@ def _constant_type(field: Field) -> str:
         case tuple():
             big = field.integer is not None and is_bigint(field.integer)
             return f"readonly {'bigint' if big else 'number'}[]"
-        case str():
-            return text(field.const)
         case bytes():
             return "Uint8Array"
-    if isinstance(field.type, Float):
-        return "number"
-    assert isinstance(field.type, Integer)
     assert field.const is not None
-    if field.is_bool:
-        return "true" if field.const else "false"
-    return integer(int(field.const), big=is_bigint(field.type))
+    return "number" if isinstance(field.type, Float) else literal(spelled(field.type, field.const))
 
 
 def _type(type_: Type, names: Names, kind: str) -> str:
@@ -182,19 +164,16 @@ def _integer_type(type_: Integer, names: Names) -> str:
 
 
 def _switch_type(type_: Switch, names: Names, kind: str) -> str:
-    choices = [
-        "null" if is_nothing(case.type) else _type(case.type, names, kind) for case in type_.cases
-    ]
-    if type_.rest is not None:
-        choices.append("Uint8Array")
-    distinct = dict.fromkeys(choices)
-    ordered = [choice for choice in distinct if choice != "null"]
-    return " | ".join([*ordered, *(["null"] if "null" in distinct else [])])
-
-
-def is_nothing(type_: Type) -> bool:
-    """True if the type is a struct without fields, which is null in a case."""
-    return isinstance(type_, Struct) and not type_.fields
+    choices = dict.fromkeys(
+        "null"
+        if isinstance(case.type, Struct) and not case.type.fields
+        # A struct without fields is null in a case.
+        else _type(case.type, names, kind)
+        for case in type_.cases
+    )
+    has_nothing = choices.pop("null", "") is None
+    rest = [] if type_.rest is None else ["Uint8Array"]
+    return " | ".join(dict.fromkeys([*choices, *rest, *(["null"] if has_nothing else [])]))
 
 
 # --- what shows a field in another way ------------------------------------------------------------
@@ -202,76 +181,74 @@ def is_nothing(type_: Type) -> bool:
 
 def views_of(record: Struct | Message, names: Names) -> Iterator[Declaration]:
     """Functions that give physical values, raw ones of these, and runs of bits."""
+    own = names.records[record.name]
     for field in record.fields:
+        holder = f"Pick<{names.types[record.name]}, {literal(own.fields[field.name])}>"
+        value = member("record", own.fields[field.name])
         if field.scaled:
-            yield _physical(field, record.name, names)
-            yield _nearest(field, record.name, names)
+            yield _physical(own.reading(field), {"record": holder}, field, value)
+            yield _nearest(own.raw(field), field)
         for item in field.bit_fields:
-            yield _bits(field, item, record.name, names)
+            enum = None if item.enum is None else names.types[item.enum.name]
+            yield _bits(own.run(field, item), {"record": holder}, field, item, value, enum)
 
 
-def _holder(field: Field, record: str, names: Names) -> tuple[Parameter, str]:
-    """The parameter that has the field, and the expression of its value."""
-    own = names.records[record].fields[field.name]
-    type_ = f"Pick<{names.types[record]}, {text(own)}>"
-    member = key(own)
-    return Parameter("record", type_), f"record{member if member[0] == '[' else f'.{member}'}"
+def _view(
+    name: str, parameters: Mapping[str, str], result: str, value: str, doc: str
+) -> Declaration:
+    body = [f"return {value};"]
+    return function(name, parameters, result, body, comment([doc]), exported=True)
 
 
-def _physical(field: Field, record: str, names: Names) -> Declaration:
-    parameter, value = _holder(field, record, names)
-    line = line_of(field)
-    numbers = f"{line.factor}n, {line.term}n, {line.divisor}n"
+def _line(field: Field) -> tuple[Code, ...]:
+    return tuple(map(integer, line_of(field)))
+
+
+def _physical(name: str, record: Mapping[str, str], field: Field, value: Code) -> Declaration:
     big = field.integer is not None and is_bigint(field.integer)
-    special = listed(integer(item.value, big=big) for item in field.special)
-    raw = "raw" if isinstance(field.type, Array) else value
-    found = f"rt.physical({raw}, {numbers})"
-    result = "number"
-    if field.special:
-        result = "number | null"
-        found = f"{special}.includes({raw}) ? null : {found}"
+    special = [integer(item.value, big=big) for item in field.special]
+    result = "number | null" if special else "number"
     if isinstance(field.type, Array):
-        many = f"({result})" if " | " in result else result
-        result, found = f"{many}[]", f"{value}.map((raw) => {found})"
-    if field.may_be_absent:
-        result = result if result.endswith("| null") else f"{result} | null"
-        found = f"{value} === null ? null : {found}"
+        result = f"({result})[]" if special else "number[]"
+    if field.may_be_absent and not result.endswith("null"):
+        result = f"{result} | null"
+    found = call("rt.physical", value, *_line(field), special or None)
     unit = f" in {field.unit}" if field.unit else ", scaled"
-    what = next(iter(paragraphs(field.about.doc)), field.name.replace("_", " ").capitalize())
     none = "; null: no reading" if field.special else ""
-    doc = comment([f"{what.rstrip('.')}{unit}{none}."])
-    name, _ = names.records[record].reading(field)
-    return function(name, [parameter], result, [f"return {found};"], doc, exported=True)
+    return _view(name, record, result, found, f"{_summary(field)}{unit}{none}.")
 
 
-def _nearest(field: Field, record: str, names: Names) -> Declaration:
-    _, name = names.records[record].reading(field)
-    line, parameter = line_of(field), Parameter("value", "number")
-    doc = comment([f"The raw `{field.name}` nearest to a value in {field.unit or 'its unit'}."])
-    if field.integer is None:
+def _nearest(name: str, field: Field) -> Declaration:
+    doc = f"The raw `{field.name}` nearest to a value in {field.unit or 'its unit'}."
+    type_, line = field.integer, line_of(field)
+    if type_ is None:
         back = f"(value * {line.divisor} - {line.term}) / {line.factor}"
-        return function(name, [parameter], "number", [f"return {back};"], doc, exported=True)
-    big = is_bigint(field.integer)
-    ends = (f"{field.integer.least}n", f"{field.integer.greatest}n")
-    special = listed(f"{item.value}n" for item in field.special)
-    numbers = (f"{line.factor}n", f"{line.term}n", f"{line.divisor}n")
-    found = call("rt.nearest", "value", *numbers, *ends, special)
-    body = f"return {found if big else f'Number({found})'};"
-    result = "bigint" if big else "number"
-    return function(name, [parameter], result, [body], doc, exported=True)
+        return _view(name, {"value": "number"}, "number", back, doc)
+    special = [integer(item.value) for item in field.special]
+    ends = integer(type_.least), integer(type_.greatest)
+    found = call("rt.nearest", Code("value"), *_line(field), *ends, special)
+    if is_bigint(type_):
+        return _view(name, {"value": "number"}, "bigint", found, doc)
+    return _view(name, {"value": "number"}, "number", f"Number({found})", doc)
 
 
-def _bits(field: Field, item: BitField, record: str, names: Names) -> Declaration:
-    parameter, value = _holder(field, record, names)
-    name = names.records[record].run(field, item)
-    found = f"rt.bits({value}, {item.low}, {item.high})"
+def _bits(
+    name: str,
+    record: Mapping[str, str],
+    field: Field,
+    item: BitField,
+    value: Code,
+    enum: str | None,
+) -> Declaration:
+    found = f"{call('rt.bits', value, item.low, item.high)}"
     if item.gaps:
         found = f"{found} & {item.mask >> item.low}"
-    result = "number"
-    if item.enum is not None:
-        result = f"{names.types[item.enum.name]} | (number & {{}})"
+    result = "number" if enum is None else f"{enum} | (number & {{}})"
     if field.may_be_absent:
         result, found = f"{result} | null", f"{value} === null ? null : {found}"
-    what = next(iter(paragraphs(item.about.doc)), item.name.replace("_", " ").capitalize())
-    doc = comment([f"{what.rstrip('.')}; {item.words} of {field.name}."])
-    return function(name, [parameter], result, [f"return {found};"], doc, exported=True)
+    return _view(name, record, result, found, f"{_summary(item)}; {item.words} of {field.name}.")
+
+
+def _summary(item: Field | BitField) -> str:
+    """The first paragraph of a doc, or the name in words; without a full stop."""
+    return next(iter(paragraphs(item.about.doc)), descriptions.words(item.name)).rstrip(".")

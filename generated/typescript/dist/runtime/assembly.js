@@ -3,7 +3,7 @@ import { concatenated, equal, hasHighBit } from "./bytes.js";
 import { Cut, dueOf, verdictOn } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { EncodeError } from "./errors.js";
-import { areAmong, at } from "./plan.js";
+import { areAmong, at, ownOf } from "./plan.js";
 import { numbersOf, payloadOf, writerOf } from "./sender.js";
 /** The frame of a message. Throws an EncodeError. */
 export function frameOf(sender, message, value, given, strict) {
@@ -18,7 +18,7 @@ export function frameOf(sender, message, value, given, strict) {
 /** The parts that callers give, and those that are fields. Throws an EncodeError if they differ. */
 function withHeld(given, held) {
     for (const [name, value] of Object.entries(held)) {
-        const own = given[name] ?? null;
+        const own = ownOf(given, name) ?? null;
         // A number may be given for a bigint, and a bigint for a number.
         const isSame = (typeof own === "number" || typeof own === "bigint") && own == value;
         if (own !== null && !isSame) {
@@ -32,7 +32,7 @@ function identityOf(sender, message, given, values) {
     for (let index = 0; index < sender.identityParts.length; index++) {
         const { name, slot, number } = sender.identityParts[index];
         const runs = message.identities[index];
-        const own = given[name];
+        const own = ownOf(given, name);
         values[slot] = runs[0][0];
         if (own === undefined || own === null)
             continue;
@@ -47,7 +47,7 @@ function identityOf(sender, message, given, values) {
 export function unknownFrameOf(sender, payload, given) {
     const values = new Array(sender.frame.slots);
     for (const { name, slot, number } of sender.identityParts) {
-        values[slot] = givenTo(number, given[name], name);
+        values[slot] = givenTo(number, ownOf(given, name), name);
     }
     const writer = writerOf(false, sender.frame.headSize);
     const place = writer.room(payload.length);
@@ -78,7 +78,7 @@ function encodeFrame(sender, writer, size, given, values, strict) {
         }
     }
     for (const part of valueParts)
-        values[part.slot] = valueOf(part, given[part.name], strict);
+        values[part.slot] = valueOf(part, ownOf(given, part.name), strict);
     const wire = new Assembly(sender, values, writer, size).wire();
     const { frame } = sender;
     if (frame.isBounded && wire.length > frame.greatest) {

@@ -181,7 +181,7 @@ export class Content {
         if (part.overWire) {
             if (value < part.base || value > part.greatest)
                 throw wrong;
-            this.regionEnd = value - part.base + part.regionEnd;
+            this.regionEnd = value - part.base + (part.regionEnd ?? 0);
             return;
         }
         const isEmpty = value === part.base;
@@ -298,7 +298,7 @@ export class Content {
 export function mayBe(part, value) {
     if (part.values)
         return part.values.includes(value);
-    if (part.between !== null) {
+    if (part.between !== undefined) {
         const [first, last] = [part.between[0], part.between[1]];
         const text = String(value).padEnd(part.number.size, "\0");
         return [...text].every((character) => first <= character && character <= last);

@@ -1,10 +1,11 @@
 /** Integers that are written as text in payloads. */
-/** Read an integer of so many digits out of an alphabet, of `bits` bits. */
-export function readDigits(reader, alphabet, size, bits, signed, step) {
-    return Number(readBigDigits(reader, alphabet, size, bits, signed, step));
+/** Read an integer of so many digits. */
+export function readDigits(reader, form, step) {
+    return Number(readBigDigits(reader, form, step));
 }
 /** The same of more than 53 bits. */
-export function readBigDigits(reader, alphabet, size, bits, signed, step) {
+export function readBigDigits(reader, form, step) {
+    const { alphabet, size, bits, signed } = form;
     const at = reader.take(size, step);
     let raw = 0n;
     for (let index = at; index < at + size; index++) {
@@ -17,8 +18,9 @@ export function readBigDigits(reader, alphabet, size, bits, signed, step) {
         throw reader.fault(step, "value", `${raw} does not fit ${bits} bits`);
     return signed ? BigInt.asIntN(bits, raw) : raw;
 }
-/** Write an integer as so many digits out of an alphabet. */
-export function writeDigits(writer, value, alphabet, size, bits, step) {
+/** Write an integer as so many digits. */
+export function writeDigits(writer, value, form, step) {
+    const { alphabet, size, bits } = form;
     let rest = BigInt.asUintN(bits, BigInt(value));
     const base = BigInt(alphabet.length);
     const at = writer.room(size);

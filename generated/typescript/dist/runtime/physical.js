@@ -1,6 +1,12 @@
 /** Physical values: raw x factor + term, all divided by a divisor, exact as far as floats are. */
-/** The physical value of a raw one. */
-export function physical(raw, factor, term, divisor) {
+export function physical(raw, factor, term, divisor, some = []) {
+    if (Array.isArray(raw))
+        return raw.map((item) => physical(item, factor, term, divisor, some));
+    if (raw === null || some.includes(raw))
+        return null;
+    return scaled(raw, factor, term, divisor);
+}
+function scaled(raw, factor, term, divisor) {
     if (typeof raw === "number") {
         const over = raw * Number(factor) + Number(term);
         if (Number.isSafeInteger(over) && divisor <= BigInt(Number.MAX_SAFE_INTEGER)) {

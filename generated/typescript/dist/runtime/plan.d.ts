@@ -51,11 +51,11 @@ export interface LengthNumber extends Numbered {
     readonly least: number;
     readonly greatest: number;
     /** True if it counts stuffed bytes. */
-    readonly overWire: boolean;
+    readonly overWire?: boolean;
     /** True of another length than the one that tells where the frame ends. */
-    readonly isFurther: boolean;
+    readonly isFurther?: boolean;
     /** Wire bytes up to the end of what is stuffed, in a frame with the value `base`. */
-    readonly regionEnd: number;
+    readonly regionEnd?: number;
 }
 /** A number that callers give, within bounds. */
 export interface ValueNumber extends Numbered {
@@ -63,13 +63,13 @@ export interface ValueNumber extends Numbered {
     readonly least: Value;
     readonly greatest: Value;
     readonly default: Value | null;
-    readonly isCounter: boolean;
+    readonly isCounter?: boolean;
     /** Values that it can have, where it is one of several literals. */
-    readonly values: readonly Value[] | null;
+    readonly values?: readonly Value[];
     /** The least and the greatest character of a text. */
-    readonly between: string | null;
+    readonly between?: string;
     /** True if receivers hold it to its bounds. */
-    readonly isHeld: boolean;
+    readonly isHeld?: boolean;
 }
 export type NumberPart = IdentityNumber | LengthNumber | ValueNumber;
 /** A number that is a part. */
@@ -77,6 +77,8 @@ export interface Single extends Named {
     readonly kind: "number";
     readonly part: NumberPart;
 }
+/** A number as a part. */
+export declare function single(part: NumberPart): Single;
 /** Bits that follow from another number. */
 export interface Mirror {
     readonly name: string;
@@ -91,13 +93,13 @@ export interface Sum {
     readonly number: PartNumber;
     readonly algorithm: Checksum;
     readonly covers: readonly Covered[];
-    readonly overWire: boolean;
+    readonly overWire?: boolean;
     /** Where the bytes of the part lie that has it. */
     readonly place: Place;
     readonly size: number;
-    readonly isOptional: boolean;
+    readonly isOptional?: boolean;
     /** True if it is some bits of a part, from bit `lowest` of the result on. */
-    readonly isBits: boolean;
+    readonly isBits?: boolean;
     readonly lowest: number;
     /** The greatest value of these bits. */
     readonly greatest: number;
@@ -163,6 +165,8 @@ export interface Sizes {
 }
 /** Values of parts of the frame that are fields of a message, by the names of the parts. */
 export type HeldParts = Readonly<Record<string, Value>>;
+/** What an object has of its own by a name: every object inherits a `constructor`, for example. */
+export declare function ownOf<T>(given: Readonly<Record<string, T>>, name: string): T | undefined;
 /** None of them. */
 export declare const NO_PARTS: HeldParts;
 /** A message: how its payload is read and written. */
@@ -179,6 +183,12 @@ export interface MessagePlan<M = unknown> {
     readonly read: (reader: Reader) => M;
     readonly write: (writer: Writer, message: never) => void;
 }
+/**
+ * The plan of a message of one size, or of sizes from the least to the greatest in steps.
+ *
+ * Without `more`, it has no parts of the frame as fields, and what is known of it is its one size.
+ */
+export declare function plan<M>(name: string, identities: Runs, [least, greatest, step]: readonly [number, number?, number?], read: (reader: Reader) => M, write: (writer: Writer, message: never) => void, more?: Partial<Pick<MessagePlan, "known" | "tellsItsEnd" | "held">>): MessagePlan<M>;
 /** The messages behind one identity, in the order in which they are tried. */
 export interface Group {
     readonly identities: Runs;
@@ -189,6 +199,11 @@ export interface Group {
     /** Sizes in which frames carry each of the messages. */
     readonly carried: readonly Sizes[];
 }
+/** A group; without `more`, its identities and the sizes in frames are those of its messages. */
+export declare function group(messages: readonly MessagePlan[], more?: {
+    readonly identities?: Runs;
+    readonly carried?: readonly Sizes[];
+}): Group;
 /** A sender's frame. Sizes are in bytes; content is what is there before any stuffing. */
 export interface Frame {
     /** The endpoint. */
@@ -249,6 +264,31 @@ export interface Frame {
     /** Messages that no decoder yields, as nothing tells them from others. */
     readonly encodeOnly: readonly MessagePlan[];
 }
+/** What is so of most frames. */
+declare const USUAL: {
+    form: string;
+    startIsUnique: boolean;
+    endIsUnique: boolean;
+    sharesDelimiter: boolean;
+    endsIdle: boolean;
+    sevenBit: boolean;
+    rescans: boolean;
+    takesWhole: boolean;
+    cutAmbiguous: boolean;
+    isBounded: boolean;
+    isCut: boolean;
+    identityIsEarly: boolean;
+    told: never[];
+    virtual: never[];
+    shown: never[];
+    sums: never[];
+    groups: never[];
+    transparency: null;
+    kept: null;
+    encodeOnly: never[];
+};
+/** A frame, of which is said what is not so of most. */
+export declare function frame(given: Partial<Frame> & Omit<Frame, keyof typeof USUAL>): Frame;
 /** The place in the content of a frame with such a payload. */
 export declare function at(place: Place, headSize: number, payload: number): number;
 export declare function holds(sizes: Sizes, size: number): boolean;

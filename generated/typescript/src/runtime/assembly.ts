@@ -5,7 +5,7 @@ import { Cut, dueOf, verdictOn } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { EncodeError } from "./errors.js";
 import type { PartNumber, Value } from "./numbers.js";
-import { areAmong, at } from "./plan.js";
+import { areAmong, at, ownOf } from "./plan.js";
 import type { Bits, Covered, HeldParts, LengthNumber, MessagePlan } from "./plan.js";
 import type { Part, ValueNumber } from "./plan.js";
 import { numbersOf, payloadOf, writerOf, type Sender } from "./sender.js";
@@ -36,7 +36,7 @@ export function frameOf(
 /** The parts that callers give, and those that are fields. Throws an EncodeError if they differ. */
 function withHeld(given: GivenParts, held: HeldParts): GivenParts {
   for (const [name, value] of Object.entries(held)) {
-    const own = given[name] ?? null;
+    const own = ownOf(given, name) ?? null;
     // A number may be given for a bigint, and a bigint for a number.
     const isSame = (typeof own === "number" || typeof own === "bigint") && own == value;
     if (own !== null && !isSame) {
@@ -56,7 +56,7 @@ function identityOf(
   for (let index = 0; index < sender.identityParts.length; index++) {
     const { name, slot, number } = sender.identityParts[index]!;
     const runs = message.identities[index]!;
-    const own = given[name];
+    const own = ownOf(given, name);
     values[slot] = runs[0]![0];
     if (own === undefined || own === null) continue;
     const chosen = givenTo(number, own, name);
@@ -75,7 +75,7 @@ export function unknownFrameOf(
 ): Uint8Array {
   const values: Values = new Array<Value | undefined>(sender.frame.slots);
   for (const { name, slot, number } of sender.identityParts) {
-    values[slot] = givenTo(number, given[name], name);
+    values[slot] = givenTo(number, ownOf(given, name), name);
   }
   const writer = writerOf(false, sender.frame.headSize);
   const place = writer.room(payload.length);
@@ -113,7 +113,7 @@ function encodeFrame(
       throw new EncodeError(name, "there is no such part");
     }
   }
-  for (const part of valueParts) values[part.slot] = valueOf(part, given[part.name], strict);
+  for (const part of valueParts) values[part.slot] = valueOf(part, ownOf(given, part.name), strict);
   const wire = new Assembly(sender, values, writer, size).wire();
   const { frame } = sender;
   if (frame.isBounded && wire.length > frame.greatest) {

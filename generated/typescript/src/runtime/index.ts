@@ -7,7 +7,7 @@ export { Decoder } from "./decoder.js";
 export { DecodeError, EncodeError, type Reason } from "./errors.js";
 export type { Event, InvalidEvent, MessageEvent, UnknownEvent } from "./events.js";
 export { jsonLine, jsonValue } from "./json.js";
-export { bits, elements, elementsBig, floor, floorBig, modulo, moduloBig, noneOf, sizeOf } from "./formulas.js";
+export { bits, counted, elements, floor, modulo, noneOf } from "./formulas.js";
 export {
   readBigDigits,
   readBigNumeral,
@@ -15,11 +15,12 @@ export {
   readNumeral,
   writeDigits,
   writeNumeral,
+  type Digits,
   type Numeral,
 } from "./numerals.js";
 export { bitsNumber, characters, digits, number, type Value } from "./numbers.js";
 export { nearest, physical } from "./physical.js";
-export type { Frame, HeldParts, MessagePlan } from "./plan.js";
+export { frame, group, plan, single, type Frame, type HeldParts, type MessagePlan } from "./plan.js";
 export {
   Encoder,
   Protocol,

@@ -55,11 +55,11 @@ export interface LengthNumber extends Numbered {
   readonly least: number;
   readonly greatest: number;
   /** True if it counts stuffed bytes. */
-  readonly overWire: boolean;
+  readonly overWire?: boolean;
   /** True of another length than the one that tells where the frame ends. */
-  readonly isFurther: boolean;
+  readonly isFurther?: boolean;
   /** Wire bytes up to the end of what is stuffed, in a frame with the value `base`. */
-  readonly regionEnd: number;
+  readonly regionEnd?: number;
 }
 
 /** A number that callers give, within bounds. */
@@ -68,13 +68,13 @@ export interface ValueNumber extends Numbered {
   readonly least: Value;
   readonly greatest: Value;
   readonly default: Value | null;
-  readonly isCounter: boolean;
+  readonly isCounter?: boolean;
   /** Values that it can have, where it is one of several literals. */
-  readonly values: readonly Value[] | null;
+  readonly values?: readonly Value[];
   /** The least and the greatest character of a text. */
-  readonly between: string | null;
+  readonly between?: string;
   /** True if receivers hold it to its bounds. */
-  readonly isHeld: boolean;
+  readonly isHeld?: boolean;
 }
 
 export type NumberPart = IdentityNumber | LengthNumber | ValueNumber;
@@ -83,6 +83,11 @@ export type NumberPart = IdentityNumber | LengthNumber | ValueNumber;
 export interface Single extends Named {
   readonly kind: "number";
   readonly part: NumberPart;
+}
+
+/** A number as a part. */
+export function single(part: NumberPart): Single {
+  return { kind: "number", name: part.name, size: part.number.size, part };
 }
 
 /** Bits that follow from another number. */
@@ -100,13 +105,13 @@ export interface Sum {
   readonly number: PartNumber;
   readonly algorithm: Checksum;
   readonly covers: readonly Covered[];
-  readonly overWire: boolean;
+  readonly overWire?: boolean;
   /** Where the bytes of the part lie that has it. */
   readonly place: Place;
   readonly size: number;
-  readonly isOptional: boolean;
+  readonly isOptional?: boolean;
   /** True if it is some bits of a part, from bit `lowest` of the result on. */
-  readonly isBits: boolean;
+  readonly isBits?: boolean;
   readonly lowest: number;
   /** The greatest value of these bits. */
   readonly greatest: number;
@@ -176,6 +181,11 @@ export interface Sizes {
 /** Values of parts of the frame that are fields of a message, by the names of the parts. */
 export type HeldParts = Readonly<Record<string, Value>>;
 
+/** What an object has of its own by a name: every object inherits a `constructor`, for example. */
+export function ownOf<T>(given: Readonly<Record<string, T>>, name: string): T | undefined {
+  return Object.prototype.hasOwnProperty.call(given, name) ? given[name] : undefined;
+}
+
 /** None of them. */
 export const NO_PARTS: HeldParts = {};
 
@@ -194,6 +204,24 @@ export interface MessagePlan<M = unknown> {
   readonly write: (writer: Writer, message: never) => void;
 }
 
+/**
+ * The plan of a message of one size, or of sizes from the least to the greatest in steps.
+ *
+ * Without `more`, it has no parts of the frame as fields, and what is known of it is its one size.
+ */
+export function plan<M>(
+  name: string,
+  identities: Runs,
+  [least, greatest = least, step = 0]: readonly [number, number?, number?],
+  read: (reader: Reader) => M,
+  write: (writer: Writer, message: never) => void,
+  more: Partial<Pick<MessagePlan, "known" | "tellsItsEnd" | "held">> = {},
+): MessagePlan<M> {
+  const sizes = { least, greatest, step };
+  const { known = step ? null : least, tellsItsEnd = false, held = [] } = more;
+  return { name, identities, sizes, known, tellsItsEnd, held, read, write };
+}
+
 /** The messages behind one identity, in the order in which they are tried. */
 export interface Group {
   readonly identities: Runs;
@@ -203,6 +231,19 @@ export interface Group {
   readonly greatest: number;
   /** Sizes in which frames carry each of the messages. */
   readonly carried: readonly Sizes[];
+}
+
+/** A group; without `more`, its identities and the sizes in frames are those of its messages. */
+export function group(
+  messages: readonly MessagePlan[],
+  more: { readonly identities?: Runs; readonly carried?: readonly Sizes[] } = {},
+): Group {
+  const { identities = messages[0]!.identities } = more;
+  const { carried = messages.map((message) => message.sizes) } = more;
+  const [{ least }] = carried as readonly [Sizes];
+  const isFixed = carried.every((sizes) => sizes.least === least && sizes.greatest === least);
+  const greatest = Math.max(...messages.map((message) => message.sizes.greatest));
+  return { identities, messages, fixed: isFixed ? least : null, greatest, carried };
 }
 
 /** A sender's frame. Sizes are in bytes; content is what is there before any stuffing. */
@@ -264,6 +305,35 @@ export interface Frame {
   readonly groups: readonly Group[];
   /** Messages that no decoder yields, as nothing tells them from others. */
   readonly encodeOnly: readonly MessagePlan[];
+}
+
+/** What is so of most frames. */
+const USUAL = {
+  form: "",
+  startIsUnique: false,
+  endIsUnique: false,
+  sharesDelimiter: false,
+  endsIdle: false,
+  sevenBit: false,
+  rescans: false,
+  takesWhole: false,
+  cutAmbiguous: false,
+  isBounded: false,
+  isCut: false,
+  identityIsEarly: false,
+  told: [],
+  virtual: [],
+  shown: [],
+  sums: [],
+  groups: [],
+  transparency: null,
+  kept: null,
+  encodeOnly: [],
+};
+
+/** A frame, of which is said what is not so of most. */
+export function frame(given: Partial<Frame> & Omit<Frame, keyof typeof USUAL>): Frame {
+  return { ...USUAL, ...given };
 }
 
 /** The place in the content of a frame with such a payload. */

@@ -18,7 +18,7 @@ class Constants:
     """The module's constants of the fast engine: each expression gets one name."""
 
     def __init__(self, names: Names) -> None:
-        self.classes = names.classes
+        self.classes = names.types
         """The class of each message and type."""
         self._names: dict[str, str] = {}
         self._counts: Counter[str] = Counter()

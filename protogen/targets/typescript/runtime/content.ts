@@ -193,7 +193,7 @@ export class Content {
     const wrong = new Fault("length", `${part.name} is ${value}`);
     if (part.overWire) {
       if (value < part.base || value > part.greatest) throw wrong;
-      this.regionEnd = value - part.base + part.regionEnd;
+      this.regionEnd = value - part.base + (part.regionEnd ?? 0);
       return;
     }
     const isEmpty = value === part.base;
@@ -309,7 +309,7 @@ export class Content {
 /** True if a value is one that the part can have. */
 export function mayBe(part: NumberPart & { readonly kind: "value" }, value: Value): boolean {
   if (part.values) return part.values.includes(value);
-  if (part.between !== null) {
+  if (part.between !== undefined) {
     const [first, last] = [part.between[0]!, part.between[1]!];
     const text = String(value).padEnd(part.number.size, "\0");
     return [...text].every((character) => first <= character && character <= last);

@@ -1,33 +1,25 @@
 /** Whole numbers that are worked out of fields. Divisors are above 0. */
 
 /** The quotient, rounded down. */
-export function floor(over: number, under: number): number {
-  return Math.floor(over / under);
+export function floor(over: number, under: number): number;
+export function floor(over: bigint, under: bigint): bigint;
+export function floor(over: any, under: any): any {
+  return (over - modulo(over, under)) / under;
 }
 
 /** What remains, which is never negative. */
-export function modulo(over: number, under: number): number {
+export function modulo(over: number, under: number): number;
+export function modulo(over: bigint, under: bigint): bigint;
+export function modulo(over: any, under: any): any {
   return ((over % under) + under) % under;
 }
 
 /** Elements of this size in so many bytes; -1 where a part is left. */
-export function elements(bytes: number, size: number): number {
-  return modulo(bytes, size) ? -1 : floor(bytes, size);
-}
-
-/** The quotient, rounded down. */
-export function floorBig(over: bigint, under: bigint): bigint {
-  return (over - moduloBig(over, under)) / under;
-}
-
-/** What remains, which is never negative. */
-export function moduloBig(over: bigint, under: bigint): bigint {
-  return ((over % under) + under) % under;
-}
-
-/** Elements of this size in so many bytes; -1 where a part is left. */
-export function elementsBig(bytes: bigint, size: bigint): bigint {
-  return moduloBig(bytes, size) ? -1n : floorBig(bytes, size);
+export function elements(bytes: number, size: number): number;
+export function elements(bytes: bigint, size: bigint): bigint;
+export function elements(bytes: any, size: any): any {
+  if (modulo(bytes, size)) return typeof bytes === "bigint" ? -1n : -1;
+  return bytes / size;
 }
 
 /** The bits `low` to `high` of an integer, both included. */
@@ -36,10 +28,14 @@ export function bits(value: number | bigint | boolean, low: number, high: number
   return Number((BigInt(value) >> BigInt(low)) & mask);
 }
 
-/** Elements, bytes or characters of a value; 0 of what has none. */
-export function sizeOf(value: unknown): number {
+/**
+ * The number that counts so many elements, bytes or characters: times `factor`, and `offset` more,
+ * it is the number of bytes, of which each element has `size`. What has none counts as none.
+ */
+export function counted(value: unknown, factor: number, offset: number, size: number): number {
   const length = (value as { readonly length?: unknown } | null | undefined)?.length;
-  return typeof length === "number" ? length : 0;
+  const count = typeof length === "number" ? length : 0;
+  return Math.floor((count * size - offset) / factor);
 }
 
 /** A list of some type that has no elements yet. */

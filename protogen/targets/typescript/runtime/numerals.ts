@@ -21,27 +21,22 @@ export interface Numeral {
   readonly empty?: boolean;
 }
 
-/** Read an integer of so many digits out of an alphabet, of `bits` bits. */
-export function readDigits(
-  reader: Reader,
-  alphabet: string,
-  size: number,
-  bits: number,
-  signed: boolean,
-  step: Step,
-): number {
-  return Number(readBigDigits(reader, alphabet, size, bits, signed, step));
+/** Form of an integer of `bits` bits as so many digits out of an alphabet. */
+export interface Digits {
+  readonly alphabet: string;
+  readonly size: number;
+  readonly bits: number;
+  readonly signed: boolean;
+}
+
+/** Read an integer of so many digits. */
+export function readDigits(reader: Reader, form: Digits, step: Step): number {
+  return Number(readBigDigits(reader, form, step));
 }
 
 /** The same of more than 53 bits. */
-export function readBigDigits(
-  reader: Reader,
-  alphabet: string,
-  size: number,
-  bits: number,
-  signed: boolean,
-  step: Step,
-): bigint {
+export function readBigDigits(reader: Reader, form: Digits, step: Step): bigint {
+  const { alphabet, size, bits, signed } = form;
   const at = reader.take(size, step);
   let raw = 0n;
   for (let index = at; index < at + size; index++) {
@@ -53,15 +48,14 @@ export function readBigDigits(
   return signed ? BigInt.asIntN(bits, raw) : raw;
 }
 
-/** Write an integer as so many digits out of an alphabet. */
+/** Write an integer as so many digits. */
 export function writeDigits(
   writer: Writer,
   value: number | bigint,
-  alphabet: string,
-  size: number,
-  bits: number,
+  form: Digits,
   step: Step,
 ): void {
+  const { alphabet, size, bits } = form;
   let rest = BigInt.asUintN(bits, BigInt(value));
   const base = BigInt(alphabet.length);
   const at = writer.room(size);

@@ -1,12 +1,35 @@
 /** Physical values: raw x factor + term, all divided by a divisor, exact as far as floats are. */
 
-/** The physical value of a raw one. */
-export function physical(
-  raw: number | bigint,
+/** What raw values become: each number one of `N`, also in arrays; what is not there stays null. */
+export type Physical<T, N> = T extends readonly unknown[] ? N[] : T extends null ? null : N;
+
+/** The physical value of a raw one, or of each in an array; null for a special value. */
+export function physical<T>(
+  raw: T,
   factor: bigint,
   term: bigint,
   divisor: bigint,
-): number {
+): Physical<T, number>;
+export function physical<T>(
+  raw: T,
+  factor: bigint,
+  term: bigint,
+  divisor: bigint,
+  special: readonly (number | bigint)[],
+): Physical<T, number | null>;
+export function physical(
+  raw: unknown,
+  factor: bigint,
+  term: bigint,
+  divisor: bigint,
+  some: readonly (number | bigint)[] = [],
+): unknown {
+  if (Array.isArray(raw)) return raw.map((item) => physical(item, factor, term, divisor, some));
+  if (raw === null || some.includes(raw as number)) return null;
+  return scaled(raw as number | bigint, factor, term, divisor);
+}
+
+function scaled(raw: number | bigint, factor: bigint, term: bigint, divisor: bigint): number {
   if (typeof raw === "number") {
     const over = raw * Number(factor) + Number(term);
     if (Number.isSafeInteger(over) && divisor <= BigInt(Number.MAX_SAFE_INTEGER)) {

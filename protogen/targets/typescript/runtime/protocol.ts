@@ -6,7 +6,7 @@ import { Candidate, Failure, verdictOn, type ToldValues } from "./candidate.js";
 import { DecodeError, EncodeError, Fault } from "./errors.js";
 import { framed, type Framed } from "./events.js";
 import type { Value } from "./numbers.js";
-import type { Frame } from "./plan.js";
+import { ownOf, type Frame } from "./plan.js";
 import { Sender } from "./sender.js";
 import { Told, type Telling } from "./told.js";
 
@@ -217,7 +217,7 @@ export class Encoder<Message extends NamedMessage = NamedMessage, Parts = GivenP
     if (!senders.length) throw new EncodeError("message", `${message.message} is not sent`);
     return firstThatFits(senders, (sender) => {
       const counters = sender.valueParts.filter(
-        (part) => part.isCounter && (given[part.name] ?? null) === null,
+        (part) => part.isCounter && (ownOf(given, part.name) ?? null) === null,
       );
       const counted = counters.map((part) => [part.name, this.next.get(part.name)] as const);
       const parts = { ...given, ...Object.fromEntries(counted) };

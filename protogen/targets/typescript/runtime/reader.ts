@@ -3,7 +3,7 @@
 import { equal } from "./bytes.js";
 import { Fault, joined, spelled } from "./errors.js";
 import type { Value } from "./numbers.js";
-import { NO_PARTS, type HeldParts } from "./plan.js";
+import { NO_PARTS, ownOf, type HeldParts } from "./plan.js";
 
 /** Name of a field, or index of an element. */
 export type Step = string | number;
@@ -111,7 +111,7 @@ export class Reader {
   }
 
   private heldPart(name: string, step: Step): Value {
-    const value = this.held[name];
+    const value = ownOf(this.held, name);
     if (value === undefined) throw this.fault(step, "value", `is ${name} of the frame: give it`);
     return value;
   }
@@ -326,7 +326,7 @@ export class Reader {
     return data;
   }
 
-  /** Bytes in front of a separator or of the end; with `leads` a separator stands in front. */
+  /** A text in front of a separator or of the end; with `leads` a separator stands in front. */
   between(
     separator: number,
     leads: boolean,
@@ -334,7 +334,7 @@ export class Reader {
     least: number,
     greatest: number,
     step: Step,
-  ): Uint8Array {
+  ): string {
     if (leads) this.separator(separator, step);
     const takesRest = allowed.includes(String.fromCharCode(separator));
     const found = takesRest ? -1 : this.bytes.subarray(this.at, this.end).indexOf(separator);
@@ -348,7 +348,7 @@ export class Reader {
         throw this.fault(step, "value", `${wrong} is no character of it`);
       }
     }
-    return this.octets(size, false, step);
+    return latin1(this.octets(size, false, step));
   }
 
   private separator(separator: number, step: Step): void {
@@ -393,6 +393,26 @@ export class Reader {
     if (this.left) throw this.fault(step, "size", `${this.left} bytes are left over`);
     this.regions--;
     this.end = outer;
+  }
+
+  /** The place of another element that takes what is left, -1 at its end; `here`: the one before. */
+  next(here: number, index: number, least: number, greatest: number): number {
+    if (this.at === here) {
+      throw this.fault("", "size", "an element of no bytes fills nothing");
+    }
+    if (this.left > 0) {
+      this.count(index + 1, 0, greatest, "fill", "");
+      return this.at;
+    }
+    this.count(index, least, greatest, "fill", "");
+    return -1;
+  }
+
+  /** True if another element stands behind one that is not the last. */
+  goesOn(isLast: boolean, index: number, least: number, greatest: number): boolean {
+    if (isLast) this.count(index, least, greatest, "fill", "");
+    else this.count(index + 1, 0, greatest, "fill", "");
+    return !isLast;
   }
 
   /** The number of elements in front of a tail. */

@@ -2,7 +2,7 @@
 
 import type { ToldValues } from "./candidate.js";
 import type { Value } from "./numbers.js";
-import type { LengthNumber, Told as ToldPart } from "./plan.js";
+import { ownOf, type LengthNumber, type Told as ToldPart } from "./plan.js";
 import type { Sender } from "./sender.js";
 
 /** A number, or those of frames that follow each other. */
@@ -81,9 +81,9 @@ export class Told {
   }
 
   /** What holds for one frame that is all there is, without lengths that are not given. */
-  valuesForOne(sender: Sender, given: object, data: number): ToldValues {
+  valuesForOne(sender: Sender, given: Readonly<Record<string, unknown>>, data: number): ToldValues {
     const found = [...this.valuesFor(sender)];
-    const isGiven = sender.frame.told.some((part) => part.length && part.name in given);
+    const isGiven = sender.frame.told.some((part) => part.length && ownOf(given, part.name) !== undefined);
     if (!isGiven) sender.tellSize(found, sender.payloadSize(data - sender.frame.end.length));
     return found;
   }

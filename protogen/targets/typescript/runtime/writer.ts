@@ -164,6 +164,20 @@ export class Writer {
     }
   }
 
+  /** Refuse a value behind one that is left out. */
+  behind(front: unknown, name: string, step: Step): void {
+    if (front === null || front === undefined) {
+      throw this.error(step, `must be null, as ${name} in front of it is left out`);
+    }
+  }
+
+  /** Refuse an element that says that it is the last where it is not, or the reverse. */
+  last(isLast: boolean, items: readonly unknown[], index: number, by: string): void {
+    if (isLast !== (index === items.length - 1)) {
+      throw this.error(index, `the last element, and no other, is the last by ${by}`);
+    }
+  }
+
   /** The error of a selector without a case. */
   noCase(value: number | bigint, by: string, step: Step): EncodeError {
     return this.error(step, `there is no case for ${by} = ${value}`);
@@ -343,8 +357,13 @@ export class Writer {
     }
   }
 
+  /** Begin a region of so many bytes; what ends it is given to `close`. */
+  open(size: number, _step: Step): readonly [number, number] {
+    return [this.size, size];
+  }
+
   /** Refuse a region that has another size than it has to have. */
-  region(start: number, size: number, step: Step): void {
+  close([start, size]: readonly [number, number], step: Step): void {
     if (this.size - start !== size) {
       throw this.error(step, `needs exactly ${size} bytes, not ${this.size - start}`);
     }

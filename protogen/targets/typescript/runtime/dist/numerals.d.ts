@@ -18,12 +18,19 @@ export interface Numeral {
     readonly leads?: boolean;
     readonly empty?: boolean;
 }
-/** Read an integer of so many digits out of an alphabet, of `bits` bits. */
-export declare function readDigits(reader: Reader, alphabet: string, size: number, bits: number, signed: boolean, step: Step): number;
+/** Form of an integer of `bits` bits as so many digits out of an alphabet. */
+export interface Digits {
+    readonly alphabet: string;
+    readonly size: number;
+    readonly bits: number;
+    readonly signed: boolean;
+}
+/** Read an integer of so many digits. */
+export declare function readDigits(reader: Reader, form: Digits, step: Step): number;
 /** The same of more than 53 bits. */
-export declare function readBigDigits(reader: Reader, alphabet: string, size: number, bits: number, signed: boolean, step: Step): bigint;
-/** Write an integer as so many digits out of an alphabet. */
-export declare function writeDigits(writer: Writer, value: number | bigint, alphabet: string, size: number, bits: number, step: Step): void;
+export declare function readBigDigits(reader: Reader, form: Digits, step: Step): bigint;
+/** Write an integer as so many digits. */
+export declare function writeDigits(writer: Writer, value: number | bigint, form: Digits, step: Step): void;
 /** Read an integer as text. */
 export declare function readNumeral(reader: Reader, form: Numeral, step: Step): number;
 /** The same of more than 53 bits. */

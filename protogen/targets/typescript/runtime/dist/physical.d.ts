@@ -1,6 +1,9 @@
 /** Physical values: raw x factor + term, all divided by a divisor, exact as far as floats are. */
-/** The physical value of a raw one. */
-export declare function physical(raw: number | bigint, factor: bigint, term: bigint, divisor: bigint): number;
+/** What raw values become: each number one of `N`, also in arrays; what is not there stays null. */
+export type Physical<T, N> = T extends readonly unknown[] ? N[] : T extends null ? null : N;
+/** The physical value of a raw one, or of each in an array; null for a special value. */
+export declare function physical<T>(raw: T, factor: bigint, term: bigint, divisor: bigint): Physical<T, number>;
+export declare function physical<T>(raw: T, factor: bigint, term: bigint, divisor: bigint, special: readonly (number | bigint)[]): Physical<T, number | null>;
 /**
  * The raw integer nearest to a physical value, ties to even.
  *

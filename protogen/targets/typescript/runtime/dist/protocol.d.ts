@@ -1,7 +1,7 @@
 /** The codec of a protocol: encode, decode, and an encoder that counts. */
 import { type GivenParts } from "./assembly.js";
 import { type Framed } from "./events.js";
-import type { Frame } from "./plan.js";
+import { type Frame } from "./plan.js";
 import { Sender } from "./sender.js";
 import { type Telling } from "./told.js";
 /** Choices of an encoder. */

@@ -4,6 +4,7 @@ import { standsAt } from "./bytes.js";
 import { Candidate, Failure, verdictOn } from "./candidate.js";
 import { DecodeError, EncodeError, Fault } from "./errors.js";
 import { framed } from "./events.js";
+import { ownOf } from "./plan.js";
 import { Sender } from "./sender.js";
 import { Told } from "./told.js";
 /** The senders of a protocol. */
@@ -169,7 +170,7 @@ export class Encoder {
         if (!senders.length)
             throw new EncodeError("message", `${message.message} is not sent`);
         return firstThatFits(senders, (sender) => {
-            const counters = sender.valueParts.filter((part) => part.isCounter && (given[part.name] ?? null) === null);
+            const counters = sender.valueParts.filter((part) => part.isCounter && (ownOf(given, part.name) ?? null) === null);
             const counted = counters.map((part) => [part.name, this.next.get(part.name)]);
             const parts = { ...given, ...Object.fromEntries(counted) };
             const plan = sender.named(message.message);

@@ -97,8 +97,8 @@ export declare class Reader {
     rest(least: number, greatest: number, sevenBit: boolean, step: Step): Uint8Array;
     /** Bytes in front of a terminator, which is taken, too. */
     until(byte: number, least: number, greatest: number, sevenBit: boolean, step: Step): Uint8Array;
-    /** Bytes in front of a separator or of the end; with `leads` a separator stands in front. */
-    between(separator: number, leads: boolean, allowed: string, least: number, greatest: number, step: Step): Uint8Array;
+    /** A text in front of a separator or of the end; with `leads` a separator stands in front. */
+    between(separator: number, leads: boolean, allowed: string, least: number, greatest: number, step: Step): string;
     private separator;
     /** A text of a fixed size without its padding. */
     text(size: number, form: TextForm, sevenBit: boolean, step: Step): string;
@@ -106,6 +106,10 @@ export declare class Reader {
     open(size: number, step: Step): number;
     /** End a region, of which nothing may be left. */
     close(outer: number, step: Step): void;
+    /** The place of another element that takes what is left, -1 at its end; `here`: the one before. */
+    next(here: number, index: number, least: number, greatest: number): number;
+    /** True if another element stands behind one that is not the last. */
+    goesOn(isLast: boolean, index: number, least: number, greatest: number): boolean;
     /** The number of elements in front of a tail. */
     elements(tail: Tail): number;
     /** Take a run of packed bits as one integer. */

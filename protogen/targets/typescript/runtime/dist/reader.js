@@ -1,7 +1,7 @@
 /** Reads the values of a payload, one after another. Generated functions call it. */
 import { equal } from "./bytes.js";
 import { Fault, joined, spelled } from "./errors.js";
-import { NO_PARTS } from "./plan.js";
+import { NO_PARTS, ownOf } from "./plan.js";
 /** Form of a text whose bytes are its characters, with NUL as padding. */
 export const PLAIN_TEXT = { padding: 0, bits: 8, shift: 0, add: 0 };
 const WORD = new DataView(new ArrayBuffer(8));
@@ -73,7 +73,7 @@ export class Reader {
         return this.heldPart(name, step);
     }
     heldPart(name, step) {
-        const value = this.held[name];
+        const value = ownOf(this.held, name);
         if (value === undefined)
             throw this.fault(step, "value", `is ${name} of the frame: give it`);
         return value;
@@ -262,7 +262,7 @@ export class Reader {
         this.at++;
         return data;
     }
-    /** Bytes in front of a separator or of the end; with `leads` a separator stands in front. */
+    /** A text in front of a separator or of the end; with `leads` a separator stands in front. */
     between(separator, leads, allowed, least, greatest, step) {
         if (leads)
             this.separator(separator, step);
@@ -278,7 +278,7 @@ export class Reader {
                 throw this.fault(step, "value", `${wrong} is no character of it`);
             }
         }
-        return this.octets(size, false, step);
+        return latin1(this.octets(size, false, step));
     }
     separator(separator, step) {
         if (this.at >= this.end)
@@ -322,6 +322,26 @@ export class Reader {
             throw this.fault(step, "size", `${this.left} bytes are left over`);
         this.regions--;
         this.end = outer;
+    }
+    /** The place of another element that takes what is left, -1 at its end; `here`: the one before. */
+    next(here, index, least, greatest) {
+        if (this.at === here) {
+            throw this.fault("", "size", "an element of no bytes fills nothing");
+        }
+        if (this.left > 0) {
+            this.count(index + 1, 0, greatest, "fill", "");
+            return this.at;
+        }
+        this.count(index, least, greatest, "fill", "");
+        return -1;
+    }
+    /** True if another element stands behind one that is not the last. */
+    goesOn(isLast, index, least, greatest) {
+        if (isLast)
+            this.count(index, least, greatest, "fill", "");
+        else
+            this.count(index + 1, 0, greatest, "fill", "");
+        return !isLast;
     }
     /** The number of elements in front of a tail. */
     elements(tail) {

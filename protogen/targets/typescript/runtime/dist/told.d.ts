@@ -22,7 +22,7 @@ export declare class Told {
     /** Throw a RangeError for a length that no frame has, but for the one before any is told. */
     private checkLengths;
     /** What holds for one frame that is all there is, without lengths that are not given. */
-    valuesForOne(sender: Sender, given: object, data: number): ToldValues;
+    valuesForOne(sender: Sender, given: Readonly<Record<string, unknown>>, data: number): ToldValues;
     /** Take a frame: what was told may hold no more, and it may tell something itself. */
     passFrame(sender: Sender, values: ToldValues, name: string | null, message: unknown): void;
     /** Take the numbers of a frame, which may tell something of those behind it. */

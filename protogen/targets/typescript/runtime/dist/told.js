@@ -1,4 +1,5 @@
 /** What a receiver is told of identities that are not sent: by its program, or by frames. */
+import { ownOf } from "./plan.js";
 /** The values of a decoder's told parts, by their names. */
 export class Told {
     constructor(senders) {
@@ -72,7 +73,7 @@ export class Told {
     /** What holds for one frame that is all there is, without lengths that are not given. */
     valuesForOne(sender, given, data) {
         const found = [...this.valuesFor(sender)];
-        const isGiven = sender.frame.told.some((part) => part.length && part.name in given);
+        const isGiven = sender.frame.told.some((part) => part.length && ownOf(given, part.name) !== undefined);
         if (!isGiven)
             sender.tellSize(found, sender.payloadSize(data - sender.frame.end.length));
         return found;

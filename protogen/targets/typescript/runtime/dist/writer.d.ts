@@ -49,6 +49,10 @@ export declare class Writer {
     count(count: number, least: number, greatest: number, what: string, step: Step): void;
     /** Nothing: the value of what is not there, or has no bytes. */
     nothing(value: unknown, step: Step): void;
+    /** Refuse a value behind one that is left out. */
+    behind(front: unknown, name: string, step: Step): void;
+    /** Refuse an element that says that it is the last where it is not, or the reverse. */
+    last(isLast: boolean, items: readonly unknown[], index: number, by: string): void;
     /** The error of a selector without a case. */
     noCase(value: number | bigint, by: string, step: Step): EncodeError;
     u8(value: number): void;
@@ -72,6 +76,8 @@ export declare class Writer {
     between(value: unknown, separator: number, leads: boolean, allowed: string, least: number, greatest: number, step: Step): void;
     /** A text of a fixed size, which its padding fills up. */
     text(value: unknown, size: number, form: TextForm, sevenBit: boolean, step: Step): void;
+    /** Begin a region of so many bytes; what ends it is given to `close`. */
+    open(size: number, _step: Step): readonly [number, number];
     /** Refuse a region that has another size than it has to have. */
-    region(start: number, size: number, step: Step): void;
+    close([start, size]: readonly [number, number], step: Step): void;
 }

@@ -145,6 +145,18 @@ export class Writer {
             throw this.error(step, `must be null, not ${shown(value)}`);
         }
     }
+    /** Refuse a value behind one that is left out. */
+    behind(front, name, step) {
+        if (front === null || front === undefined) {
+            throw this.error(step, `must be null, as ${name} in front of it is left out`);
+        }
+    }
+    /** Refuse an element that says that it is the last where it is not, or the reverse. */
+    last(isLast, items, index, by) {
+        if (isLast !== (index === items.length - 1)) {
+            throw this.error(index, `the last element, and no other, is the last by ${by}`);
+        }
+    }
     /** The error of a selector without a case. */
     noCase(value, by, step) {
         return this.error(step, `there is no case for ${by} = ${value}`);
@@ -294,8 +306,12 @@ export class Writer {
             this.u8(byte);
         }
     }
+    /** Begin a region of so many bytes; what ends it is given to `close`. */
+    open(size, _step) {
+        return [this.size, size];
+    }
     /** Refuse a region that has another size than it has to have. */
-    region(start, size, step) {
+    close([start, size], step) {
         if (this.size - start !== size) {
             throw this.error(step, `needs exactly ${size} bytes, not ${this.size - start}`);
         }
