@@ -213,7 +213,8 @@ def test_robot(simulated_device):
 
 def test_a_fixture_of_pytest(tmp_path: Path) -> None:
     (tmp_path / "test_robot.py").write_text(PROGRAM.format(schema=MATTY))
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "protogen.link.pytest_plugin"]
+    (tmp_path / "conftest.py").write_text('pytest_plugins = ["protogen.link.pytest_plugin"]\n')
+    command = [sys.executable, "-m", "pytest", "-q"]
     done = subprocess.run(
         [*command, "test_robot.py"], cwd=tmp_path, capture_output=True, text=True, check=False
     )
