@@ -16,7 +16,7 @@ from protogen.targets.html.script import bundled
 from protogen.targets.html.search import entries
 from protogen.targets.html.shell import PACKAGE, data, printed
 from protogen.targets.output import File
-from protogen.targets.typescript.emit import emit as emit_typescript
+from protogen.targets.typescript.emit import codecs
 
 _BUILT = PurePosixPath("dist")
 
@@ -55,7 +55,7 @@ def _script(protocol: Protocol) -> str | None:
     Then there is the reference alone.
     """
     try:
-        printed_codec = emit_typescript([protocol])
+        printed_codec = codecs([protocol])
     except UserError:
         return None
     modules = dict(_page_modules())
