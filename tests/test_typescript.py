@@ -120,15 +120,22 @@ def run_program(text: str) -> Any:
     head = 'import * as matty from "./dist/matty.js";\n'
     path = installed() / "program.mjs"
     path.write_text(head + text, encoding="utf-8")
-    done = subprocess.run(
-        [require_tool("node"), path], capture_output=True, text=True, check=False, timeout=60
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    found = [engine.run_node(program, path) for program in engine.programs()]
+    assert found[1:] == found[:1], "versions of node differ"
+    return json.loads(found[0])
 
 
 GO = "55 06 56 AA 47 64 00 AB FF 50"
 """`go` with counter 0x55, speed 100 and steer -85: the counter is escaped as 56 AA."""
+
+
+class TestNode:
+    def test_of_npm_is_the_oldest_that_is_maintained(self) -> None:
+        """All that is tried in node is tried in this one as well as in the system's."""
+        version = engine.run_node(engine.require_npm("node"), "--version")
+        assert version.startswith("v22.")
+        package = json.loads((installed() / "package.json").read_text(encoding="utf-8"))
+        assert package["engines"] == {"node": ">=20"}
 
 
 class TestCalls:

@@ -6,17 +6,14 @@ A browser lists devices, never a pseudo-terminal: `typescript/fake_serial.js` st
 from __future__ import annotations
 
 import re
-import threading
 from collections import Counter
 from collections.abc import Callable, Iterator
-from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from random import Random
 from typing import Any
 
 import pytest
 import typescript_engine as engine
-from browser_pages import AXE, chromium
+from browser_pages import AXE, chromium, served
 from compiled import ROOT, module_at, protocol_of
 from corpus import material_of, portions, stream_of
 from tooling import unavailable
@@ -35,13 +32,6 @@ STATUS = bytes.fromhex("55 14 10 49 01 02 5C 1C 7B 00 00 00 00 00 65 00 17 00 DD
 ACK = bytes.fromhex("55 02 01 41 BC")
 BAD = bytes.fromhex("55 02 01 41 BD")
 """An `ack` with a wrong checksum."""
-
-
-class Quiet(SimpleHTTPRequestHandler):
-    """Serves files, and says nothing about it."""
-
-    def log_message(self, *_: Any) -> None:
-        pass
 
 
 class Live:
@@ -124,11 +114,8 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The address of the package, which any server of files can be."""
     folder = tmp_path_factory.mktemp("package")
     engine.write_package([protocol_of(path) for path in PATHS.values()], folder)
-    handler = partial(Quiet, directory=str(folder))
-    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as found:
-        threading.Thread(target=found.serve_forever, daemon=True).start()
-        yield f"http://localhost:{found.server_port}/examples/web-serial/"
-        found.shutdown()
+    with served(folder) as address:
+        yield f"{address}/examples/web-serial/"
 
 
 Opener = Callable[..., Live]
