@@ -121,15 +121,15 @@ def check_cases(path: Path, some: list[Case]) -> None:
         sender = protocol.sender(case.sender)
         values = module.MESSAGES[case.message].from_dict(case.values).to_dict()
         message = engine.message_of(protocol, case.message, values)
-        asked = {"message": message, "parts": marked(case.parts), "form": sender.form or None}
-        requests.append(_lean({**asked, "sender": sender.endpoint}))
+        parts = marked(case.parts)
+        requests.append({"message": message, "parts": parts, "sender": sender.name})
         try:
             frame = python.frame(case.sender, case.message, case.values, case.parts)
         except Refused:
             due.append((case, "refused", None))
             continue
         received = {"sender": sender.endpoint, "told": told_of(sender, case, frame)}
-        requests.append({"frame": frame.hex(), **received})
+        requests.append({"frame": frame.hex(), **received, "sender": sender.name})
         requests.append({"steps": [frame.hex(), None], **received})
         events = engine.python_events(module, steps=[frame, None], **received)
         (event,) = (event for step in events for event in step)
@@ -147,10 +147,6 @@ def check_cases(path: Path, some: list[Case]) -> None:
             assert not engine.first_difference(lines, expected), case
         else:
             assert answer == {"found": expected}, (case, what)
-
-
-def _lean(request: dict[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in request.items() if value is not None}
 
 
 def made(path: Path, sender: str, message: dict[str, Any], parts: dict[str, Any]) -> Any:
