@@ -6,6 +6,7 @@ A browser lists devices, never a pseudo-terminal: `typescript/fake_serial.js` st
 from __future__ import annotations
 
 import re
+import socket
 from collections import Counter
 from collections.abc import Callable, Iterator
 from random import Random
@@ -18,6 +19,7 @@ from compiled import ROOT, module_at, protocol_of
 from corpus import material_of, portions, stream_of
 from tooling import unavailable
 
+from protogen.link.device import SimulatedDevice
 from protogen.targets.web_serial.emit import example
 
 FAKE = ROOT / "tests" / "typescript" / "fake_serial.js"
@@ -278,6 +280,32 @@ class TestSend:
         assert page.run("() => fake.port.written") == []
         page.page.fill('[data-key="speed"]', "4")
         assert page.text(wrong) == ""
+
+
+class TestSimulator:
+    def test_sends_to_the_page_and_answers_it(self, opened: Opener) -> None:
+        """A simulated robot, whose bytes the test carries to the page and back."""
+        page = opened("matty", "esp")
+        page.connect()
+        robot = SimulatedDevice(PATHS["matty"], "esp", address="listen://127.0.0.1:0")
+        robot.on("go", lambda event: [(robot.messages["ack"](), {"counter": event.parts.counter})])
+        with robot:
+            host, number = robot.port.rpartition("//")[2].split(":")
+            with socket.create_connection((host, int(number)), timeout=10) as line:
+                values = module_at(PATHS["matty"]).decode(STATUS, sender="esp").to_dict()
+                status = robot.messages["status"].from_dict(values)
+                for counter in range(3):
+                    robot.send(status, counter=counter)
+                    page.feed(line.recv(100))
+                page.page.select_option("#message", "go")
+                line.sendall(page.send())
+                page.feed(line.recv(100))
+        assert [row[:3] for row in page.rows("messages")] == [
+            ["status", "esp", "3"],
+            ["ack", "esp", "1"],
+        ]
+        assert page.rows("invalid") == []
+        assert robot.counts.received == {"go": 1}
 
 
 class TestPort:
