@@ -40,6 +40,7 @@ THINNED = (
     "test_round_trips.py",
     "test_runtime_decoder.py",
     "test_struct_sizes.py",
+    "test_typescript_browser.py",
     "test_typescript_streams.py",
 )
 """Files of which only the tests of the kept schemas are selected, and those of no schema."""

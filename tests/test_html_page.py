@@ -205,7 +205,7 @@ class TestText:
         def refuse(_: object) -> None:
             raise UserError("no codec")
 
-        monkeypatch.setattr("protogen.targets.html.bench.emit_typescript", refuse)
+        monkeypatch.setattr("protogen.targets.html.bench.codecs", refuse)
         page = page_text(codecs["dagny"].protocol)
         assert "<script" not in page
         assert "script-src" not in page

@@ -127,11 +127,9 @@ def run_program(text: str) -> Any:
     head = 'import * as matty from "./dist/matty.js";\n'
     path = installed() / "program.mjs"
     path.write_text(head + text, encoding="utf-8")
-    done = subprocess.run(
-        [require_tool("node"), path], capture_output=True, text=True, check=False, timeout=60
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    found = [engine.run_node(program, path) for program in engine.programs()]
+    assert found[1:] == found[:1], "versions of node differ"
+    return json.loads(found[0])
 
 
 GO = "55 06 56 AA 47 64 00 AB FF 50"
@@ -160,6 +158,15 @@ messages:
   ping: {id: 1, from: a}
   pong: {id: 1, from: b}
 """
+
+
+class TestNode:
+    def test_of_npm_is_the_oldest_that_is_maintained(self) -> None:
+        """All that is tried in node is tried in this one as well as in the system's."""
+        version = engine.run_node(engine.require_npm("node"), "--version")
+        assert version.startswith("v22.")
+        package = json.loads((installed() / "package.json").read_text(encoding="utf-8"))
+        assert package["engines"] == {"node": ">=20"}
 
 
 class TestCalls:
@@ -291,3 +298,80 @@ class TestCalls:
         """)
         assert found[0] <= 250  # The greatest frame.
         assert found[1] == 800
+
+
+ACK = "55 02 01 41 BC"
+"""An `ack` of the ESP."""
+SOURCE = f"""
+    const ack = Uint8Array.from(Buffer.from("{ACK.replace(" ", "")}", "hex"));
+    const three = Uint8Array.from([...ack, ...ack, ...ack]);
+    const seen = [];
+    let pulls = 0;
+    const stream = (last) => new ReadableStream({{
+        pull(controller) {{
+            pulls += 1;
+            if (pulls <= 3) controller.enqueue(three);
+            else if (last === "error") controller.error(new Error("the device is gone"));
+            else controller.enqueue(three);
+        }},
+        cancel(reason) {{ seen.push(`cancelled: ${{reason}}`); }},
+    }}, {{ highWaterMark: 0 }});
+    const turn = () => new Promise((done) => setTimeout(done, 5));
+"""
+"""Chunks of three frames each, without an end or up to an error."""
+
+
+class TestStreams:
+    def test_take_no_more_than_is_read(self) -> None:
+        found = run_program(f"""{SOURCE}
+            const reader = stream("").pipeThrough(matty.decoderStream("esp")).getReader();
+            const counts = [];
+            for (let turns = 0; turns < 8; turns++) {{
+                await turn();
+                counts.push(pulls);
+                await reader.read();
+            }}
+            console.log(JSON.stringify(counts));
+        """)
+        # A chunk waits in front of the decoder, and the events of one behind it.
+        assert all(count <= 2 + number // 3 for number, count in enumerate(found))
+
+    def test_that_are_cancelled_cancel_their_source(self) -> None:
+        found = run_program(f"""{SOURCE}
+            const reader = stream("").pipeThrough(matty.decoderStream("esp")).getReader();
+            await reader.read();
+            await reader.cancel("enough");
+            await turn();
+            async function* chunks() {{
+                try {{
+                    for (;;) yield three;
+                }} finally {{
+                    seen.push("closed");
+                }}
+            }}
+            for await (const event of matty.events(chunks(), "esp")) {{
+                seen.push(event.message.message);
+                break;
+            }}
+            console.log(JSON.stringify(seen));
+        """)
+        assert found == ["cancelled: enough", "ack", "closed"]
+
+    def test_hand_on_what_their_source_says_is_wrong(self) -> None:
+        """An iterator gives all events in front of the error; streams may drop some."""
+        found = run_program(f"""{SOURCE}
+            const told = async (events) => {{
+                let count = 0;
+                try {{
+                    for await (const event of events) count += event.kind === "message";
+                }} catch (error) {{
+                    return [count, error.message];
+                }}
+            }};
+            seen.push(await told(matty.events(stream("error"), "esp")));
+            pulls = 0;
+            const reader = stream("error").pipeThrough(matty.decoderStream("esp"));
+            seen.push((await told(reader))[1]);
+            console.log(JSON.stringify(seen));
+        """)
+        assert found == [[9, "the device is gone"], "the device is gone"]

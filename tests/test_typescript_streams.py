@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+from collections.abc import Mapping
 from itertools import islice
 from pathlib import Path
 from random import Random
@@ -14,9 +16,9 @@ from compiled import DIALECTS, DOCUMENTS, FRAMINGS, ROOT, module_at, name_of, pr
 from corpus import material_of, portions, single_bytes, stream_of
 from vectors import VectorFile, read_vectors, vector_files
 
-from protogen.fuzzing.samples import boundary_rounds, samples
-from protogen.runtime.attributes import arguments
-from protogen.runtime.errors import EncodeError
+from protogen.fuzzing.engine import Refused
+from protogen.fuzzing.python_engine import PythonEngine
+from protogen.fuzzing.trips import Case, cases, told_of
 
 FOLDERS = ("c_schemas", "stuffed_schemas", "form_schemas", "told_schemas")
 OTHERS = [path for name in FOLDERS for path in sorted((ROOT / "tests" / name).glob("*.yaml"))]
@@ -27,8 +29,10 @@ FILES = [read_vectors(path) for path in vector_files()]
 
 STREAMS = int(os.environ.get("PROTOGEN_TYPESCRIPT_STREAMS", "40"))
 """Streams of each sender of the documents. With 10,000, there are 100,000 of all of them."""
-FEW = 12
-"""Messages that are tried of a sender in the library."""
+MANY = 60
+"""Messages of a schema in the library of which there are streams."""
+AT_ONCE = 500
+"""Cases that node is asked about at once."""
 
 of_schema = pytest.mark.parametrize("path", SCHEMAS, ids=name_of)
 of_library = pytest.mark.parametrize("path", LIBRARY, ids=name_of)
@@ -60,14 +64,12 @@ def test_a_part_that_differs_from_the_field_is_an_error_with_its_name() -> None:
     assert answer == {"path": "id", "problem": "is 130, as the message says, and not 129"}
 
 
-@of_schema
-def test_samples_of_all_messages_are_encoded_alike(path: Path) -> None:
-    check_samples(path, most=6)
-
-
-@of_library
-def test_samples_of_the_library_are_encoded_alike(path: Path) -> None:
-    check_samples(path, most=1, messages=FEW)
+@pytest.mark.parametrize("path", ALL, ids=name_of)
+def test_cases_of_the_fuzzer_give_the_same_frames_and_events(path: Path) -> None:
+    """What `protogen fuzz --examples 1` tries: all boundaries of all values."""
+    found = cases(protocol_of(path), 1, 15)
+    while some := list(islice(found, AT_ONCE)):
+        check_cases(path, some)
 
 
 @of_schema
@@ -77,7 +79,7 @@ def test_damaged_streams_are_cut_alike(path: Path) -> None:
 
 @of_library
 def test_damaged_streams_of_the_library_are_cut_alike(path: Path) -> None:
-    if len(protocol_of(path).messages) <= 5 * FEW:  # Else it takes long to make their frames.
+    if len(protocol_of(path).messages) <= MANY:  # Else it takes long to make their frames.
         check_streams(path, seeds=range(1))
 
 
@@ -109,35 +111,54 @@ def check_events(path: Path, sender: str, steps: engine.Steps) -> None:
         pytest.fail(difference, pytrace=False)
 
 
-def check_samples(path: Path, most: int, messages: int = 1000) -> None:
+def check_cases(path: Path, some: list[Case]) -> None:
+    """Each case gives the frame of Python, or none, and the frame its message and its events."""
     protocol, module = protocol_of(path), module_at(path)
-    for sender in protocol.senders:
-        for item in sender.messages[:: 1 + len(sender.messages) // messages]:
-            usual = samples(item, sender.frame, Random(f"{sender.name} {item.name}"))
-            rounds = min(most, boundary_rounds(item, sender.frame)) + 1
-            for values, parts in islice(usual, rounds):
-                record = module.MESSAGES[item.name].from_dict(values)
-                message = engine.message_of(protocol, item.name, record.to_dict())
-                try:
-                    frame = module.encode(record, sender.name, **arguments(parts))
-                except EncodeError:
-                    assert isinstance(made(path, sender.name, message, parts), dict)
-                    continue
-                assert made(path, sender.name, message, parts) == frame.hex(), values
-                told = sender.plan.told_before(item, parts, len(frame))
-                answer = engine.node().ask(
-                    engine.module_at(path), frame=frame.hex(), sender=sender.name, told=told
-                )
-                assert answer == {"found": None}, values
+    python = PythonEngine(module.PROTOCOL, module.encode)
+    requests: list[dict[str, Any]] = []
+    due: list[Any] = []
+    for case in some:
+        sender = protocol.sender(case.sender)
+        values = module.MESSAGES[case.message].from_dict(case.values).to_dict()
+        message = engine.message_of(protocol, case.message, values)
+        parts = marked(case.parts)
+        requests.append({"message": message, "parts": parts, "sender": sender.name})
+        try:
+            frame = python.frame(case.sender, case.message, case.values, case.parts)
+        except Refused:
+            due.append((case, "refused", None))
+            continue
+        received = {"sender": sender.endpoint, "told": told_of(sender, case, frame)}
+        requests.append({"frame": frame.hex(), **received, "sender": sender.name})
+        requests.append({"steps": [frame.hex(), None], **received})
+        events = engine.python_events(module, steps=[frame, None], **received)
+        (event,) = (event for step in events for event in step)
+        due += [
+            (case, "frame", frame.hex()),
+            (case, event["event"], None),
+            (case, "events", events),
+        ]
+    answers = engine.node().ask(engine.module_at(path), several=requests)
+    for (case, what, expected), answer in zip(due, answers, strict=True):
+        if what in ("refused", "unknown"):
+            assert "problem" in answer, case
+        elif what == "events":
+            lines = [[json.loads(line) for line in step] for step in answer]
+            assert not engine.first_difference(lines, expected), case
+        else:
+            assert answer == {"found": expected}, (case, what)
 
 
 def made(path: Path, sender: str, message: dict[str, Any], parts: dict[str, Any]) -> Any:
     """The frame that TypeScript makes, as digits, or its error."""
-    big = {name: {"$big": str(it)} if is_big(it) else it for name, it in parts.items()}
-    request = {"message": message, "sender": sender, "parts": big, "strict": False}
+    request = {"message": message, "sender": sender, "parts": marked(parts), "strict": False}
     answer = engine.node().ask(engine.module_at(path), **request)
     return answer.get("found", answer)
 
 
-def is_big(value: Any) -> bool:
-    return isinstance(value, int) and value >= 1 << 53
+def marked(parts: Mapping[str, Any]) -> dict[str, Any]:
+    """Parts for a request, which says what is a bigint."""
+    return {
+        name: {"$big": str(value)} if isinstance(value, int) and value >= 1 << 53 else value
+        for name, value in parts.items()
+    }

@@ -31,7 +31,8 @@ from protogen.model.payload_plan import (
 from protogen.model.payload_walks import said
 from protogen.model.protocol import Protocol
 from protogen.model.types import Octets
-from protogen.targets.typescript.emit import emit
+from protogen.targets.output import File
+from protogen.targets.typescript.emit import codecs, emit
 from protogen.targets.typescript.names import names_of
 
 DRIVER = Path(__file__).with_name("typescript") / "driver.mjs"
@@ -57,46 +58,76 @@ def run_tool(name: str, *arguments: str | Path, folder: Path) -> str:
     return done.stdout
 
 
+def programs() -> list[str | Path]:
+    """The system's node, and that of npm: the oldest one that its makers maintain."""
+    return [require_tool("node"), require_npm("node")]
+
+
+def run_node(program: str | Path, *arguments: str | Path) -> str:
+    """What a program in node prints."""
+    command = [program, *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
 class Node:
-    """A process of node, which takes requests one by one."""
+    """A process of each node, which take requests one by one and have to give the same answers."""
 
     def __init__(self) -> None:
-        self._process = subprocess.Popen(
-            [require_tool("node"), DRIVER],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-            encoding="utf-8",
-        )
-        atexit.register(self._process.kill)
+        self._processes = [
+            subprocess.Popen(
+                [program, DRIVER],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+                encoding="utf-8",
+            )
+            for program in programs()
+        ]
+        for process in self._processes:
+            atexit.register(process.kill)
 
     def ask(self, module: Path, **request: Any) -> Any:
         """The answer to a request about a module."""
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        self._process.stdin.write(json.dumps({"module": str(module), **request}) + "\n")
-        self._process.stdin.flush()
-        answer = json.loads(self._process.stdout.readline())
+        text = json.dumps({"module": str(module), **request}) + "\n"
+        for process in self._processes:
+            assert process.stdin is not None
+            process.stdin.write(text)
+            process.stdin.flush()
+        first, *others = map(_line, self._processes)
+        assert others == [first] * len(others), "versions of node differ"
+        answer = json.loads(first)
         assert "error" not in answer, answer["error"]
         return answer["answer"]
 
 
+def _line(process: subprocess.Popen[str]) -> str:
+    assert process.stdout is not None
+    return process.stdout.readline()
+
+
 @cache
 def node() -> Node:
-    """The process of these tests."""
+    """The processes of these tests."""
     return Node()
 
 
 @cache
-def _folder() -> Path:
+def modules() -> Path:
+    """The folder of all modules that were printed here."""
     made = TemporaryDirectory(prefix="protogen-typescript-")
     atexit.register(made.cleanup)
     return Path(made.name)
 
 
 def write_package(protocols: Sequence[Protocol], folder: Path) -> None:
-    """Write the files of a package."""
-    for file in emit(protocols):
+    """Write a package."""
+    _write(emit(protocols), folder)
+
+
+def _write(files: Iterable[File], folder: Path) -> None:
+    for file in files:
         path = folder / file.path
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(file.bytes)
@@ -104,9 +135,9 @@ def write_package(protocols: Sequence[Protocol], folder: Path) -> None:
 
 def module_of(protocol: Protocol) -> Path:
     """The JavaScript of a protocol, printed now."""
-    folder = _folder() / protocol.spec_hash / protocol.name
+    folder = modules() / protocol.spec_hash / protocol.name
     if not folder.exists():
-        write_package([protocol], folder)
+        _write(codecs([protocol]), folder)
     return folder / "dist" / f"{names_of(protocol).file}.js"
 
 

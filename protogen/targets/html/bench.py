@@ -11,7 +11,7 @@ from protogen.errors import UserError
 from protogen.model.protocol import Protocol
 from protogen.targets.html.script import bundled
 from protogen.targets.html.shell import PACKAGE
-from protogen.targets.typescript.emit import emit as emit_typescript
+from protogen.targets.typescript.emit import codecs
 
 _BUILT = PurePosixPath("dist")
 _RUNTIME = "./runtime/"
@@ -50,7 +50,7 @@ def comparison_script(versions: Sequence[tuple[Protocol, Protocol]]) -> str:
 def _codec(protocol: Protocol, name: str) -> Modules | None:
     """The codec as a module of that name, and the runtime; None if there is no codec."""
     try:
-        printed = emit_typescript([protocol])
+        printed = codecs([protocol])
     except UserError:
         return None
     modules: Modules = {}

@@ -14,6 +14,7 @@ from protogen.targets.output import File
 from protogen.targets.printing import environment
 from protogen.targets.typescript.module import Module
 from protogen.targets.typescript.names import names_of
+from protogen.targets.web_serial.emit import example
 from protogen.version import VERSION
 
 _PACKAGE = "protogen.targets.typescript"
@@ -24,8 +25,11 @@ _SOURCES, _BUILT = PurePosixPath("src"), PurePosixPath("dist")
 
 def emit(protocols: Sequence[Protocol]) -> tuple[File, ...]:
     """The files of the package."""
-    if not protocols:
-        return ()
+    return (*codecs(protocols), *example(protocols)) if protocols else ()
+
+
+def codecs(protocols: Sequence[Protocol]) -> tuple[File, ...]:
+    """The package without its example."""
     names = sorted(names_of(protocol).file for protocol in protocols)
     text = (
         environment(_PACKAGE).get_template("package.json.j2").render(names=names, version=VERSION)

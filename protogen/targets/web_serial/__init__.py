@@ -1,0 +1,1 @@
+"""The example of the TypeScript package: a page that speaks to a device by Web Serial."""
