@@ -273,7 +273,8 @@ class _Plans:
         )
 
     def _steps(self, steps: Iterable[AnyStep], record: str, fields: Sequence[Field]) -> list[Json]:
-        computes = computed(fields)
+        # The codec works out no size of a region: that number is given like others.
+        computes = {name for name, item in computed(fields).items() if not item.is_region}
         return [
             self._step(step, record) | ({"computed": True} if step.name in computes else {})
             for step in steps
