@@ -2,7 +2,7 @@
 import { by, copyButton, h, options, show } from "./dom.js";
 import { Form, partField } from "./form.js";
 import { hexDigits, hexOf } from "./octets.js";
-import { firstRecord, jsonOf, keyOf } from "./values.js";
+import { asNumber, firstRecord, jsonOf, keyOf } from "./values.js";
 
 export class EncodeView {
   /** `onChange(message, sender, bytes)` and `event(event)`, which shows one. */
@@ -46,7 +46,7 @@ export class EncodeView {
 
   /** Show the message of a frame; false: it is none. */
   load(name, sender, bytes) {
-    const [event] = this.explainer.events(bytes, sender);
+    const [event] = this.explainer.events(bytes, sender, this.toldOf(name));
     if (event?.kind !== "message" || event.message.message !== name) return false;
     this.take(name, this.explainer.senderOf(event), this.stateOf(event));
     return true;
@@ -56,7 +56,7 @@ export class EncodeView {
     for (const item of this.explainer.plans.examples ?? []) {
       if (item.message !== name || item.sender !== side.endpoint) continue;
       const bytes = Uint8Array.from(item.hex.match(/../g) ?? [], (digits) => parseInt(digits, 16));
-      const [event] = this.explainer.events(bytes, side.endpoint);
+      const [event] = this.explainer.events(bytes, side.endpoint, this.toldOf(name));
       if (event?.kind !== "message" || event.message.message !== name) continue;
       if (this.explainer.senderOf(event) === side) return this.stateOf(event);
     }
@@ -71,6 +71,19 @@ export class EncodeView {
     return { values: event.message, parts };
   }
 
+  /** What a receiver of the message has to be told: identities that no byte says. */
+  toldOf(name) {
+    const found = {};
+    for (const side of this.sidesOf(name)) {
+      const told = side.parts.filter((part) => part.kind === "told" && !part.isLength);
+      for (const { name: own } of told) {
+        const runs = this.explainer.plans.messages[name].identities?.[side.identity.indexOf(own)];
+        if (runs) [[found[own]]] = runs;
+      }
+    }
+    return found;
+  }
+
   /** Show values of a message that goes out in a form of frame. */
   take(name, side, { values, parts }) {
     const sides = this.sidesOf(name);
@@ -83,8 +96,15 @@ export class EncodeView {
     for (const step of this.message.steps) if (step.computed) delete values[keyOf(step)];
     this.given = side.given.filter((part) => this.isChosen(part));
     this.parts = {};
-    for (const part of this.given) this.parts[part.name] = parts[part.name] ?? part.default ?? undefined;
+    for (const part of this.given) this.parts[part.name] = parts[part.name] ?? this.firstOf(part);
     this.draw();
+  }
+
+  /** What a part is at first; undefined for a text, which nobody knows. */
+  firstOf(part) {
+    if (part.default !== undefined || part.type.isText) return part.default;
+    const runs = part.kind === "identity" ? this.message.identities[this.side.identity.indexOf(part.name)] : [[part.least]];
+    return asNumber(part.type, BigInt(runs[0][0]));
   }
 
   /** True for a part that callers give in frames of the message: of identities, one of several. */
@@ -165,7 +185,7 @@ export class EncodeView {
       copyButton(name, () => text),
       h("code", {}, text),
     ]);
-    const [event] = this.explainer.events(bytes, this.side.endpoint);
+    const [event] = this.explainer.events(bytes, this.side.endpoint, this.toldOf(this.values.message));
     show(by("made"), h("div", { className: "copies" }, copies), event ? this.shown(event, null) : "");
   }
 
