@@ -35,6 +35,10 @@ TIMED = """() => {
         requestAnimationFrame(() => setTimeout(() => taken.push(performance.now() - timeStamp)));
     }, true);
 }"""
+WAIT = """(count) => new Promise((done) => {
+    const look = () => taken.length < count ? setTimeout(look, 5) : done();
+    look();
+})"""
 PAINT = """() => ({
     paint: performance.getEntriesByName("first-contentful-paint")[0]?.startTime ?? 0,
     load: performance.getEntriesByType("navigation")[0].domComplete,
@@ -129,7 +133,7 @@ def run(browser: Any, path: Path) -> Taken:
         for key in word:
             page.keyboard.type(key)
             count += 1
-            page.wait_for_function("count => taken.length === count", arg=count)
+            page.evaluate(WAIT, count)
     keys = page.evaluate("taken")
     context.close()
     return Taken(times["paint"], times["load"], keys)

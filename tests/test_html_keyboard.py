@@ -16,7 +16,7 @@ from protogen.compiler import compile_file
 ROOT = Path(__file__).parents[1]
 MATTY = ROOT / "schemas" / "matty.yaml"
 ACK = "55 02 01 41 BC"
-_FOCUSED = "document.activeElement.id || document.activeElement.dataset.key || ''"
+_FOCUSED = "document.activeElement.dataset.key || document.activeElement.id"
 
 
 @pytest.fixture(scope="module")

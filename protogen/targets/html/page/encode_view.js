@@ -46,7 +46,7 @@ export class EncodeView {
 
   /** Show the message of a frame; false: it is none. */
   load(name, sender, bytes) {
-    const [event] = this.explainer.events(bytes, sender, this.toldOf(name));
+    const [event] = this.explainer.events(bytes, sender, this.toldOf(name, bytes.length));
     if (event?.kind !== "message" || event.message.message !== name) return false;
     this.take(name, this.explainer.senderOf(event), this.stateOf(event));
     return true;
@@ -56,7 +56,7 @@ export class EncodeView {
     for (const item of this.explainer.plans.examples ?? []) {
       if (item.message !== name || item.sender !== side.endpoint) continue;
       const bytes = Uint8Array.from(item.hex.match(/../g) ?? [], (digits) => parseInt(digits, 16));
-      const [event] = this.explainer.events(bytes, side.endpoint, this.toldOf(name));
+      const [event] = this.explainer.events(bytes, side.endpoint, this.toldOf(name, bytes.length));
       if (event?.kind !== "message" || event.message.message !== name) continue;
       if (this.explainer.senderOf(event) === side) return this.stateOf(event);
     }
@@ -71,12 +71,16 @@ export class EncodeView {
     return { values: event.message, parts };
   }
 
-  /** What a receiver of the message has to be told: identities that no byte says. */
-  toldOf(name) {
+  /** What a receiver of the message has to be told: identities and lengths that no byte says. */
+  toldOf(name, size) {
     const found = {};
     for (const side of this.sidesOf(name)) {
-      const told = side.parts.filter((part) => part.kind === "told" && !part.isLength);
-      for (const { name: own } of told) {
+      for (const { name: own, isLength } of side.parts.filter((part) => part.kind === "told")) {
+        if (isLength) {
+          const payload = size - side.around;
+          found[own] = side.length.base + (payload ? payload + side.length.optional : 0);
+          continue;
+        }
         const runs = this.explainer.plans.messages[name].identities?.[side.identity.indexOf(own)];
         if (runs) [[found[own]]] = runs;
       }
@@ -185,7 +189,7 @@ export class EncodeView {
       copyButton(name, () => text),
       h("code", {}, text),
     ]);
-    const [event] = this.explainer.events(bytes, this.side.endpoint, this.toldOf(this.values.message));
+    const [event] = this.explainer.events(bytes, this.side.endpoint, this.toldOf(this.values.message, bytes.length));
     show(by("made"), h("div", { className: "copies" }, copies), event ? this.shown(event, null) : "");
   }
 
