@@ -266,9 +266,7 @@ class _Plans:
                 "virtual": dict(message.virtual),
                 "cutSize": message.cut_size,
                 "canBeCut": message.can_be_cut,
-                "senders": list(message.senders),
                 "steps": self._steps(message.plan.steps, message.name, message.fields),
-                "about": message.summary,
             }
         )
 
