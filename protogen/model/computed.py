@@ -42,6 +42,11 @@ def computed(fields: Sequence[Field]) -> dict[str, Computed]:
     return found
 
 
+def counting(fields: Sequence[Field]) -> dict[str, Computed]:
+    """Those of `computed` that count, and for which no region has to be built first."""
+    return {name: item for name, item in computed(fields).items() if not item.is_region}
+
+
 def _preference(field: Field) -> tuple[bool, bool]:
     return field.region is not None, field.may_be_absent
 

@@ -85,11 +85,11 @@ def _members(
             raise UsageError(f"there is no field `{prefix}{name}`", hint)
     values: dict[str, Raw] = {}
     for step in steps:
+        bare = without_constant(held_step(step))
         if step.name in written:
-            bare = without_constant(held_step(step))
             value = _value(bare, written[step.name], prefix + step.name, scope)
             values[step.name] = scope[step.name] = value
-        elif isinstance(step, ChooseStep) and _is_empty(chosen_case(step, scope)):
+        elif isinstance(bare, ChooseStep) and _is_empty(chosen_case(bare, scope)):
             values[step.name] = None
         elif not isinstance(step, OptionalStep):
             scope[step.name] = _what_is_sent(step.field)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from protogen.model.computed import computed
+from protogen.model.computed import counting
 from protogen.model.expressions import plain_name
 from protogen.model.messages import Message
 from protogen.model.packing import FilledPacking, Packing
@@ -113,7 +113,7 @@ class PayloadFunction:
         """The value of a field: what is given, or what stands for it where nothing is."""
         if self._reads:
             return _NOTHING
-        names, counts = self._scope.names.records[record.name].fields, computed(record.fields)
+        names, counts = self._scope.names.records[record.name].fields, counting(record.fields)
         found = member(holder, names[step.name])
         if step.name in counts:
             item = counts[step.name]

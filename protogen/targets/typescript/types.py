@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from protogen.model.computed import computed
+from protogen.model.computed import counting
 from protogen.model.meanings import BitField, Enum, Flags
 from protogen.model.messages import Message
 from protogen.model.nesting import structs_in
@@ -74,7 +74,7 @@ def input_name(record: Struct | Message, names: Names) -> str:
 
 def _has_input(record: Struct | Message) -> bool:
     """True if an encoder takes less than a decoder gives."""
-    counts = computed(record.fields)
+    counts = counting(record.fields)
     return any(_may_be_left_out(field) or field.name in counts for field in record.fields) or any(
         _has_input(inner) for field in record.fields for inner in structs_in(field.type)
     )
@@ -96,7 +96,7 @@ def _record(
 
 def _members(item: Struct | Message, names: Names, kind: str) -> Iterator[str]:
     """The members of a record; of another kind than itself, of what an encoder takes for it."""
-    own, counts = names.records[item.name].fields, computed(item.fields)
+    own, counts = names.records[item.name].fields, counting(item.fields)
     for field in item.fields:
         name, type_, is_computed = (
             key(own[field.name]),

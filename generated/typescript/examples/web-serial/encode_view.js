@@ -2,7 +2,7 @@
 import { by, copyButton, h, options, show } from "./dom.js";
 import { Form, partField } from "./form.js";
 import { hexDigits, hexOf } from "./octets.js";
-import { firstRecord, jsonOf, keyOf } from "./values.js";
+import { asNumber, firstRecord, jsonOf, keyOf } from "./values.js";
 
 export class EncodeView {
   /** `onChange(message, sender, bytes)` and `event(event)`, which shows one. */
@@ -18,36 +18,47 @@ export class EncodeView {
     if (names.length) this.pick(names[0]);
   }
 
+  /** The form of a side's frames; undefined where it has only one. */
+  formOf({ endpoint, form }) {
+    const forms = this.explainer.plans.senders.filter((item) => item.endpoint === endpoint);
+    return forms.length > 1 ? form : undefined;
+  }
+
+  /** Who sends a message, in each form of frame that carries it. */
+  sidesOf(name) {
+    return this.explainer.plans.senders.filter((item) => item.messages.includes(name));
+  }
+
   /** Show a message with the values of its first example, or with zeros. */
   pick(name, sender) {
     const message = this.explainer.plans.messages[name];
-    if (!message) return;
-    const senders = message.senders ?? [];
-    const from = sender && senders.includes(sender) ? sender : senders[0];
-    by("message").value = name;
-    show(by("from"), options(senders.map((item) => [item, item]), from));
-    const example = this.example(name, from);
-    const first = () => ({ message: name, ...firstRecord(message.steps, this.explainer.plans.enums, () => undefined) });
-    this.take(name, from, example ?? { values: first(), parts: {} });
+    const sides = this.sidesOf(name);
+    if (!message || !sides.length) return;
+    const asked = sides.filter((item) => item.name === sender || item.endpoint === sender);
+    const open = asked.length ? asked : sides;
+    for (const side of open) {
+      const example = this.example(name, side);
+      if (example) return this.take(name, side, example);
+    }
+    const first = { message: name, ...firstRecord(message.steps, this.explainer.plans.enums, () => undefined) };
+    return this.take(name, open[0], { values: first, parts: {} });
   }
 
   /** Show the message of a frame; false: it is none. */
   load(name, sender, bytes) {
-    const [event] = this.explainer.events(bytes, sender);
+    const [event] = this.explainer.events(bytes, sender, this.toldOf(name, bytes.length));
     if (event?.kind !== "message" || event.message.message !== name) return false;
-    const { plans } = this.explainer;
-    show(by("from"), options((plans.messages[name].senders ?? []).map((item) => [item, item]), event.sender));
-    by("message").value = name;
-    this.take(name, event.sender, this.stateOf(event));
+    this.take(name, this.explainer.senderOf(event), this.stateOf(event));
     return true;
   }
 
-  example(name, sender) {
+  example(name, side) {
     for (const item of this.explainer.plans.examples ?? []) {
-      if (item.message !== name || item.sender !== sender) continue;
+      if (item.message !== name || item.sender !== side.endpoint) continue;
       const bytes = Uint8Array.from(item.hex.match(/../g) ?? [], (digits) => parseInt(digits, 16));
-      const [event] = this.explainer.events(bytes, sender);
-      if (event?.kind === "message" && event.message.message === name) return this.stateOf(event);
+      const [event] = this.explainer.events(bytes, side.endpoint, this.toldOf(name, bytes.length));
+      if (event?.kind !== "message" || event.message.message !== name) continue;
+      if (this.explainer.senderOf(event) === side) return this.stateOf(event);
     }
     return null;
   }
@@ -60,16 +71,50 @@ export class EncodeView {
     return { values: event.message, parts };
   }
 
-  take(name, sender, { values, parts }) {
-    const { plans } = this.explainer;
-    this.message = plans.messages[name];
-    this.sender = sender;
+  /** What a receiver of the message has to be told: identities and lengths that no byte says. */
+  toldOf(name, size) {
+    const found = {};
+    for (const side of this.sidesOf(name)) {
+      for (const { name: own, isLength } of side.parts.filter((part) => part.kind === "told")) {
+        if (isLength) {
+          const payload = size - side.around;
+          found[own] = side.length.base + (payload ? payload + side.length.optional : 0);
+          continue;
+        }
+        const runs = this.explainer.plans.messages[name].identities?.[side.identity.indexOf(own)];
+        if (runs) [[found[own]]] = runs;
+      }
+    }
+    return found;
+  }
+
+  /** Show values of a message that goes out in a form of frame. */
+  take(name, side, { values, parts }) {
+    const sides = this.sidesOf(name);
+    const text = (item) => [item.endpoint, this.formOf(item)].filter(Boolean).join(", ");
+    by("message").value = name;
+    show(by("from"), options(sides.map((item) => [item.name, text(item)]), side.name));
+    this.message = this.explainer.plans.messages[name];
+    this.side = side;
     this.values = values;
     for (const step of this.message.steps) if (step.computed) delete values[keyOf(step)];
-    this.given = plans.senders.find((item) => item.endpoint === sender && item.messages.includes(name)).given;
-    this.parts = { ...parts };
-    for (const part of this.given) this.parts[part.name] ??= part.default ?? undefined;
+    this.given = side.given.filter((part) => this.isChosen(part));
+    this.parts = {};
+    for (const part of this.given) this.parts[part.name] = parts[part.name] ?? this.firstOf(part);
     this.draw();
+  }
+
+  /** What a part is at first; undefined for a text, which nobody knows. */
+  firstOf(part) {
+    if (part.default !== undefined || part.type.isText) return part.default;
+    const runs = part.kind === "identity" ? this.message.identities[this.side.identity.indexOf(part.name)] : [[part.least]];
+    return asNumber(part.type, BigInt(runs[0][0]));
+  }
+
+  /** True for a part that callers give in frames of the message: of identities, one of several. */
+  isChosen(part) {
+    const runs = this.message.identities?.[this.side.identity.indexOf(part.name)];
+    return part.kind !== "identity" || runs.length > 1 || runs[0][0] !== runs[0][1];
   }
 
   /** Make the form, and leave the focus where it is. */
@@ -105,10 +150,14 @@ export class EncodeView {
     for (const item of by("fields").querySelectorAll('[aria-invalid="true"]')) item.removeAttribute("aria-invalid");
     by("fault").textContent = "";
     try {
-      const bytes = codec.encode(this.values, { sender: this.sender, parts: this.parts });
+      const bytes = codec.encode(this.values, {
+        sender: this.side.endpoint,
+        form: this.formOf(this.side),
+        parts: this.parts,
+      });
       this.bytes = bytes;
       this.result(bytes);
-      this.onChange(this.values.message, this.sender, hexOf(bytes));
+      this.onChange(this.values.message, this.side.name, hexOf(bytes));
     } catch (error) {
       if (!(error instanceof codec.EncodeError || error instanceof RangeError || error instanceof TypeError)) throw error;
       this.fail(error.path ?? "", error.problem ?? error.message);
@@ -140,7 +189,7 @@ export class EncodeView {
       copyButton(name, () => text),
       h("code", {}, text),
     ]);
-    const [event] = this.explainer.events(bytes, this.sender);
+    const [event] = this.explainer.events(bytes, this.side.endpoint, this.toldOf(this.values.message, bytes.length));
     show(by("made"), h("div", { className: "copies" }, copies), event ? this.shown(event, null) : "");
   }
 
@@ -155,7 +204,10 @@ export class EncodeView {
     const parts = this.given
       .filter((part) => this.parts[part.name] !== undefined)
       .map((part) => shell(`@${part.name}=${commandValue(this.parts[part.name])}`));
-    const several = (this.message.senders ?? []).length > 1 ? ["--sender", this.sender] : [];
+    const sides = this.sidesOf(this.values.message);
+    const { endpoint, form } = this.side;
+    const several = sides.some((item) => item.endpoint !== endpoint) ? ["--sender", endpoint] : [];
+    if (sides.filter((item) => item.endpoint === endpoint).length > 1) several.push("--form", form);
     return ["protogen encode", plans.schema, this.values.message, ...fields, ...parts, ...several].join(" ");
   }
 }

@@ -12,8 +12,9 @@ export class Explainer {
   }
 
   /** The events of bytes that an endpoint sent; without a name, all of them may have. */
-  events(bytes, endpoint) {
+  events(bytes, endpoint, told = {}) {
     const decoder = new this.codec.Decoder(endpoint || undefined);
+    decoder.tell(told);
     return [...decoder.feed(bytes), ...decoder.flush()];
   }
 

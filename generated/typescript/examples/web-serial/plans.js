@@ -33,6 +33,10 @@ export function resolved(plans) {
     for (const name of ["virtual", "messages", "given", "identity", "sums"]) sender[name] ??= [];
     for (const name of ["hidden", "further"]) sender[name] ??= {};
   }
+  for (const item of plans.examples ?? []) {
+    // An example of one form of frame names that; decoders are those of endpoints.
+    item.sender = plans.senders.find((it) => it.name === item.sender)?.endpoint ?? item.sender;
+  }
   for (const message of Object.values(plans.messages)) {
     message.steps ??= [];
     for (const item of message.steps) step(item);

@@ -91,14 +91,14 @@ export class Form {
   /** Many numbers in one text, as many as there are. */
   list(step, place, path) {
     const text = place.get().map((value) => rawText(step.element, value)).join(" ");
-    const field = h("textarea", { rows: 4, value: text, spellcheck: false });
+    const field = h("textarea", { rows: 4, value: text, spellcheck: false, "data-key": path });
     field.addEventListener("input", () => {
       const found = field.value.split(/[\s,]+/).filter(Boolean).map((item) => rawIn(step.element, item));
       const isWrong = found.includes(undefined);
       field.setAttribute("aria-invalid", String(isWrong));
-      if (isWrong) return;
+      if (isWrong) return this.onChange(false, `${path}: not all of these are its numbers`);
       place.set(found);
-      this.onChange(false);
+      return this.onChange(false);
     });
     return labelled(path, field, `${place.get().length} raw values`, true);
   }
@@ -196,14 +196,37 @@ const asRaw = (step, value) => (step.type.kind === "float" ? value : asBigInt(va
 function fits(step, value) {
   if (value === undefined) return false;
   if (!step) return value instanceof Uint8Array;
-  if (step.kind === "record") {
-    if (!step.steps?.length) return value === null;
-    return value !== null && typeof value === "object" && step.steps.every((it) => it.computed || keyOf(it) in value);
+  switch (step.kind) {
+    case "record":
+      if (!step.steps?.length) return value === null;
+      return value !== null && typeof value === "object" && hasMembers(step.steps, value);
+    case "repeat":
+      return Array.isArray(value) && value.every((item) => fits(step.element, item));
+    case "optional":
+      return value === null || fits(step.step, value);
+    case "region":
+    case "constant":
+      return fits(step.step, value);
+    case "choose":
+      return true; // Its own case is looked at when it is shown.
+    default:
+      return isOf(step.type, value);
   }
-  if (step.kind === "repeat") return Array.isArray(value);
-  const kinds = { text: "string", octets: "object", float: "number" };
-  const due = step.kind === "scalar" && kinds[step.type.kind];
-  return due ? typeof value === due : ["number", "bigint", "boolean"].includes(typeof value);
+}
+
+/** True if an object has the members of a record, and no others. */
+function hasMembers(steps, value) {
+  const keys = steps.map(keyOf);
+  if (!Object.keys(value).every((key) => keys.includes(key))) return false;
+  return steps.every((step) => step.computed || fits(step, value[keyOf(step)]));
+}
+
+/** True if a value is as the codec has those of a type. */
+function isOf(type, value) {
+  if (type.kind === "octets") return value instanceof Uint8Array;
+  if (type.kind === "text") return typeof value === "string";
+  if (type.kind === "integer" && type.role === "bool") return typeof value === "boolean";
+  return typeof value === (type.isBig ? "bigint" : "number");
 }
 
 function bitBox(name, bit, type, raw, control, path) {
@@ -253,7 +276,7 @@ export function partField(part, values, onChange) {
     const names = Object.entries(part.choices).map(([word, value]) => [String(value), word]);
     const menu = h("select", { "data-key": `@${part.name}` }, options(names, String(values[part.name] ?? "")));
     menu.addEventListener("change", () => {
-      values[part.name] = asNumber(type, BigInt(menu.value));
+      values[part.name] = type.isText ? menu.value : asNumber(type, BigInt(menu.value));
       onChange(false);
     });
     return labelled(part.name, menu, "one of several literals", false);

@@ -54,7 +54,7 @@ function restore() {
     const sender = state.get("s") ?? undefined;
     encode.pick(message, sender);
     const hex = (state.get("hex") ?? "").replace(/[^0-9A-Fa-f]/g, "");
-    if (hex) encode.load(message, encode.sender, fromHex(hex));
+    if (hex) encode.load(message, encode.side?.endpoint, fromHex(hex));
   }
   isRestoring = false;
   by("bench").scrollIntoView();

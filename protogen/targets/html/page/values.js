@@ -140,7 +140,8 @@ export function rawIn(step, text) {
   if (!found) return undefined;
   const raw = BigInt(found[2]) * (found[1] === "-" ? -1n : 1n);
   // What a number does not hold exactly is given as it is: the codec says what is wrong with it.
-  return type.role === "bool" ? raw !== 0n : asNumber(type, raw);
+  if (type.role === "bool") return raw === 0n || raw === 1n ? raw !== 0n : undefined;
+  return asNumber(type, raw);
 }
 
 /** The raw value nearest to a physical one; undefined: it is none. */
@@ -162,8 +163,11 @@ export function jsonOf(value) {
   if (value instanceof Uint8Array) return JSON.stringify(hexOf(value).replace(/ /g, "").toLowerCase());
   if (Array.isArray(value)) return `[${value.map(jsonOf).join(", ")}]`;
   if (typeof value === "bigint") return String(value);
+  if (Object.is(value, -0)) return "-0.0";
+  // Python's JSON has words for what is no finite number.
+  if (typeof value === "number" && !Number.isFinite(value)) return String(value);
   if (value !== null && typeof value === "object") {
-    const members = Object.entries(value).filter(([, item]) => item !== undefined);
+    const members = Object.entries(value).filter(([, item]) => item !== undefined && item !== null);
     return `{${members.map(([key, item]) => `${JSON.stringify(key.replace(/_+$/, ""))}: ${jsonOf(item)}`).join(", ")}}`;
   }
   return JSON.stringify(value ?? null);

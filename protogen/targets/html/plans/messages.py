@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import Any
 
-from protogen.model.computed import computed
+from protogen.model.computed import counting
 from protogen.model.identities import Identities
 from protogen.model.messages import Message
 from protogen.model.packing import FilledPacking
@@ -51,14 +51,12 @@ class MessagePlans:
                 "virtual": dict(message.virtual),
                 "cutSize": message.cut_size,
                 "canBeCut": message.can_be_cut,
-                "senders": list(message.senders),
                 "steps": self._steps(message.plan.steps, message.name, message.fields),
-                "about": message.summary,
             }
         )
 
     def _steps(self, steps: Iterable[AnyStep], record: str, fields: Sequence[Field]) -> list[Json]:
-        computes = computed(fields)
+        computes = counting(fields)
         return [
             self._step(step, record) | ({"computed": True} if step.name in computes else {})
             for step in steps
