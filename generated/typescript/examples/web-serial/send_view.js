@@ -27,8 +27,9 @@ export class SendView extends EncodeView {
   }
 
   others(name, listened) {
-    const senders = this.explainer.plans.messages[name].senders ?? [];
-    return senders.filter((sender) => sender !== listened);
+    const all = this.explainer.plans.senders.filter((item) => item.messages.includes(name));
+    const endpoints = new Set(all.map((item) => item.endpoint));
+    return [...endpoints].filter((endpoint) => endpoint !== listened);
   }
 
   result(bytes) {
