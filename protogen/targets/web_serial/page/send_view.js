@@ -54,14 +54,12 @@ export class SendView extends EncodeView {
   }
 
   /** Take values into the form; counters go on where the last frame of the sender left them. */
-  take(name, sender, { values, parts }) {
-    const { senders } = this.explainer.plans;
-    const { given } = senders.find((item) => item.endpoint === sender && item.messages.includes(name));
-    const counted = given.filter(isCounter).map((part) => {
+  take(name, side, { values, parts }) {
+    const counted = side.given.filter(isCounter).map((part) => {
       const first = part.default ?? asNumber(part.type, BigInt(part.least ?? 0));
-      return [part.name, this.next?.get(`${sender} ${part.name}`) ?? first];
+      return [part.name, this.next?.get(`${side.endpoint} ${part.name}`) ?? first];
     });
-    super.take(name, sender, { values, parts: { ...parts, ...Object.fromEntries(counted) } });
+    super.take(name, side, { values, parts: { ...parts, ...Object.fromEntries(counted) } });
   }
 
   /** Advance the frame's counters. */
@@ -71,7 +69,7 @@ export class SendView extends EncodeView {
       const value = asBigInt(this.parts[part.name]);
       const next = value >= BigInt(part.greatest) ? BigInt(part.least ?? 0) : value + 1n;
       this.parts[part.name] = asNumber(part.type, next);
-      this.next.set(`${this.sender} ${part.name}`, this.parts[part.name]);
+      this.next.set(`${this.side.endpoint} ${part.name}`, this.parts[part.name]);
     }
     if (counters.length) this.draw();
   }
