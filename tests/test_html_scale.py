@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import suppress
 from itertools import cycle, islice
@@ -25,6 +26,9 @@ from protogen.targets.html.emit import page_text
 ROOT = Path(__file__).parents[1]
 FOLDERS = ("schemas", "schemas/dialects", "tests/framings", "protogen/library")
 SCHEMAS = [path for folder in FOLDERS for path in sorted((ROOT / folder).glob("*.yaml"))]
+EDIT_ALL = os.environ.get("PROTOGEN_EDIT_ALL") == "1"
+EDITED = 12
+"""Messages of an endpoint whose values are edited; of our own schemas, that is all of them."""
 FRAMES = 100
 """Frames of each schema that are taken apart, or one of each message if these are more."""
 _TRIED = 100
@@ -91,6 +95,13 @@ def check_edits(opened: Opened, codec: Codec, sender: Sender, message: Message) 
     assert left == set(), f"{message.name}: no edit of these was tried"
 
 
+def spread(messages):
+    """Some of many messages, evenly; all where that is asked for, which takes half an hour."""
+    if EDIT_ALL or len(messages) <= EDITED:
+        return messages
+    return [messages[index * len(messages) // EDITED] for index in range(EDITED)]
+
+
 @pytest.mark.parametrize("path", SCHEMAS, ids=lambda path: path.stem)
 def test_the_bench_does_as_python_does(browser, tmp_path, path):
     codec = open_codec(path)
@@ -100,9 +111,9 @@ def test_the_bench_does_as_python_does(browser, tmp_path, path):
     with Opened(browser, page) as opened:
         check_tables(opened, codec, sent)
         for sender in codec.protocol.senders:
-            for message in sender.messages:
-                if sender.received_as(message.name) == message.name:
-                    check_edits(opened, codec, sender, message)
+            known = [item for item in sender.messages if sender.received_as(item.name) == item.name]
+            for message in spread(known):
+                check_edits(opened, codec, sender, message)
         assert opened.complaints == []
 
 
