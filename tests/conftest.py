@@ -18,7 +18,7 @@ settings.register_profile(
     "default", max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.register_profile(
-    "ci", settings.get_profile("default"), max_examples=50, derandomize=True, print_blob=True
+    "ci", settings.get_profile("default"), max_examples=30, derandomize=True, print_blob=True
 )
 settings.register_profile("thorough", settings.get_profile("default"), max_examples=5000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
