@@ -68,7 +68,9 @@ class _Verification:
         example: Example,
         problems: Problems,
     ) -> None:
-        self._frame = protocol.sender(example.sender).frame
+        sender = protocol.sender(example.sender)
+        self._frame = sender.frame
+        self._form = "" if sender.is_only_form else f" in form `{sender.form}`"
         self._sender = module.PROTOCOL.sender(example.sender)
         self._class = module.MESSAGES[message.name]
         self._received_as = protocol.sender(example.sender).received_as(message.name)
@@ -97,8 +99,10 @@ class _Verification:
             self._encodes(reading, wire)
 
     def _report(self, code: str, text: str) -> None:
-        where = f"`{self._example.name}` of `{self._message.name}`"
-        self._problems.add(code, self._example.span, f"{where}: {text}", self._made_hint())
+        where = f"`{self._example.name}` of `{self._message.name}`{self._form}"
+        other = "if it is a frame of another form, say `form:`" if self._form else None
+        hint = self._made_hint() or other
+        self._problems.add(code, self._example.span, f"{where}: {text}", hint)
 
     def _made_hint(self) -> str | None:
         """The frame that the values make, to be copied; None where they make none."""
