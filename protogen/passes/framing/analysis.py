@@ -35,7 +35,7 @@ from protogen.passes.framing.capacity import (
     payload_range,
     wire_limit,
 )
-from protogen.passes.framing.delimiters import delimiters_of, judge_delimiters
+from protogen.passes.framing.delimiters import Sent, delimiters_of, judge_delimiters
 from protogen.passes.framing.silences import character_time
 from protogen.passes.proofs import wire_sizes
 from protogen.passes.proofs.alphabets import payload_alphabet
@@ -56,7 +56,7 @@ def analyse_framing(context: Context, draft: Draft) -> None:
         for sender in draft.senders
         if sender in draft.frames
     ]
-    judge_delimiters(context, [(item.sender, item.frame, item.delimiters) for item in analyses])
+    judge_delimiters(context, [item.sent() for item in analyses])
     for analysis in analyses:
         analysis.others = [item for item in analyses if analysis.is_beside(item)]
         framing = analysis.framing()
@@ -94,6 +94,10 @@ class _Analysis:
         self._carried = payload_range(frame)
         self.others: Sequence[_Analysis] = ()
         """Other forms of the endpoint's frames."""
+
+    def sent(self) -> Sent:
+        """What tells whether the delimiters are protected."""
+        return Sent(self.sender, self.frame, self.delimiters, self._messages, self._payload)
 
     def is_beside(self, other: _Analysis) -> bool:
         """True if the other is another form of the same endpoint's frames."""
