@@ -305,3 +305,15 @@ def test_a_form_that_no_message_uses_changes_no_call(tmp_path: Path) -> None:
     assert demo.encode(message, form="short") == demo.PROTOCOL.encode(message, form="short")
     with pytest.raises(EncodeError, match="'long' is no form of frame for Note; there is short"):
         demo.encode(message, form="long")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_range_of_a_length_in_bits_tells_forms_apart(engine: Any) -> None:
+    module: Any = module_at(ROOT / "tests" / "form_schemas" / "ranges.yaml")
+    frames = [module.encode(module.Data(data=data)) for data in (b"", b"hello")]
+    assert [frame[:4].hex(" ") for frame in frames] == ["7e a0 05 01", "7e a0 0c 01"]
+    events = module.Decoder("board", engine).feed(b"".join(frames))
+    assert [(event.form, event.message.data) for event in events] == [
+        ("bare", b""),
+        ("full", b"hello"),
+    ]
