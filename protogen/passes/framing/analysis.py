@@ -33,6 +33,7 @@ from protogen.passes.framing.capacity import (
     amount,
     joined_words,
     payload_range,
+    unclear_behind_stuffing,
     wire_limit,
 )
 from protogen.passes.framing.delimiters import Sent, delimiters_of, judge_delimiters
@@ -270,13 +271,16 @@ class _Analysis:
             place = (*self._loc, transparency.first)
             self._context.error_at_key("PG149", place, f"{words} begins", hint)
             return True
-        rest = names[names.index(transparency.last) + 1 :]
-        tail = self.delimiters.tail
-        ends = {part.name for part in tail.parts} if tail is not None else set()
-        unclear = [name for name in rest if name not in ends]
+        unclear = unclear_behind_stuffing(self.frame)
         if unclear:
-            text = f"nothing tells where the stuffed parts end and `{unclear[0]}` begins"
-            self._context.error_at_key("PG149", (*self._loc, unclear[0]), text)
+            first, last = unclear[0], unclear[-1]
+            text = f"nothing tells where the stuffed parts end and `{first.name}` begins"
+            hint = f"stuff all up to `{last.name}`, or give the frame a length"
+            if isinstance(first, LiteralPart):
+                hint = (
+                    f"give the frame a length: `{first.name}` is no end, as `{last.name}` follows"
+                )
+            self._context.error_at_key("PG149", (*self._loc, first.name), text, hint)
         return bool(unclear)
 
     # -- results ------------------------------------------------------------------------------
