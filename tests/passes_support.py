@@ -19,12 +19,12 @@ byte_order: little
 """
 
 
-def compile_text(text: str) -> Compilation:
+def compile_text(text: str, *, examples: bool = False) -> Compilation:
     """Compile a schema that stands in no file."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "schema.yaml"
         path.write_text(text, encoding="utf-8")
-        return compile_file(path)
+        return compile_file(path, examples=examples)
 
 
 def protocol_of(text: str) -> Protocol:

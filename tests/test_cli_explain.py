@@ -50,6 +50,13 @@ def test_dump_of_a_frame() -> None:
     ]
 
 
+@pytest.mark.parametrize("given", [["55020141BC"], ["55", "02", "01"]])
+def test_bytes_without_hex_are_told_how_to_be_given(given: list[str]) -> None:
+    result = run("explain", MATTY, *given)
+    assert result.exit_code == 2
+    assert f"bytes are given as --hex '{' '.join(given)}'" in result.output
+
+
 def test_what_is_wrong_stands_beside_it() -> None:
     result = run("explain", MATTY, "--sender", "pc", "--hex", "00 55 02 01 53 00")
     lines = result.output.splitlines()

@@ -65,12 +65,39 @@ def test_a_layout_that_says_something_else_is_a_bug_and_not_written(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (folder / "wide.yaml").write_text(WIDE)
-    monkeypatch.setattr(formatting, "format_text", lambda text: text.replace("9600", "960"))
-    done = run("fmt", "wide.yaml")
+    (folder / "other.yaml").write_text(WIDE.replace("baud: 9600", "baud: 4800"))
+    format_text = formatting.format_text
+    monkeypatch.setattr(
+        formatting, "format_text", lambda text: format_text(text.replace("9600", "960"))
+    )
+    done = run("fmt", "wide.yaml", "other.yaml")
     assert done.exit_code == 70
     assert "this is a bug in protogen" in done.output
     assert "wide.yaml would mean something else" in done.output
     assert (folder / "wide.yaml").read_text() == WIDE
+    assert "laid out other.yaml\n" in done.output
+
+
+NAN = """protocol:   nan
+endpoints: {a: A}
+byte_order: big
+frame:
+  start: {literal: 0x75, unprotected: x}
+  payload: {}
+messages:
+  data:
+    from: a
+    fields: {z: float32, list: {type: float32, count: 2}}
+    examples: {n: {frame: {hex: 75 7FC00000 7FC00000 00000000}, values: {z: .nan, list: [.nan, 0]}}}
+decisions: {x: {question: q, document: d, choice: c, because: b}}
+"""
+
+
+def test_a_value_that_is_not_a_number_is_the_same_in_any_layout(folder: Path) -> None:
+    (folder / "nan.yaml").write_text(NAN)
+    done = run("fmt", "nan.yaml")
+    assert (done.exit_code, done.output) == (0, "laid out nan.yaml\n")
+    assert "protocol: nan\n" in (folder / "nan.yaml").read_text()
 
 
 class TestProject:

@@ -305,3 +305,50 @@ def test_a_form_that_no_message_uses_changes_no_call(tmp_path: Path) -> None:
     assert demo.encode(message, form="short") == demo.PROTOCOL.encode(message, form="short")
     with pytest.raises(EncodeError, match="'long' is no form of frame for Note; there is short"):
         demo.encode(message, form="long")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_range_of_a_length_in_bits_tells_forms_apart(engine: Any) -> None:
+    module: Any = module_at(ROOT / "tests" / "form_schemas" / "ranges.yaml")
+    frames = [module.encode(module.Data(data=data)) for data in (b"", b"hello")]
+    assert [frame[:4].hex(" ") for frame in frames] == ["7e a0 05 01", "7e a0 0c 01"]
+    events = module.Decoder("board", engine).feed(b"".join(frames))
+    assert [(event.form, event.message.data) for event in events] == [
+        ("bare", b""),
+        ("full", b"hello"),
+    ]
+
+
+BOTH_ENDS = """
+protocol: both_ends
+endpoints: {host: Host, camera: Camera}
+max_frame: 16
+frame:
+  host:
+    head: {type: uint8, bits: {mark: {bits: 4..7, const: 8}, number: 0..3}}
+    code: &code {type: uint7, code: {bits: 7}, id: true}
+    payload: {}
+    end: {literal: 0xFF}
+  camera:
+    head: {type: uint8, bits: {mark: {bits: 4..7, const: 9}, number: 0..3}}
+    code: *code
+    payload: {}
+    end: {literal: 0xFF}
+messages:
+  ask: {id: 1, from: host, fields: {x: {type: uint7, code: {bits: 7}}}}
+  answer: {id: 1, from: camera, fields: {x: {type: uint7, code: {bits: 7}}}}
+"""
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_unknown_identity_of_one_end_takes_in_a_frame_of_the_other(
+    engine: Any, tmp_path: Path
+) -> None:
+    path = tmp_path / "both_ends.yaml"
+    path.write_text(BOTH_ENDS)
+    module: Any = module_at(path)
+    damaged = bytes.fromhex("8D 14 67 6A") + bytes.fromhex("90 01 05 FF")
+    (event,) = module.Decoder(engine=engine).feed(damaged)
+    assert (event.kind, event.sender, event.raw) == ("unknown", "host", damaged)
+    noise, answer = module.Decoder("camera", engine).feed(damaged)
+    assert (noise.kind, answer.message) == ("invalid", module.Answer(x=5))

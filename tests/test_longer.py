@@ -15,6 +15,8 @@ from protogen.runtime.errors import DecodeError
 
 STATION = ROOT / "tests" / "framings" / "longer.yaml"
 ENGINES = ["fast", "construct"]
+CUT = "{longer: cut}"
+BOTH = "{trailing_zeros: trimmed, longer: cut}"
 LONGER = bytes.fromhex("D5 06 01 07 C0 00 DB FE 01 D5 69 97")
 """Wind with two bytes behind it."""
 
@@ -64,6 +66,57 @@ def test_what_is_left_is_no_fault(frame: bytes, left: str) -> None:
     ]
 
 
+# --- examples -----------------------------------------------------------------------------------
+
+NEWER = """\
+protocol: newer
+endpoints: {a: A}
+byte_order: big
+frame:
+  start:   {literal: 0x7E}
+  length:  {type: uint8, counts: payload}
+  number:  {type: uint8, counter: true}
+  payload: PAYLOAD
+  sum:     {type: uint8, algorithm: sum-8, covers: length..payload}
+transparency: {covers: length..sum, encoding: base16-upper, lenient: true}
+messages:
+  level:
+    from: a
+    fields: {level: uint8, angle: uint16}
+    examples:
+      newer: {frame: {hex: HEX}, values: {level: 5, angle: 258}}
+"""
+
+
+def _problems(payload: str, digits: str) -> list[str]:
+    """What is wrong with an example whose unstuffed bytes, but for the sum, have these digits."""
+    total = sum(bytes.fromhex(digits)) & 0xFF
+    frame = b"~" + f"{digits}{total:02X}".encode()
+    text = NEWER.replace("PAYLOAD", payload).replace("HEX", frame.hex())
+    return [problem.code for problem in compile_text(text, examples=True).problems]
+
+
+@pytest.mark.parametrize("payload", [CUT, BOTH])
+@pytest.mark.parametrize("digits", ["0301050102", "040105010209", "05010501020009"])
+def test_an_example_may_be_the_frame_of_a_newer_sender(payload: str, digits: str) -> None:
+    assert _problems(payload, digits) == []
+
+
+@pytest.mark.parametrize(
+    ("payload", "digits", "code"),
+    [
+        (CUT, "040106010209", "PG160"),  # Another value.
+        (CUT, "04010501020a", "PG161"),  # A digit of the stuffing.
+        (BOTH, "05010501020900", "PG161"),  # A zero that encoders leave out.
+        ("{}", "040105010209", "PG160"),
+    ],
+)
+def test_an_example_of_a_newer_sender_is_right_otherwise(
+    payload: str, digits: str, code: str
+) -> None:
+    assert _problems(payload, digits) == [code]
+
+
 # --- changes ------------------------------------------------------------------------------------
 
 LINK = """\
@@ -82,8 +135,6 @@ transparency:
 messages:
   reading: {id: 1, from: board, fields: FIELDS}
 """
-CUT = "{longer: cut}"
-BOTH = "{trailing_zeros: trimmed, longer: cut}"
 
 
 def _protocol(text: str) -> Protocol:

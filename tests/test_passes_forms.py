@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from passes_support import HEAD, protocol_of
+from passes_support import HEAD, compile_text, protocol_of
 
 FORMS = """\
 forms:
@@ -96,3 +96,63 @@ class TestMessages:
         protocol = protocol_of(HEAD + text + "  stop: {id: 2, from: host}\n")
         assert [sender.name for sender in protocol.senders] == ["host", "robot"]
         assert all(sender.is_only_form for sender in protocol.senders)
+
+
+RANGES = """\
+forms:
+  bare:
+    frame:
+      start:   {literal: 0x7E, unprotected: any}
+      FIRST
+      kind:    {type: uint8, id: true}
+      payload: {}
+      crc:     {type: uint16, algorithm: CRC-16/IBM-SDLC, covers: kind..payload}
+  full:
+    frame:
+      start:   {literal: 0x7E, unprotected: any}
+      SECOND
+      kind:    {type: uint8, id: true}
+      check:   {type: uint8, algorithm: xor-8, covers: kind}
+      payload: {}
+      crc:     {type: uint16, algorithm: CRC-16/IBM-SDLC, covers: kind..payload}
+messages:
+  data: {id: 1, from: robot, fields: {data: {type: bytes, size: {fill: true, max: 9}}}}
+decisions:
+  any: {question: What of data?, document: No., choice: Look on., because: Rare.}
+"""
+BITS = (
+    "size: {type: uint16, byte_order: big, "
+    "bits: {mark: {bits: 12..15, const: 10}, n: {bits: BITS, counts: size..crc, range: RANGE}}}"
+)
+WHOLE = "n: {type: uint16, counts: kind..crc, range: RANGE}"
+
+
+class TestRangesOfLengths:
+    """`bare` has a length of 3, as its payload is empty, and `full` of 5 and more."""
+
+    @staticmethod
+    def codes(first: str, second: str) -> list[str]:
+        text = HEAD + RANGES.replace("FIRST", first).replace("SECOND", second)
+        return [problem.code for problem in compile_text(text).problems]
+
+    @staticmethod
+    def bits(bounds: str, place: str = "0..10") -> str:
+        return BITS.replace("RANGE", bounds).replace("BITS", place)
+
+    def test_bits_tell_as_whole_parts_do(self) -> None:
+        assert self.codes(self.bits("[5, 5]"), self.bits("[7, 2047]")) == []
+        for order in ("big", "little"):
+            first, second = (
+                WHOLE.replace("RANGE", bounds).replace("uint16", f"uint16, byte_order: {order}")
+                for bounds in ("[3, 3]", "[5, 500]")
+            )
+            assert self.codes(first, second) == []
+
+    def test_ranges_that_overlap_do_not_tell(self) -> None:
+        assert self.codes(self.bits("[5, 7]"), self.bits("[7, 2047]")) == ["PG173"]
+
+    def test_lengths_in_other_places_do_not_tell(self) -> None:
+        assert self.codes(self.bits("[5, 5]", "0..9"), self.bits("[7, 2047]")) == ["PG173"]
+        low = WHOLE.replace("RANGE", "[5, 500]").replace("uint16", "uint16, byte_order: little")
+        high = WHOLE.replace("RANGE", "[3, 3]").replace("uint16", "uint16, byte_order: big")
+        assert self.codes(high, low) == ["PG173"]

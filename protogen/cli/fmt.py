@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from protogen.cli.exits import CLEAN, FINDINGS
+from protogen.cli.exits import CLEAN, FINDINGS, explain
 from protogen.cli.options import Quiet
 from protogen.cli.schemas import own_schemas, print_problems
 from protogen.schema.files import schema_files
@@ -39,15 +39,23 @@ def fmt(
     where they belong, and lined up columns stay lined up. The protocol stays the same, which is
     proved for each file before it is written. A file with errors is reported and left alone.
     """
-    found = CLEAN
-    for file in schema_files(schemas) if schemas else own_schemas():
+    files = schema_files(schemas) if schemas else own_schemas()
+    return max((_lay_out(file, check=check, quiet=quiet) for file in files), default=CLEAN)
+
+
+def _lay_out(file: Path, *, check: bool, quiet: bool) -> int:
+    """Lay out one file and return an exit code; whatever fails keeps no other file from it."""
+    try:
         change = _change(file)
         if change is None:
-            found = FINDINGS
-        elif change[0] != change[1]:
-            found = FINDINGS if check else found
-            _finish(file, change[1], check=check, quiet=quiet)
-    return found
+            return FINDINGS
+        before, after = change
+        if before == after:
+            return CLEAN
+        _finish(file, after, check=check, quiet=quiet)
+    except Exception as error:
+        return explain(error)
+    return FINDINGS if check else CLEAN
 
 
 def _change(file: Path) -> tuple[str, str] | None:

@@ -14,7 +14,7 @@ from protogen.schema.text.nodes import to_data
 
 def same_meaning(path: str | os.PathLike[str], before: str, after: str) -> bool:
     """Tell whether both texts, each as the schema at `path`, hold the same and mean the same."""
-    if _data(before) != _data(after):
+    if not _agree(_data(before), _data(after)):
         return False
     old, new = (compile_file(path, text=text).protocol for text in (before, after))
     return _agree(old, new)
@@ -26,12 +26,17 @@ def _data(text: str) -> Any:
 
 
 def _agree(one: Any, other: Any) -> bool:
-    """Tell whether two pieces of models are equal but for the places where they are written."""
+    """Tell whether two pieces of data or of models are equal but for the places in the text.
+
+    NaN equals NaN here, wherever it stands.
+    """
     if type(one) is not type(other):
         return False
     if isinstance(one, Span):
         return True
-    if isinstance(one, tuple):
+    if isinstance(one, dict):
+        return one.keys() == other.keys() and all(_agree(one[key], other[key]) for key in one)
+    if isinstance(one, list | tuple):
         return len(one) == len(other) and all(map(_agree, one, other))
     names = field_names(type(one))
     if names:

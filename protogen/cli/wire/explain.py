@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from protogen.cli.command import Command
 from protogen.cli.exits import CLEAN
 from protogen.cli.options import HexText, SchemaFile, SenderOfBytes, ToldParts
 from protogen.convert.inputs.hex_digits import parse_hex
@@ -25,6 +26,23 @@ EXAMPLE = "Example: protogen explain schemas/matty.yaml --sender esp --hex 55020
 _BYTES_IN_A_ROW = 8
 _HEADS = ("offset", "wire", "unstuffed", "name", "type", "raw", "meaning")
 _UNSTUFFED = _HEADS.index("unstuffed")
+
+
+class ExplainCommand(Command):
+    """The command, which says how bytes are given if they stand behind the schema."""
+
+    allow_extra_args = True
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the arguments. Raises BadParameter where there are too many."""
+        super().parse_args(ctx, args)
+        if ctx.args:
+            problem = f"bytes are given as --hex '{' '.join(ctx.args)}'"
+            raise typer.BadParameter(problem, ctx=ctx, param_hint="bytes behind the schema")
+        return args
+
+
+CLASS = ExplainCommand
 
 
 def explain(

@@ -33,9 +33,10 @@ from protogen.passes.framing.capacity import (
     amount,
     joined_words,
     payload_range,
+    unclear_behind_stuffing,
     wire_limit,
 )
-from protogen.passes.framing.delimiters import delimiters_of, judge_delimiters
+from protogen.passes.framing.delimiters import Sent, delimiters_of, judge_delimiters
 from protogen.passes.framing.silences import character_time
 from protogen.passes.proofs import wire_sizes
 from protogen.passes.proofs.alphabets import payload_alphabet
@@ -56,7 +57,7 @@ def analyse_framing(context: Context, draft: Draft) -> None:
         for sender in draft.senders
         if sender in draft.frames
     ]
-    judge_delimiters(context, [(item.sender, item.frame, item.delimiters) for item in analyses])
+    judge_delimiters(context, [item.sent() for item in analyses])
     for analysis in analyses:
         analysis.others = [item for item in analyses if analysis.is_beside(item)]
         framing = analysis.framing()
@@ -94,6 +95,10 @@ class _Analysis:
         self._carried = payload_range(frame)
         self.others: Sequence[_Analysis] = ()
         """Other forms of the endpoint's frames."""
+
+    def sent(self) -> Sent:
+        """What tells whether the delimiters are protected."""
+        return Sent(self.sender, self.frame, self.delimiters, self._messages, self._payload)
 
     def is_beside(self, other: _Analysis) -> bool:
         """True if the other is another form of the same endpoint's frames."""
@@ -266,13 +271,16 @@ class _Analysis:
             place = (*self._loc, transparency.first)
             self._context.error_at_key("PG149", place, f"{words} begins", hint)
             return True
-        rest = names[names.index(transparency.last) + 1 :]
-        tail = self.delimiters.tail
-        ends = {part.name for part in tail.parts} if tail is not None else set()
-        unclear = [name for name in rest if name not in ends]
+        unclear = unclear_behind_stuffing(self.frame)
         if unclear:
-            text = f"nothing tells where the stuffed parts end and `{unclear[0]}` begins"
-            self._context.error_at_key("PG149", (*self._loc, unclear[0]), text)
+            first, last = unclear[0], unclear[-1]
+            text = f"nothing tells where the stuffed parts end and `{first.name}` begins"
+            hint = f"stuff all up to `{last.name}`, or give the frame a length"
+            if isinstance(first, LiteralPart):
+                hint = (
+                    f"give the frame a length: `{first.name}` is no end, as `{last.name}` follows"
+                )
+            self._context.error_at_key("PG149", (*self._loc, first.name), text, hint)
         return bool(unclear)
 
     # -- results ------------------------------------------------------------------------------

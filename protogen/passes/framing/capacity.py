@@ -133,5 +133,16 @@ def joined_words(parts: Iterable[LiteralPart | ChoicePart]) -> tuple[bytes, ...]
 
 
 def is_delimited(frame: Frame) -> bool:
-    """True if the frame itself tells where the payload ends."""
-    return bool(frame.length or frame.silence or tail_literals(frame))
+    """True if the frame itself tells where the payload ends, or is refused as it should."""
+    told = frame.length or frame.silence or tail_literals(frame)
+    return bool(told or unclear_behind_stuffing(frame))
+
+
+def unclear_behind_stuffing(frame: Frame) -> tuple[Part, ...]:
+    """The unstuffed parts behind stuffed ones that begin where nothing tells: they are refused."""
+    if frame.transparency is None or frame.length is not None:
+        return ()
+    names = [part.name for part in frame.parts]
+    ends = tail_literals(frame)
+    behind = frame.parts[names.index(frame.transparency.last) + 1 :]
+    return tuple(part for part in behind if part not in ends)

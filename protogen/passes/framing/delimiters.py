@@ -8,9 +8,11 @@ from collections.abc import Iterable, Sequence
 import msgspec
 
 from protogen.model.frame import Frame
+from protogen.model.messages import Message
 from protogen.model.parts import ChoicePart, LiteralPart, Part
 from protogen.passes.context import Context, Loc
 from protogen.passes.framing.capacity import head_literals, joined_words, tail_literals
+from protogen.passes.framing.open_payloads import open_payload
 from protogen.passes.proofs.codewords import occurs
 from protogen.passes.proofs.wire_code import ByteSet, segments
 
@@ -59,37 +61,61 @@ def delimiters_of(frame: Frame, payload: ByteSet) -> Delimiters:
     return Delimiters(delimiter(head), delimiter(tail))
 
 
-def judge_delimiters(context: Context, senders: Iterable[tuple[str, Frame, Delimiters]]) -> None:
+class Sent(msgspec.Struct, frozen=True):
+    """What an endpoint sends, as far as its delimiters depend on it."""
+
+    sender: str
+    frame: Frame
+    delimiters: Delimiters
+    messages: Sequence[Message]
+    payload: ByteSet
+    """The bytes that its payloads can hold."""
+
+
+def judge_delimiters(context: Context, senders: Iterable[Sent]) -> None:
     """Report what is not protected and not accepted; senders of one frame are judged together."""
-    alike: dict[Loc, list[Delimiter]] = defaultdict(list)
-    frames: dict[Loc, Frame] = {}
-    for sender, frame, found in senders:
-        loc = context.frames[sender].loc
+    alike: dict[Loc, list[tuple[Sent, Delimiter]]] = defaultdict(list)
+    for sent in senders:
+        loc, found = context.frames[sent.sender].loc, sent.delimiters
         for delimiter in filter(None, (found.head, found.tail)):
-            place = (*loc, delimiter.parts[0].name)
-            alike[place].append(delimiter)
-            frames[place] = frame
-        _needless_inside(context, frame, found, loc)
+            alike[*loc, delimiter.parts[0].name].append((sent, delimiter))
+        _needless_inside(context, sent.frame, found, loc)
     for loc, delimiters in alike.items():
-        _judge(context, frames[loc], loc, delimiters)
+        _judge(context, loc, delimiters)
 
 
-def _judge(context: Context, frame: Frame, loc: Loc, delimiters: Sequence[Delimiter]) -> None:
-    witness = next((item.witness for item in delimiters if item.witness is not None), None)
-    accepted = [part.name for part in delimiters[0].parts if part.unprotected is not None]
-    if witness is None:
+def _judge(context: Context, loc: Loc, judged: Sequence[tuple[Sent, Delimiter]]) -> None:
+    open_ones = (item for item in judged if item[1].witness is not None)
+    sent, found = next(open_ones, judged[0])
+    accepted = [part.name for part in judged[0][1].parts if part.unprotected is not None]
+    if found.witness is None:
         for name in accepted:
             text = f"`{name}` can't occur inside a frame, so nothing needs to be accepted"
             _needless(context, (*loc[:-1], name), text)
     elif not accepted:
-        data, offset = witness
+        data, offset = found.witness
+        source, remedy = _where(context, sent, found)
         context.error_at_key(
             "PG142",
             loc,
             f"`{loc[-1]}` can also occur inside a frame, and nothing protects it: "
-            f"{data.hex(' ').upper()} has it at byte {offset}",
-            _protection(frame),
+            f"{data.hex(' ').upper()} has it at byte {offset}{source}",
+            f"{remedy}{_protection(sent.frame)}",
         )
+
+
+def _where(context: Context, sent: Sent, delimiter: Delimiter) -> tuple[str, str]:
+    """Words on what can hold it, and on what keeps it out; empty where the witness says it all."""
+    head, witness = sent.delimiters.head, delimiter.witness
+    start = 0 if head is None or head is delimiter else len(head.words[0])
+    if witness is not None and witness[1] < start:
+        return ", in the start of the frame", ""
+    values = frozenset(b"".join(delimiter.words))
+    without = delimiters_of(sent.frame, sent.payload - values)
+    same = (item for item in (without.head, without.tail) if item and item.parts == delimiter.parts)
+    if not all(item.protected for item in same):
+        return "", ""
+    return open_payload(sent.frame, values, sent.messages, context.syntax.byte_bits)
 
 
 def _protection(frame: Frame) -> str:
@@ -103,11 +129,14 @@ def _protection(frame: Frame) -> str:
     between = [part.name for part in frame.parts if part not in (*_ends(frame),)]
     if names[inside] == between:
         return f"let the transparency replace it, {accept}"
-    covered = region.first if region.first == region.last else f"{region.first}..{region.last}"
     return (
-        f"the transparency covers no more than `{covered}`: let it cover all that stands between, "
-        f"{accept}"
+        f"the transparency covers no more than `{_run(region.first, region.last)}`: let it cover "
+        f"all that stands between, `covers: {_run(between[0], between[-1])}`, {accept}"
     )
+
+
+def _run(first: str, last: str) -> str:
+    return first if first == last else f"{first}..{last}"
 
 
 def _ends(frame: Frame) -> tuple[Part, ...]:

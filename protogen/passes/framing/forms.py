@@ -7,6 +7,7 @@ from itertools import combinations
 from typing import TypeVar
 
 from protogen.copying import replace
+from protogen.model.frame import Frame
 from protogen.model.framing import AfterEnd, Framing, StartLiteral, StartSet
 from protogen.model.parts import (
     BitsPart,
@@ -16,6 +17,7 @@ from protogen.model.parts import (
     MirrorBits,
     NumberPart,
     PayloadPart,
+    members_of,
 )
 from protogen.passes.context import Context
 from protogen.passes.draft import Draft
@@ -98,16 +100,33 @@ def _told_apart(context: Context, draft: Draft, names: Sequence[str]) -> set[str
                 "PG173",
                 ("forms", form),
                 f"nothing at its beginning tells a frame of `{form}` from one of `{other}`",
-                f"tell them apart by a literal or by constant bits, or accept that `{other}` wins: "
-                "`behind:` and a decision's name",
+                "tell them apart by a literal, constant bits or ranges of a length in one place, "
+                f"or accept that `{other}` wins: `behind:` and a decision's name",
             )
     return needed
 
 
 def _are_distinct(draft: Draft, one: str, other: str) -> bool:
-    """True if some byte in front of stuffing and payload is never the same in both frames."""
+    """True if a byte, or a length, in front of stuffing and payload is never the same in both."""
     pairs = zip(_beginning(draft, one), _beginning(draft, other), strict=False)
-    return any(first.isdisjoint(second) for first, second in pairs)
+    return any(first.isdisjoint(second) for first, second in pairs) or any(
+        length.greatest < second.least or second.greatest < length.least
+        for offset, length in _lengths(draft.frames[one])
+        for place, second in _lengths(draft.frames[other])
+        if (offset, length.type) == (place, second.type)
+    )
+
+
+def _lengths(frame: Frame) -> Iterator[tuple[int, LengthPart]]:
+    """The lengths in front of stuffing and payload, whole parts and bits, with their offsets."""
+    offset = 0
+    for part in frame.parts:
+        if isinstance(part, PayloadPart) or part.name in frame.stuffed:
+            return
+        for item in members_of(part) or (part,):
+            if isinstance(item, LengthPart):
+                yield offset, item
+        offset += part.size
 
 
 def _beginning(draft: Draft, sender: str) -> Iterator[ByteSet]:

@@ -17,6 +17,7 @@ from protogen.passes.framing.capacity import (
     is_delimited,
     payload_range,
     stated_range,
+    unclear_behind_stuffing,
 )
 from protogen.passes.messages.identity_reader import IdentityReader
 from protogen.passes.messages.stated_sizes import greatest_stated, least_stated
@@ -139,6 +140,9 @@ class _Resolution:
         separator = separator_of(self._context, self._syntax, self._loc)
         # Fields that tell a payload's size by themselves do it by what they say, not by the room.
         delimited = all(map(is_delimited, self._frames.values()))
+        capacity = self._capacity() if delimited else None
+        if capacity is None and any(map(unclear_behind_stuffing, self._frames.values())):
+            capacity = GREATEST_FRAME  # They are refused: what is due then bounds payloads as well.
         return Setting(
             layout=Layout(
                 byte_bits=self._context.syntax.byte_bits,
@@ -146,7 +150,7 @@ class _Resolution:
                 separator=None if separator is None else separator.byte,
             ),
             leads=separator is None or separator.in_front,
-            capacity=self._capacity() if delimited else None,
+            capacity=capacity,
             owner=self._name,
             delimited=delimited,
         )

@@ -12,10 +12,10 @@ from protogen.model.parts import members_of
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
 from protogen.passes.framing.bit_names import are_whole
-from protogen.passes.framing.capacity import head_literals, joined_words
 from protogen.passes.framing.part_runs import written_out
 from protogen.passes.framing.part_values import number_of
 from protogen.passes.messages.byte_strings import with_byte_strings
+from protogen.passes.messages.example_forms import likeliest_form
 from protogen.problems import hint_for
 from protogen.schema.syntax.messages import Example as ExampleSyntax
 
@@ -63,7 +63,7 @@ def _example(
     endpoint = _endpoint(context, message, item, loc)
     if endpoint is None:
         return None
-    sender = _sender(context, draft, message.name, endpoint, item, loc)
+    sender = _sender(context, draft, message, endpoint, item, loc)
     if sender is None:
         return None
     covers = None
@@ -75,7 +75,7 @@ def _example(
         return None
     if item.content is not None and not covers:
         return None
-    if not _parts_known(context, draft.frames[sender], item, loc):
+    if not _parts_known(context, draft, sender, item, loc):
         return None
     return Example(
         name=name,
@@ -91,28 +91,22 @@ def _example(
 
 
 def _sender(
-    context: Context, draft: Draft, message: str, endpoint: str, item: ExampleSyntax, loc: Loc
+    context: Context, draft: Draft, message: Message, endpoint: str, item: ExampleSyntax, loc: Loc
 ) -> str | None:
-    """The endpoint in the form of the example's frame: the first that begins as it does."""
-    own = [
-        name
-        for name in draft.frames
-        if context.frames[name].endpoint == endpoint and message in draft.carried[name]
-    ]
+    """The endpoint in the form of the example's frame."""
+    own = {
+        name: frame
+        for name, frame in draft.frames.items()
+        if context.frames[name].endpoint == endpoint and message.name in draft.carried[name]
+    }
     if item.form is None:
-        begun = [name for name in own if _begins(draft.frames[name], item.frame)]
-        return next(iter((*begun, *own)), None)
+        return likeliest_form(own, message, item.frame)
     chosen = next((name for name in own if context.frames[name].form == item.form), None)
     if chosen is None and item.form in (context.syntax.forms or {}):
         forms = ", ".join(context.frames[name].form for name in own)
-        text = f"`{item.form}` carries no `{message}` from {endpoint}"
+        text = f"`{item.form}` carries no `{message.name}` from {endpoint}"
         context.error("PG162", (*loc, "form"), text, f"its forms of frame are {forms}")
     return chosen
-
-
-def _begins(frame: Frame, data: bytes | None) -> bool:
-    """True if a frame can begin as these bytes do."""
-    return data is not None and data.startswith(joined_words(head_literals(frame)))
 
 
 def _endpoint(context: Context, message: Message, item: ExampleSyntax, loc: Loc) -> str | None:
@@ -145,12 +139,18 @@ def _covers(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) -> tu
     return written_out(context, [part.name for part in frame.parts], written, place)
 
 
-def _parts_known(context: Context, frame: Frame, item: ExampleSyntax, loc: Loc) -> bool:
+def _parts_known(
+    context: Context, draft: Draft, sender: str, item: ExampleSyntax, loc: Loc
+) -> bool:
+    frame, written = draft.frames[sender], context.frames[sender]
+    place = "part" if written.is_only else f"part of `{written.form}`"
+    taken = f"the example is taken for a frame of `{written.form}`; `form:` names another"
+    other = None if written.is_only or item.form is not None else taken
     known = [part.name for part in (*frame.caller_parts, *frame.identity)]
     unknown = [name for name in item.parts or {} if name not in known]
     for name in unknown:
-        text = f"`{name}` is no part whose value a sender chooses"
-        context.error_at_key("PG162", (*loc, "parts", name), text, hint_for(name, known))
+        text = f"`{name}` is no {place} whose value a sender chooses"
+        context.error_at_key("PG162", (*loc, "parts", name), text, hint_for(name, known) or other)
     return not unknown
 
 

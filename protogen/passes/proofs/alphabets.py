@@ -42,6 +42,19 @@ def payload_alphabet(byte_bits: int, messages: Sequence[Message], *, is_cut: boo
     return _of_fields(fields) or EVERY_BYTE
 
 
+def fields_with(messages: Sequence[Message], values: ByteSet, byte_bits: int) -> tuple[str, ...]:
+    """The fields, as `message.field`, that can hold one of these bytes."""
+    open_fields = []
+    for message in messages:
+        for field in message.fields:
+            held = _of_field(field)
+            if byte_bits == 7 and not holds_whole_bytes(field.type):
+                held &= SEVEN_BITS
+            if not field.part and not held.isdisjoint(values):
+                open_fields.append(f"{message.name}.{field.name}")
+    return tuple(open_fields)
+
+
 def _holds_text(type_: Type) -> bool:
     is_between = isinstance(type_, Text) and isinstance(type_.extent, Between)
     is_coded = isinstance(type_, Text) and not type_.form.is_plain

@@ -23,8 +23,11 @@ def check_until(context: Context, name: str, item: Effective) -> None:
     if isinstance(syntax.until, UntilElement):
         check_last_element(context, name, item)
     elif syntax.type not in _STRINGS:
-        text = f"`until` is for ascii and bytes; `{name}` is neither"
-        hint = "elements are counted by `count`; bytes up to a terminator are `type: bytes`"
+        text = f"`until` a byte is for ascii and bytes; `{name}` is neither"
+        hint = (
+            "structs end behind one with a field that says so (`until: {element: FIELD}`), or are "
+            "counted by `count`; bytes up to a terminator are `type: bytes`"
+        )
         context.error_at_key("PG229", loc, text, hint)
     elif syntax.size is not None:
         text = f"a terminator ends `{name}`, so nothing else says its size"

@@ -90,9 +90,10 @@ one of them under the message's `forms`, or let the form be sent `from` that end
         "Two forms of frame that begin alike",
         """\
 Some bytes could be a frame of either form: none of the bytes in front of the payload has to be
-another one. Literals, the range of a length, and a first byte of a range of its own are what
-a receiver can rely on. If the protocol is so, write a decision, and name it with `behind` in the
-form that comes later: of bytes that are a valid frame of both forms, the one above wins.
+another one. Literals, constant bits, ranges of a length in the same place (a whole part or bits of
+one), and a first byte of a range of its own are what a receiver can rely on. If the protocol is so,
+write a decision, and name it with `behind` in the form that comes later: of bytes that are a valid
+frame of both forms, the one above wins.
 """,
         _with_forms(_SHORT + _LONG.replace("literal: 4", "literal: 2")),
         _with_forms(

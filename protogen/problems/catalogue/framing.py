@@ -21,9 +21,11 @@ FRAMING_CODES: tuple[Code, ...] = (
         "A delimiter that can occur inside a frame",
         """\
 The bytes that open or close the frame can also occur inside of it, so a receiver can cut a frame in
-the wrong place. The message shows such a frame. Add the transparency that the document describes.
-If the document has none, that is how the protocol is: write a decision that says so, and name it
-with `unprotected`. The reference then shows what it costs.
+the wrong place. The message shows such a frame. A payload's bytes are known where fields are text
+or have a `code`, and with `byte_bits: 7`; of other numbers, whatever their `range`, and of messages
+that are not known, they may be any. Add the transparency that the document describes. If it has
+none, that is how the protocol is: write a decision that says so, and name it with `unprotected`.
+The reference then shows what it costs.
 """,
         with_frame(
             """

@@ -229,7 +229,8 @@ If the document contradicts itself, say so: `contradicts: {fails: ..., why: ...}
         """\
 The bytes decode to the values, but the values encode to other bytes. A decoder can accept more than
 an encoder makes: with a `lenient` transparency it takes lower case hex digits, or escapes that are
-not needed. If the device really sends these bytes, describe it so; if not, correct the example.
+not needed. If the device really sends these bytes, describe it so; if not, correct the example. A
+frame that is `longer: cut` may have bytes behind the fields, which the encoder leaves out.
 """,
         with_framed(
             """

@@ -208,12 +208,14 @@ class NothingRule(Rule):
     def to_wire(self, value: Any, scope: Scope, strict: bool) -> None:
         """Nothing."""
         if value is not None:
-            raise EncodeError("", f"must be None, not {value!r}")
+            problem = f"must be None, as a struct without fields is, not {value!r}"
+            raise EncodeError("", problem)
 
     def from_json(self, data: Any, scope: Scope) -> None:
         """Nothing."""
         if data is not None:
-            raise EncodeError("", f"must be null, not {data!r}")
+            problem = f"must be null, as a struct without fields is, not {data!r}"
+            raise EncodeError("", problem)
 
 
 _NOTHING = NothingRule()

@@ -95,7 +95,8 @@ class OpenMapping(OpenCollection):
             self._problems.add("PG009", key.span, f"a {kind} can't be a key")
         elif key.plain and key.text == "<<":
             message = "the merge key `<<` is no part of YAML 1.2"
-            self._problems.add("PG012", key.span, message, "repeat the keys, or use `extends`")
+            hint = "repeat the keys; an alias such as `*name` stands for a whole value"
+            self._problems.add("PG012", key.span, message, hint)
         elif not isinstance(key.value, str | int):
             self._report_scalar(key)
         elif key.value in self._keys:
