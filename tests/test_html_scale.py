@@ -34,6 +34,10 @@ FRAMES = 100
 _TRIED = 100
 """Frames of each message whose values are edited at most."""
 
+_FORM_SIZE = 200
+"""Bytes of the longest frame that is put into the form: one of kilobytes has thousands of inputs,
+and its elements are all alike."""
+
 Sent = tuple[Sender, Message, bytes]
 
 
@@ -83,7 +87,9 @@ def check_tables(opened: Opened, codec: Codec, sent: list[Sent]) -> None:
 def check_edits(opened: Opened, codec: Codec, sender: Sender, message: Message) -> None:
     """Every value of a message at its boundaries gives the bytes of the Python encoder."""
     most = min(_TRIED, boundary_rounds(message, sender.frame))
-    frames = [*islice(frames_of(codec, sender, message), most)]
+    drawn_frames = [*islice(frames_of(codec, sender, message), most)]
+    longest = max(_FORM_SIZE, min(len(data) for _, data in drawn_frames))
+    frames = [(values, data) for values, data in drawn_frames if EDIT_ALL or len(data) <= longest]
     frames_hex = [data.hex() for _, data in frames]
     given = [message.name, sender.endpoint, frames_hex, edits(message, sender.frame)]
     made, tried = opened.run(TRY, given)
