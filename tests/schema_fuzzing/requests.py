@@ -64,8 +64,9 @@ def _match(
 
 def _numbers(root: Mapping[str, Any], message: MessagePlan) -> list[str]:
     """Integer fields that are always there, and counters where all have the same frame."""
-    fields = message.data.get("fields", {})
-    found = [name for name, field in fields.items() if _is_number(field)] if fields else []
+    fields = message.data.get("fields")
+    listed = fields.items() if isinstance(fields, dict) else ()
+    found = [name for name, field in listed if _is_number(field)]
     frame = root.get("frame", {})
     return found + [
         name for name, part in frame.items() if isinstance(part, dict) and part.get("counter")
