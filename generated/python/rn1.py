@@ -810,7 +810,7 @@ def connect(
     endpoint: _typing.Literal["host", "brain"] | None = None,
     **options: _typing.Unpack[_Options],
 ) -> _Connection[_typing.Any, _typing.Any]:
-    """Open a port as an endpoint: `async with connect(...) as link:`, or `with` without async.
+    """Open a port as one of the endpoints, by `async with`, or by `with` for a program without it.
 
     `endpoint` is this program; what the others send is decoded. Without one, it only listens.
     """

@@ -94,7 +94,7 @@ class Link(Generic[SentT, ReceivedT]):
         At most `limit` of them wait; see `Overflow` for what becomes of more. Raises LinkError
         where the other end sends no such message.
         """
-        known = self._received
+        known = self.kinds
         for kind in kinds:
             if kind not in known:
                 names = ", ".join(item.NAME for item in known)
@@ -113,7 +113,7 @@ class Link(Generic[SentT, ReceivedT]):
         return found if isinstance(found, kind) else None
 
     @property
-    def _received(self) -> tuple[type[Message], ...]:
+    def kinds(self) -> tuple[type[Message], ...]:
         """The messages that can come in."""
         forms = (form for name in self._line.senders for form in self._codec.forms(name))
         return tuple(dict.fromkeys(kind for form in forms for kind in form.messages))

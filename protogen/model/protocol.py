@@ -224,9 +224,10 @@ class Protocol(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def silence(self) -> Fraction | None:
         """Seconds without bytes that end what receivers have begun; None: they never do."""
-        ends = [sender.frame.silence for sender in self.senders]
-        seconds = (silence.seconds for silence in ends if silence is not None)
-        return min(seconds, default=self.link.idle_timeout)
+        ends = (sender.frame.silence for sender in self.senders)
+        found = [silence.seconds for silence in ends if silence is not None]
+        timeout = self.link.idle_timeout
+        return min([*found, *(() if timeout is None else (timeout,))], default=None)
 
     @property
     def sending(self) -> tuple[str, ...]:
