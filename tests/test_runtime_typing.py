@@ -126,4 +126,5 @@ def test_wrong_use_is_reported(tmp_path: Path, project_root: Path) -> None:
 def test_generated_classes_are_typed(tmp_path: Path, project_root: Path) -> None:
     assert errors(GENERATED, tmp_path, project_root) == []
     found = errors(GENERATED_MISUSE, tmp_path, project_root)
-    assert [int(line.split(":")[1]) for line in found] == [4, 5, 6, 7, 8, 9, 11, 12]
+    lines = sorted({int(line.split(":")[1]) for line in found})
+    assert lines == [4, 5, 6, 7, 8, 9, 11, 12]

@@ -27,6 +27,9 @@ SentT = TypeVar("SentT", bound=Message)
 ReceivedT = TypeVar("ReceivedT", bound=Message)
 MessageT = TypeVar("MessageT", bound=Message)
 
+_AT_ONCE = 64
+"""Events that are given at once; then those who take them have their turn."""
+
 
 class _Subscription(msgspec.Struct, frozen=True, eq=False):
     """A queue, and the messages that go there; without any, all events do."""
@@ -234,7 +237,9 @@ class Link(Generic[SentT, ReceivedT]):
             await self._give(self._line.feed(self._source, arrival.data), arrival.when)
 
     async def _give(self, events: Iterable[Event[Any, Any]], when: int) -> None:
-        for event in events:
+        for number, event in enumerate(events, start=1):
+            if number % _AT_ONCE == 0:
+                await asyncio.sleep(0)
             self.counts.received[name_of(event)] += 1
             if isinstance(event, MessageEvent):
                 self._last[type(event.message)] = event.message
