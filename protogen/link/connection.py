@@ -61,16 +61,15 @@ class Connection(Generic[SentT, ReceivedT]):
         self._endpoint = endpoint
         self._encode = encode
         self._options = options
-        self._decoders = _decoders(codec, endpoint, options)
+        _decoders(codec, endpoint, options)  # What is wrong is told before a port is opened.
         self._link: Link[SentT, ReceivedT] | None = None
         self._blocking: BlockingLink[SentT, ReceivedT] | None = None
 
     async def open(self) -> Link[SentT, ReceivedT]:
         """Open the port, and begin to read. Raises PortError."""
         port = self._port if isinstance(self._port, Port) else await self._opened(self._port)
-        link = Link[SentT, ReceivedT](
-            self._codec, port, self._endpoint, self._decoders, self._encode
-        )
+        decoders = _decoders(self._codec, self._endpoint, self._options)
+        link = Link[SentT, ReceivedT](self._codec, port, self._endpoint, decoders, self._encode)
         self._link = link
         return link
 
@@ -134,6 +133,9 @@ def connect(
     if isinstance(codec, Codec):
         return Connection(codec, port, endpoint, encode, options)
     module: Any = codec if isinstance(codec, ModuleType) else _module_of(codec)
+    if not isinstance(module.PROTOCOL, Codec):
+        problem = f"{module.__name__} carries a runtime of its own along"
+        raise LinkError(problem, "generate it without --standalone")
     return Connection(module.PROTOCOL, port, endpoint, module.encode, options)
 
 

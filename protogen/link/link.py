@@ -174,10 +174,10 @@ class Link(Generic[SentT, ReceivedT]):
     async def _write(self, frame: bytes, message: Message) -> None:
         self._check_open()
         async with self._writing:
+            # What this end sends may tell what the answers are. Nobody here wants its events.
+            self._line.feed(self.endpoint or "", frame)
             await self.port.write(frame)
         self.counts.sent[type(message).NAME] += 1
-        # What this end sends may tell what the answers are. Nobody here wants its events.
-        self._line.feed(self.endpoint or "", frame)
 
     def _check_open(self) -> None:
         if self._has_ended:

@@ -31,11 +31,17 @@ Pairs = Mapping[str, Any]
 """Values that an answer has to have, by the names of its fields or parts."""
 
 
-def value_of(event: MessageEvent[Any, Any], name: str) -> Any:
-    """The value of a message's field, or of a part of its frame."""
+def value_of(message: Message, event: MessageEvent[Any, Any] | None, name: str) -> Any:
+    """The value of a message's field, or of a part of its frame, which `event` has.
+
+    Raises LinkError where nobody could read the frame.
+    """
     spelled = attribute(name)
-    holder = event.message if spelled in type(event.message).__fields__ else event.parts
-    return getattr(holder, spelled)
+    if spelled in type(message).__fields__:
+        return getattr(message, spelled)
+    if event is None:
+        raise LinkError(f"this end can't read its own {type(message).NAME}, to match a reply")
+    return getattr(event.parts, spelled)
 
 
 class Pending:
@@ -59,7 +65,7 @@ class Pending:
         """True if a message answers it."""
         pairs = self._wanted.get(type(event.message))
         return pairs is not None and all(
-            value_of(event, name) == value for name, value in pairs.items()
+            value_of(event.message, event, name) == value for name, value in pairs.items()
         )
 
     def rivals(self, other: Pending) -> bool:
@@ -116,7 +122,8 @@ class Requests:
                 self._answered(pending, request, event.message)
                 return
         for pending in self._pending:
-            pending.note(event)
+            if not pending.is_over:
+                pending.note(event)
 
     def _answered(self, pending: Pending, request: Message, message: Message) -> None:
         pending.unanswered -= 1
@@ -195,10 +202,7 @@ class Requests:
             decoder = Decoder(self._forms)
             events = [*decoder.feed(frame), *decoder.flush()]
             own = next((event for event in events if isinstance(event, MessageEvent)), None)
-            if own is None:
-                name = type(message).NAME
-                raise LinkError(f"this end can't read its own {name}, so no reply can be matched")
-            pairs = {answer: value_of(own, asked) for asked, answer in exchange.match}
+            pairs = {answer: value_of(message, own, asked) for asked, answer in exchange.match}
         refusals = pairs if exchange.is_refusal_matched else {}
         return {
             **dict.fromkeys(exchange.refusals, refusals),

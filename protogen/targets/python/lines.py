@@ -31,14 +31,24 @@ def line(protocol: Protocol) -> str:
 
 
 def requests_of(protocol: Protocol) -> Iterable[Exchange]:
-    """The exchanges that are requests, with the messages that are there."""
-    there = {message.name for message in protocol.messages}
+    """The exchanges that are requests, with the messages that are there, as receivers take them."""
+    there = {message.name: message for message in protocol.messages}
+
+    def received(names: Sequence[str]) -> tuple[str, ...]:
+        known = (there[name] for name in names if name in there)
+        found = (
+            sender.received_as(message.name)
+            for message in known
+            for sender in protocol.senders_of(message)
+        )
+        return tuple(dict.fromkeys(found))
+
     for item in protocol.exchanges:
         kept = replace(
             item,
             requests=tuple(name for name in item.requests if name in there),
-            replies=tuple(name for name in item.replies if name in there),
-            refusals=tuple(name for name in item.refusals if name in there),
+            replies=received(item.replies),
+            refusals=received(item.refusals),
         )
         if kept.requests and kept.replies:
             yield kept
