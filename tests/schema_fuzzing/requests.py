@@ -69,7 +69,9 @@ def _numbers(root: Mapping[str, Any], message: MessagePlan) -> list[str]:
     found = [name for name, field in listed if _is_number(field)]
     frame = root.get("frame", {})
     return found + [
-        name for name, part in frame.items() if isinstance(part, dict) and part.get("counter")
+        name
+        for name, part in frame.items()
+        if isinstance(part, dict) and part.get("counter") is True
     ]
 
 

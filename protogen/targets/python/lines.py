@@ -70,7 +70,7 @@ def exchange(item: Exchange, protocol: Protocol, names: Names) -> str:
 
 
 def _classes(messages: Sequence[str], names: Names) -> str:
-    return tuple_of(names.classes[message] for message in messages)
+    return tuple_of(names.types[message] for message in messages)
 
 
 def _seconds(time: Fraction | None) -> str | None:
