@@ -39,6 +39,7 @@ def board(rig: str) -> Iterator[SimulatedDevice]:
             yield reply, {"counter": event.parts.counter}
 
         device.on("set", answer)
+        device.on("reset", lambda event: [])
         yield device
 
 

@@ -23,6 +23,7 @@ from protogen.link import (
     RefusedError,
     connect,
 )
+from protogen.link.device import SimulatedDevice
 from protogen.link.ports.opening import open_port
 from protogen.live.codec import kept_module
 
@@ -329,6 +330,37 @@ class TestRequests:
         run(refuse())
 
 
+class TestLibrary:
+    @pytest.mark.parametrize(
+        ("name", "device", "asked", "parts", "reply"),
+        [
+            # By the number of the command.
+            ("mhz19", "sensor", "get_range", {}, "range_is"),
+            ("mhz19", "sensor", "set_range", {"max": 2000}, "done"),
+            # By the message that was asked for, and by the number that was acknowledged.
+            ("ping", "device", "general_request", {"requested_id": 5}, "protocol_version"),
+            ("ping", "device", "set_ping_interval", {"ping_interval": 9}, "ack"),
+            # By the number of the servo.
+            ("feetech", "servo", "read", {"address": 56, "size": 2, "id": 7}, "status"),
+        ],
+    )
+    def test_a_simulated_device_answers_as_the_schema_says(
+        self, name: str, device: str, asked: str, parts: dict[str, Any], reply: str
+    ) -> None:
+        path = Path(protogen.__file__).parent / "library" / f"{name}.yaml"
+        module = kept_module(protogen.load(path))
+        kind = module.MESSAGES[asked]
+        fields = {key: value for key, value in parts.items() if key in kind.__fields__}
+        parts = {key: value for key, value in parts.items() if key not in fields}
+        with (
+            SimulatedDevice(path, device) as simulated,
+            connect(module, simulated.port, "host") as link,
+        ):
+            answer = link.request(kind(**fields), timeout=5, **parts)
+            assert type(answer) is module.MESSAGES[reply]
+            assert link.counts.retries == 0
+
+
 class TestPorts:
     def test_a_port_that_is_lost_fails_requests_and_the_link_goes_on(
         self, rig: ModuleType, tmp_path: Path
@@ -377,6 +409,10 @@ class TestPorts:
             with pytest.raises(LinkError, match="rig has no endpoint 'hosts'") as caught:
                 connect(rig, "x", "hosts")
             assert caught.value.hint == "there are host, board, viewer"
+            alone = ModuleType("alone")
+            vars(alone)["PROTOCOL"] = object()
+            with pytest.raises(LinkError, match="alone carries a runtime of its own along"):
+                connect(alone, "x", "host")
             async with Board(rig, silent) as board:
                 async with connect(rig, board.port.name, "viewer") as link:
                     with pytest.raises(LinkError, match="viewer sends nothing"):
