@@ -26,7 +26,7 @@ def requests(
     if request is None or not answers or not draw(forms.one_in(2)):
         return None
     chosen = draw(st.lists(st.sampled_from(answers), min_size=1, max_size=3, unique_by=_name))
-    replies, refusals = chosen[:2], chosen[2:]
+    replies, refusals = (chosen, []) if draw(forms.one_in(3)) else (chosen[:1], chosen[1:])
     exchange: dict[str, Any] = {
         **draw(forms.about()),
         "request": draw(_one_or_several([request])),
