@@ -23,10 +23,11 @@ def requests(
     asking = [item for item in found if len(item.senders) == 1]
     request = draw(st.sampled_from(asking)) if asking else None
     answers = [item for item in asking if request and item.senders != request.senders]
-    if request is None or not answers or not draw(forms.one_in(2)):
+    if request is None or not answers or draw(forms.one_in(4)):
         return None
-    chosen = draw(st.lists(st.sampled_from(answers), min_size=1, max_size=3, unique_by=_name))
-    replies, refusals = (chosen, []) if draw(forms.one_in(3)) else (chosen[:1], chosen[1:])
+    least = min(len(answers), draw(st.integers(1, 2)))
+    chosen = draw(st.lists(st.sampled_from(answers), min_size=least, max_size=3, unique_by=_name))
+    replies, refusals = (chosen, []) if draw(forms.one_in(4)) else (chosen[:1], chosen[1:])
     exchange: dict[str, Any] = {
         **draw(forms.about()),
         "request": draw(_one_or_several([request])),
@@ -57,7 +58,7 @@ def _match(
     if not asked or not answered or draw(forms.one_in(4)):
         return None
     both = sorted(answered & set(asked))
-    if both and draw(st.booleans()):
+    if both and not draw(forms.one_in(4)):
         return draw(st.sampled_from(both))
     return {draw(st.sampled_from(sorted(asked))): draw(st.sampled_from(sorted(answered)))}
 
