@@ -154,6 +154,35 @@ def test_exchanges_show_their_messages_and_bytes():
     assert "### Start\n\nHow it starts.\n" in page(made)
 
 
+def test_requests_show_what_answers_them_and_how_that_is_told():
+    asked = Exchange(
+        name="ask",
+        title="Ask",
+        requests=("m", "n"),
+        replies=("n",),
+        refusals=("m",),
+        match=(("counter", "counter"), ("a", "of")),
+        is_refusal_matched=False,
+        timeout=Fraction(1, 20),
+        retries=2,
+    )
+    plain = Exchange(name="b", title="B", requests=("m",), replies=("n",))
+    made = protocol(message("m", 1), message("n", 2), exchanges=(asked, plain))
+    m, n = "[m](#message-m)", "[n](#message-n)"
+    assert [tuple(row.values()) for row in table_of(made, "What")] == [
+        ("Request", f"{m} or {n}"),
+        ("Reply", n),
+        ("Refusal", m),
+        (
+            "Told by",
+            "the same `counter` and `of`, equal to `a`; a refusal is of the request that waits",
+        ),
+        ("Timeout", "50 ms"),
+        ("Retries", "2"),
+    ]
+    assert "| Told by | their order: one request waits at a time |" in page(made)
+
+
 def test_decisions_are_told_and_linked():
     decision = Decision(
         name="newline",

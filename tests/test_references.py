@@ -67,7 +67,10 @@ messages:
   other: {from: robot, id: {number: 1}}
 overloads:
   both: {messages: [report, other], by: undecidable, yields: report, decision: accepted}
-exchanges: {talk: {steps: [order, {message: report, example: first}]}}
+exchanges:
+  talk: {steps: [order, {message: report, example: first}]}
+  ask: {request: order, reply: [report], refusal: other, match: {speed: number}}
+  short: {request: report, reply: order, match: size}
 decisions: {accepted: {question: q, document: d, choice: c, because: b}}
 reserved:
   identities: [{from: robot, id: {number: 9}}]

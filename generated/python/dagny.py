@@ -18,6 +18,11 @@ from protogen.runtime import checksum as _checksum
 from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
 
+if _typing.TYPE_CHECKING:
+    from protogen.link.connection import Connection as _Connection
+    from protogen.link.connection import Options as _Options
+    from protogen.link.ports.port import Port as _Port
+
 EncodeError = _rt.EncodeError
 """A message that can't be encoded: a value is missing or out of range."""
 DecodeError = _rt.DecodeError
@@ -582,6 +587,7 @@ PROTOCOL: _rt.Protocol[HostMessage | RobotMessage, Parts] = _rt.Protocol(
     HOST_SENDER,
     ROBOT_SENDER,
     spec_hash=SPEC_HASH,
+    line=_rt.Line(("host", "robot"), baud=115200),
 )
 
 _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {}
@@ -684,6 +690,32 @@ class Encoder(_rt.Encoder):
                 return self.encode_next(message)
             return wire
         return self.encode_next(message, strict)
+
+
+@_typing.overload
+def connect(
+    port: str | _Port, endpoint: _typing.Literal["host"], **options: _typing.Unpack[_Options]
+) -> _Connection[HostMessage, RobotMessage]: ...
+@_typing.overload
+def connect(
+    port: str | _Port, endpoint: _typing.Literal["robot"], **options: _typing.Unpack[_Options]
+) -> _Connection[RobotMessage, HostMessage]: ...
+@_typing.overload
+def connect(
+    port: str | _Port, endpoint: None = None, **options: _typing.Unpack[_Options]
+) -> _Connection[_typing.Never, HostMessage | RobotMessage]: ...
+def connect(
+    port: str | _Port,
+    endpoint: _typing.Literal["host", "robot"] | None = None,
+    **options: _typing.Unpack[_Options],
+) -> _Connection[_typing.Any, _typing.Any]:
+    """Open a port as one of the endpoints, by `async with`, or by `with` for a program without it.
+
+    `endpoint` is this program; what the others send is decoded. Without one, it only listens.
+    """
+    from protogen.link import connect as open_link
+
+    return open_link(PROTOCOL, port, endpoint, encode=encode, **options)
 
 
 # The machine text fills the tables above.

@@ -17,6 +17,11 @@ from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
+if _typing.TYPE_CHECKING:
+    from protogen.link.connection import Connection as _Connection
+    from protogen.link.connection import Options as _Options
+    from protogen.link.ports.port import Port as _Port
+
 EncodeError = _rt.EncodeError
 """A message that can't be encoded: a value is missing or out of range."""
 DecodeError = _rt.DecodeError
@@ -644,6 +649,17 @@ PROTOCOL: _rt.Protocol[PcMessage | EspMessage, Parts] = _rt.Protocol(
     PC_SENDER,
     ESP_SENDER,
     spec_hash=SPEC_HASH,
+    line=_rt.Line(("pc", "esp"), baud=115200, silence=0.02),
+    exchanges=(
+        _rt.Exchange(
+            "command",
+            requests=(Stop, Reset, Mode, Go, Limits, Timing, GpsMode),
+            replies=(Ack,),
+            refusals=(Nack,),
+            match=(("counter", "counter"),),
+            is_refusal_matched=False,
+        ),
+    ),
 )
 
 _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {}
@@ -749,6 +765,32 @@ class Encoder(_rt.Encoder):
             self._count(self._next)
             return wire
         return self.encode_next(message, strict, counter=counter)
+
+
+@_typing.overload
+def connect(
+    port: str | _Port, endpoint: _typing.Literal["pc"], **options: _typing.Unpack[_Options]
+) -> _Connection[PcMessage, EspMessage]: ...
+@_typing.overload
+def connect(
+    port: str | _Port, endpoint: _typing.Literal["esp"], **options: _typing.Unpack[_Options]
+) -> _Connection[EspMessage, PcMessage]: ...
+@_typing.overload
+def connect(
+    port: str | _Port, endpoint: None = None, **options: _typing.Unpack[_Options]
+) -> _Connection[_typing.Never, PcMessage | EspMessage]: ...
+def connect(
+    port: str | _Port,
+    endpoint: _typing.Literal["pc", "esp"] | None = None,
+    **options: _typing.Unpack[_Options],
+) -> _Connection[_typing.Any, _typing.Any]:
+    """Open a port as one of the endpoints, by `async with`, or by `with` for a program without it.
+
+    `endpoint` is this program; what the others send is decoded. Without one, it only listens.
+    """
+    from protogen.link import connect as open_link
+
+    return open_link(PROTOCOL, port, endpoint, encode=encode, **options)
 
 
 # The machine text fills the tables above.

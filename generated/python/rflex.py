@@ -19,6 +19,11 @@ from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
+if _typing.TYPE_CHECKING:
+    from protogen.link.connection import Connection as _Connection
+    from protogen.link.connection import Options as _Options
+    from protogen.link.ports.port import Port as _Port
+
 EncodeError = _rt.EncodeError
 """A message that can't be encoded: a value is missing or out of range."""
 DecodeError = _rt.DecodeError
@@ -1069,6 +1074,7 @@ PROTOCOL: _rt.Protocol[LinuxMessage | FlexMessage, Parts] = _rt.Protocol(
     LINUX_SENDER,
     FLEX_SENDER,
     spec_hash=SPEC_HASH,
+    line=_rt.Line(("linux", "flex"), baud=115200),
 )
 
 _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {}
@@ -1175,6 +1181,32 @@ class Encoder(_rt.Encoder):
                 return self.encode_next(message)
             return wire
         return self.encode_next(message, strict, number=number)
+
+
+@_typing.overload
+def connect(
+    port: str | _Port, endpoint: _typing.Literal["linux"], **options: _typing.Unpack[_Options]
+) -> _Connection[LinuxMessage, FlexMessage]: ...
+@_typing.overload
+def connect(
+    port: str | _Port, endpoint: _typing.Literal["flex"], **options: _typing.Unpack[_Options]
+) -> _Connection[FlexMessage, LinuxMessage]: ...
+@_typing.overload
+def connect(
+    port: str | _Port, endpoint: None = None, **options: _typing.Unpack[_Options]
+) -> _Connection[_typing.Never, LinuxMessage | FlexMessage]: ...
+def connect(
+    port: str | _Port,
+    endpoint: _typing.Literal["linux", "flex"] | None = None,
+    **options: _typing.Unpack[_Options],
+) -> _Connection[_typing.Any, _typing.Any]:
+    """Open a port as one of the endpoints, by `async with`, or by `with` for a program without it.
+
+    `endpoint` is this program; what the others send is decoded. Without one, it only listens.
+    """
+    from protogen.link import connect as open_link
+
+    return open_link(PROTOCOL, port, endpoint, encode=encode, **options)
 
 
 # The machine text fills the tables above.

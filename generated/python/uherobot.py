@@ -17,6 +17,11 @@ from protogen.runtime import fast as _fast
 from protogen.runtime import formats as _c
 from protogen.runtime import transparency as _transparency
 
+if _typing.TYPE_CHECKING:
+    from protogen.link.connection import Connection as _Connection
+    from protogen.link.connection import Options as _Options
+    from protogen.link.ports.port import Port as _Port
+
 EncodeError = _rt.EncodeError
 """A message that can't be encoded: a value is missing or out of range."""
 DecodeError = _rt.DecodeError
@@ -312,6 +317,7 @@ PROTOCOL: _rt.Protocol[DaemonMessage | BoardMessage, Parts] = _rt.Protocol(
     DAEMON_SENDER,
     BOARD_SENDER,
     spec_hash=SPEC_HASH,
+    line=_rt.Line(("daemon", "board")),
 )
 
 _ENCODERS: dict[type[_rt.Message], _typing.Callable[..., bytes]] = {}
@@ -418,6 +424,32 @@ class Encoder(_rt.Encoder):
                 return self.encode_next(message)
             return wire
         return self.encode_next(message, strict)
+
+
+@_typing.overload
+def connect(
+    port: str | _Port, endpoint: _typing.Literal["daemon"], **options: _typing.Unpack[_Options]
+) -> _Connection[DaemonMessage, BoardMessage]: ...
+@_typing.overload
+def connect(
+    port: str | _Port, endpoint: _typing.Literal["board"], **options: _typing.Unpack[_Options]
+) -> _Connection[BoardMessage, DaemonMessage]: ...
+@_typing.overload
+def connect(
+    port: str | _Port, endpoint: None = None, **options: _typing.Unpack[_Options]
+) -> _Connection[_typing.Never, DaemonMessage | BoardMessage]: ...
+def connect(
+    port: str | _Port,
+    endpoint: _typing.Literal["daemon", "board"] | None = None,
+    **options: _typing.Unpack[_Options],
+) -> _Connection[_typing.Any, _typing.Any]:
+    """Open a port as one of the endpoints, by `async with`, or by `with` for a program without it.
+
+    `endpoint` is this program; what the others send is decoded. Without one, it only listens.
+    """
+    from protogen.link import connect as open_link
+
+    return open_link(PROTOCOL, port, endpoint, encode=encode, **options)
 
 
 # The machine text fills the tables above.

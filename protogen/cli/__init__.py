@@ -32,6 +32,7 @@ _MODULES = {
     "explain": "wire.explain",
     "open": "opening",
     "monitor": "line.monitor",
+    "send": "line.send",
     "record": "line.record",
     "tap": "line.tap",
     "replay": "line.replay",

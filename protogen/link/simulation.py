@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 
+from protogen.link.answers import Answers
 from protogen.link.damage import Damage
 from protogen.link.line import LineDecoders
 from protogen.link.ports.port import Port
@@ -55,10 +56,14 @@ class Simulation:
         self._damage = damage
         self._encoder = module.Encoder(endpoint)
         self._answers: dict[str, list[Answer]] = {}
+        self._replies = Answers(module.PROTOCOL, endpoint, self.made)
         self._began = 0.0
 
     def on(self, message: str, answer: Answer) -> None:
-        """Answer each such message of another endpoint. Raises KeyError if there is none."""
+        """Answer each such message of another endpoint, in place of what the exchanges say.
+
+        Raises KeyError if there is none.
+        """
         self._protocol.message(message)
         self._answers.setdefault(message, []).append(answer)
 
@@ -131,7 +136,13 @@ class Simulation:
     async def _take(self, port: Port, event: Any) -> None:
         kind = event.message.NAME if event.kind == "message" else event.kind
         self.counts.received[kind] = self.counts.received.get(kind, 0) + 1
-        for answer in self._answers.get(kind, ()) if event.kind == "message" else ():
+        if event.kind != "message":
+            return
+        if kind not in self._answers:
+            reply = self._replies.to(event)
+            if reply is not None:
+                await self.send(port, reply[0], **reply[1])
+        for answer in self._answers.get(kind, ()):
             for item in answer(event):
                 message, parts = item if isinstance(item, tuple) else (item, {})
                 await self.send(port, message, **parts)

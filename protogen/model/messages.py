@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -157,9 +158,21 @@ class Step(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Exchange(msgspec.Struct, frozen=True, kw_only=True):
-    """A named sequence of messages."""
+    """A named sequence of messages, or requests with what answers them."""
 
     name: str
     title: str
-    steps: tuple[Step, ...]
+    steps: tuple[Step, ...] = ()
+    requests: tuple[str, ...] = ()
+    """The messages that ask; empty where it is a sequence."""
+    replies: tuple[str, ...] = ()
+    """The messages of which any settles a request."""
+    refusals: tuple[str, ...] = ()
+    match: tuple[tuple[str, str], ...] = ()
+    """Parts or fields of the request and of its reply that are equal; else order decides."""
+    is_refusal_matched: bool = True
+    """False if a refusal does not say of which request it is."""
+    timeout: Fraction | None = None
+    """Seconds after which a request is lost; None where the schema does not say."""
+    retries: int = 0
     about: About = NOTHING

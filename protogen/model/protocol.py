@@ -222,6 +222,14 @@ class Protocol(msgspec.Struct, frozen=True, kw_only=True):
         return bool(self.told)
 
     @property
+    def silence(self) -> Fraction | None:
+        """Seconds without bytes that end what receivers have begun; None: they never do."""
+        ends = (sender.frame.silence for sender in self.senders)
+        found = [silence.seconds for silence in ends if silence is not None]
+        timeout = self.link.idle_timeout
+        return min([*found, *(() if timeout is None else (timeout,))], default=None)
+
+    @property
     def sending(self) -> tuple[str, ...]:
         """Names of the endpoints that send, in their order."""
         return tuple(dict.fromkeys(sender.endpoint for sender in self.senders))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from typing import TYPE_CHECKING
 
-from protogen.cli.wire.encode import encode_message
+from protogen.cli.wire.given import given_message
 from protogen.errors import UserError
 
 if TYPE_CHECKING:
@@ -20,4 +20,4 @@ def frame_of(codec: Codec, text: str) -> bytes:
         raise UserError(f"`{text}`: {error}") from None
     if not words:
         raise UserError("no message is named", "write MESSAGE FIELD=VALUE ...")
-    return encode_message(codec, words[0], words[1:], None, None)
+    return given_message(codec, words[0], words[1:], None, None).frame()

@@ -19,7 +19,8 @@ from protogen.passes.framing.told_parts import check_told
 from protogen.passes.framing.transparencies import check_codes
 from protogen.passes.framing.trimming import check_trimmed
 from protogen.passes.messages.building import resolve_messages
-from protogen.passes.messages.examples import attach_examples, resolve_exchanges
+from protogen.passes.messages.examples import attach_examples
+from protogen.passes.messages.exchanges import resolve_exchanges
 from protogen.passes.messages.identities import check_identities
 from protogen.passes.messages.part_fields import check_part_fields
 from protogen.passes.messages.virtual_values import check_shared_values

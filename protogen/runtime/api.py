@@ -32,6 +32,7 @@ from protogen.runtime.framing.frame import (
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
 from protogen.runtime.identities import Identities
 from protogen.runtime.lazy import importer, lazily
+from protogen.runtime.line import Exchange, Line
 from protogen.runtime.payload.enums import Flags, OpenEnum
 from protogen.runtime.payload.message import Message, Record, Sizes
 from protogen.runtime.payload.number import BitsNumber, Characters, Number
@@ -69,6 +70,7 @@ __all__ = [
     "Engine",
     "EnumRange",
     "Event",
+    "Exchange",
     "FieldRules",
     "Flags",
     "FloatRule",
@@ -84,6 +86,7 @@ __all__ = [
     "IntegerRule",
     "InvalidEvent",
     "LengthPart",
+    "Line",
     "LiteralPart",
     "Message",
     "MessageEvent",

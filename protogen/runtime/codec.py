@@ -16,6 +16,7 @@ from protogen.runtime.framing.lines import split_parts
 from protogen.runtime.framing.reading import read_frame
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec, with_held
 from protogen.runtime.framing.told import Told
+from protogen.runtime.line import Exchange, Line
 from protogen.runtime.payload.message import Message, build_payload
 from protogen.runtime.payload.number import GivenValue
 
@@ -24,7 +25,12 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
     """The codec of a protocol, made of what each endpoint sends."""
 
     def __init__(
-        self, name: str, *senders: SenderSpec[MessageT_co, PartsT_co], spec_hash: str = ""
+        self,
+        name: str,
+        *senders: SenderSpec[MessageT_co, PartsT_co],
+        spec_hash: str = "",
+        line: Line | None = None,
+        exchanges: tuple[Exchange, ...] = (),
     ) -> None:
         self.name = name
         self.spec_hash = spec_hash
@@ -35,6 +41,10 @@ class Protocol(Generic[MessageT_co, PartsT_co]):
         """Endpoints as senders; one with several forms of frame is there once for each of them."""
         self.endpoints = tuple(dict.fromkeys(item.name for item in senders))
         """Names of the endpoints that send."""
+        self.line = Line(self.endpoints) if line is None else line
+        """Settings of the line."""
+        self.exchanges = exchanges
+        """Which message answers which."""
 
     def sender(self, name: str, form: str | None = None) -> SenderSpec[Any, Any]:
         """The sender called `name`, in one form of frame.
@@ -248,6 +258,14 @@ class Encoder:
             raise EncodeError("message", problem)
         named = _named(parts)
         return first_that_fits(senders, lambda item: self._frame(item, message, strict, named))
+
+    def preview(self, message: Message, strict: bool = True, **parts: GivenValue) -> bytes:
+        """The frame that `encode_next` would make now. Nothing is counted."""
+        kept = dict(self._next)
+        try:
+            return self.encode_next(message, strict, **parts)
+        finally:
+            self._next = kept
 
     def _frame(
         self,

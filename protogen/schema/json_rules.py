@@ -344,6 +344,20 @@ _OVERLOAD_RULES = (
     _where({"properties": {"by": {"const": "size"}}}, "Nothing is chosen.", _none_of(("yields",))),
 )
 
+_EXCHANGE_RULES = (
+    _one_of("An exchange is a sequence or a request.", ("steps", "request")),
+    _together(
+        "These are for a request, which has a reply.",
+        {
+            "request": ["reply"],
+            **{key: ["request"] for key in ("reply", "refusal", "match", "timeout", "retries")},
+        },
+    ),
+    _together(
+        "Without `match`, no refusal is matched.", {"unmatched_refusal": ["refusal", "match"]}
+    ),
+)
+
 _TRANSPARENCY_RULES = (
     _one_of("A transparency is one of these.", ("substitute", "escape", "encoding", "preset")),
 )
@@ -378,6 +392,7 @@ RULES: Mapping[str, tuple[JsonObject, ...]] = {
     "MessageSyntax": _MESSAGE_RULES,
     "Example": _EXAMPLE_RULES,
     "Overload": _OVERLOAD_RULES,
+    "Exchange": _EXCHANGE_RULES,
     "TransparencySyntax": _TRANSPARENCY_RULES,
     "ProtocolSyntax": _ROOT_RULES,
 }

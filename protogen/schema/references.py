@@ -22,6 +22,7 @@ from protogen.schema.syntax.names import (
     Formula,
     Kind,
     Mark,
+    Matched,
     Member,
     NumberPath,
     Ref,
@@ -126,6 +127,9 @@ class _Walk:
                 yield Reference(kind, spot, written, scopes, missing=missing)
             case Formula() if isinstance(written, str):
                 yield from self._in_formula(str(written), spot)
+            case Matched(of):
+                scopes = self._scopes.of_matched(of, spot.place)
+                yield Reference(Kind.PART, spot, written, scopes)
             case Member() if isinstance(written, str):
                 yield from self._in_element(written, spot)
             case NumberPath() if "." not in str(written):

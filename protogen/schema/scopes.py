@@ -84,6 +84,14 @@ class Scopes:
         )
         return (*frames, *bits)
 
+    def of_matched(self, keys: Sequence[str], place: Place) -> tuple[Place, ...]:
+        """Fields and parts of the messages that these keys of an exchange name."""
+        listed = [at(self._data, (*place[:2], key)) for key in keys]
+        named = [name for item in listed for name in (item if isinstance(item, list) else [item])]
+        fields = [("messages", name, "fields") for name in named if isinstance(name, str)]
+        parts = (scope for place in fields for scope in self.of_parts(place))
+        return tuple(dict.fromkeys((*fields, *parts)))
+
     def _of_frames(self, place: Place) -> tuple[Place, ...]:
         """The frame of all, or those of the senders or the forms that a place is about."""
         if keys_at(self._data, ("forms",)):

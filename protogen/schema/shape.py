@@ -14,9 +14,9 @@ from protogen.problems import Problems, Span, hint_for
 from protogen.schema import hints
 from protogen.schema.recovery import Loc, Recovery
 from protogen.schema.syntax.base import Source
+from protogen.schema.syntax.exchanges import Step
 from protogen.schema.syntax.fields import FieldSyntax, NamedBit, NamedBits, NamedValue
 from protogen.schema.syntax.forms import Form, keys_of
-from protogen.schema.syntax.messages import Step
 from protogen.schema.syntax.parts import Part, TransparencySyntax
 from protogen.schema.syntax.protocol import SCHEMA, Endpoint, FrameForm, ProtocolSyntax
 

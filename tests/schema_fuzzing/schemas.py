@@ -16,6 +16,7 @@ from schema_fuzzing.frames import FramePlan, frames
 from schema_fuzzing.messages import MessagePlan, Plan, messages, overload
 from schema_fuzzing.numbers import ORDERS, unnamed_values
 from schema_fuzzing.parts import Maker, PartPlan, every_payload_byte
+from schema_fuzzing.requests import requests
 from schema_fuzzing.setting import Declared
 from schema_fuzzing.shapes import frames_of, shapes_of
 from schema_fuzzing.told import add_told, add_told_length
@@ -260,6 +261,9 @@ class _Drawing:
         if draw(forms.one_in(5)):
             names = [message.name for message in found]
             data["exchanges"] = {"startup": draw(_exchanges(names))}
+        asking = draw(requests(root, found))
+        if asking is not None:
+            data["exchanges"] = {**data.get("exchanges", {}), "asked": asking}
         reserved = self._reserved(root, found)
         if reserved:
             data["reserved"] = reserved

@@ -11,7 +11,6 @@ import typer
 
 from protogen.cli.exits import UsageError
 from protogen.cli.wire.event_lines import EventLines
-from protogen.cli.wire.silences import ends_of_frames
 from protogen.link.line import LineDecoders
 
 if TYPE_CHECKING:
@@ -29,7 +28,8 @@ class ShownEvents:
         self._line = LineDecoders(codec.runtime)
         self._alone: dict[str, LineDecoders] = {}
         self._timers: dict[str, asyncio.TimerHandle] = {}
-        self._silence = _silence(codec)
+        silence = codec.protocol.silence
+        self._silence = None if silence is None else float(silence)
 
     def take(self, source: str, data: bytes) -> None:
         """Show what these bytes complete. Raises UsageError where no decoder takes any sender's."""
@@ -66,12 +66,3 @@ class ShownEvents:
             typer.echo("".join(text for text, _ in self._lines.segments(event)).rstrip())
         if events:
             sys.stdout.flush()
-
-
-def _silence(codec: Codec) -> float | None:
-    """Seconds without bytes that end a frame; None where there is no such silence."""
-    link = codec.protocol.link
-    found = [*ends_of_frames(codec.protocol).values()]
-    if link.idle_timeout is not None:
-        found.append(link.idle_timeout)
-    return float(min(found)) if found else None

@@ -32,7 +32,6 @@ from protogen.recording.reader import is_recording
 
 if TYPE_CHECKING:
     from protogen.cli.wire.codec import Codec
-    from protogen.runtime.decoder import Decoder
 EXAMPLE = "Example: protogen decode schemas/matty.yaml --sender esp --hex 55020141BC"
 
 Tagged = Annotated[
@@ -200,54 +199,20 @@ def _batches(
     A piece that names no sender may be from any. A silence in front of it ends what came before.
     What one sender's frames tell of another's, the decoder of that one hears.
     """
-    line = _Line(codec, told, shown=sender)
+    from protogen.link.line import LineDecoders
+
+    senders = codec.senders if sender is None else (sender,)
+    line = LineDecoders(
+        codec.runtime,
+        senders,
+        new=lambda source: codec.decoder(source or None, _told_to(codec, source, told)),
+    )
     for piece in pieces:
-        # What one end sends may tell what the other does: then all are decoded, and one is shown.
-        if codec.protocol.is_told or sender in (None, piece.sender):
-            yield line.take(piece, silences)
-    yield line.flush()
-
-
-class _Line:
-    """The decoders of what each end of a line sends, which hear each other."""
-
-    def __init__(self, codec: Codec, told: Sequence[str], shown: str | None) -> None:
-        """With `shown`, events of that end alone are given."""
-        self._codec = codec
-        self._told = told
-        self._shown = shown
-        self._decoders: dict[str, Decoder[Any, Any]] = {}
-
-    def take(self, piece: Piece, silences: Silences | None) -> list[Any]:
-        """Take some bytes, and the silences in front of them; the events that are certain now."""
-        self._begin(piece.sender)
-        found: list[Any] = []
+        events = []
         for name in silences.passed(piece) if silences is not None else ():
-            if name in self._decoders:
-                found += self._heard(name, self._decoders[name].flush())
-        return [*found, *self._heard(piece.sender, self._decoders[piece.sender].feed(piece.data))]
-
-    def flush(self) -> list[Any]:
-        """Take the end of the log; the remaining events."""
-        ends = [(name, decoder.flush()) for name, decoder in self._decoders.items()]
-        return [event for name, events in ends for event in self._heard(name, events)]
-
-    def _begin(self, sender: str) -> None:
-        """Make the decoders that there have to be: all, where they have to hear each other."""
-        codec = self._codec
-        known = codec.senders if sender and codec.protocol.is_told else ()
-        for name in (sender, *known):
-            if name not in self._decoders:
-                told = _told_to(codec, name, self._told)
-                self._decoders[name] = codec.decoder(name or None, told)
-
-    def _heard(self, own: str, events: list[Any]) -> list[Any]:
-        """The events, if they are shown; the other decoders hear them."""
-        if self._codec.protocol.is_told:
-            for other in (item for name, item in self._decoders.items() if name != own):
-                for event in events:
-                    other.hear(event)
-        return events if self._shown in (None, own) else []
+            events += line.idle(name)
+        yield events + line.feed(piece.sender, piece.data)
+    yield line.flush()
 
 
 def _told_to(codec: Codec, sender: str, told: Sequence[str]) -> list[str]:

@@ -1,4 +1,4 @@
-"""Examples, which must say enough to be verified, and exchanges.
+"""Examples, which must say enough to be verified.
 
 Whether an example decodes to its values is asked later, by the Python target's own output.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from protogen.copying import replace
 from protogen.model.frame import Frame
-from protogen.model.messages import Contradiction, Example, Exchange, Message, Step
+from protogen.model.messages import Contradiction, Example, Message
 from protogen.model.parts import members_of
 from protogen.passes.context import Context, Loc, about
 from protogen.passes.draft import Draft
@@ -171,19 +171,3 @@ def _contradiction(message: Message, item: ExampleSyntax) -> Contradiction | Non
     written = item.contradicts
     reads = None if written.reads is None else with_byte_strings(message.fields, written.reads)
     return Contradiction(fails=written.fails, why=written.why, reads=reads)
-
-
-def resolve_exchanges(context: Context, draft: Draft) -> None:
-    """The exchanges."""
-    draft.exchanges = tuple(
-        Exchange(
-            name=name,
-            title=item.title or name,
-            steps=tuple(
-                Step(message=step.message, example=step.example, about=about(step.doc, step.source))
-                for step in item.steps
-            ),
-            about=about(item.doc, item.source),
-        )
-        for name, item in context.syntax.exchanges.items()
-    )

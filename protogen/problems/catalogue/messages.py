@@ -319,7 +319,8 @@ true any more: remove it, or correct `fails`.
         "An exchange names nothing",
         """\
 The steps of an exchange are messages of the schema, each with one of its examples if it is to be
-shown with bytes. This one names a message or an example that does not exist.
+shown with bytes; requests, replies and refusals are messages, too. This one names a message or an
+example that does not exist.
 """,
         with_keys("""
             exchanges:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from protogen.problems.catalogue.code import Code
 from protogen.problems.catalogue.cutting import CUTTING_CODES
+from protogen.problems.catalogue.exchanges import EXCHANGE_CODES
 from protogen.problems.catalogue.expressions import EXPRESSION_CODES
 from protogen.problems.catalogue.fields import FIELD_CODES
 from protogen.problems.catalogue.forms import FORM_CODES
@@ -55,6 +56,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *TRIMMING_CODES,
     *CUTTING_CODES,
     *MESSAGE_CODES,
+    *EXCHANGE_CODES,
     *PART_CODES,
     *PART_BITS_CODES,
     *PART_FIELD_CODES,

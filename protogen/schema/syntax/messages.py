@@ -1,4 +1,4 @@
-"""Messages with their examples, overloads, exchanges."""
+"""Messages with their examples, and overloads."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from protogen.schema.syntax.base import (
     Name,
     PartValue,
     PartValueForm,
-    ShortForm,
     SourceRef,
     Syntax,
     Text,
@@ -22,7 +21,6 @@ from protogen.schema.syntax.base import (
 from protogen.schema.syntax.fields import FieldRef
 from protogen.schema.syntax.names import (
     EndpointName,
-    ExampleName,
     FormName,
     Kind,
     PartName,
@@ -85,7 +83,7 @@ class Example(Syntax):
 _Names = Annotated[list[Name], Field(min_length=1, json_schema_extra={"uniqueItems": True})]
 
 
-def _one_or_several(thing: str) -> BeforeValidator:
+def one_or_several(thing: str) -> BeforeValidator:
     """Let one name stand for a list of it; `thing` says, with its article, what has the name."""
     word = thing.rsplit(maxsplit=1)[-1]
 
@@ -101,10 +99,10 @@ def _one_or_several(thing: str) -> BeforeValidator:
     return BeforeValidator(listed, json_schema_input_type=Name | _Names)
 
 
-Senders = Annotated[tuple[EndpointName, ...], _one_or_several("an endpoint")]
+Senders = Annotated[tuple[EndpointName, ...], one_or_several("an endpoint")]
 """One endpoint or several."""
 
-Forms = Annotated[tuple[FormName, ...], _one_or_several("a form")]
+Forms = Annotated[tuple[FormName, ...], one_or_several("a form")]
 """One form of frame or several."""
 
 
@@ -241,26 +239,4 @@ class Overload(Syntax):
         None, description="The decision that accepts it."
     )
     doc: Text | None = Field(None, description="What a reader should know.")
-    source: SourceRef | None = Field(None, description="Where it is written down.")
-
-
-class Step(Syntax):
-    """One message of an exchange."""
-
-    message: Annotated[Name, Ref(Kind.MESSAGE, missing="PG164")] = Field(description="The message.")
-    example: ExampleName | None = Field(None, description="Which of its examples is sent.")
-    doc: Text | None = Field(None, description="What happens here.")
-    source: SourceRef | None = Field(None, description="Where it is printed.")
-
-
-StepRef = Annotated[Step, BeforeValidator(ShortForm("message"), json_schema_input_type=Name | Step)]
-"""A step; a bare text names the message."""
-
-
-class Exchange(Syntax):
-    """A named sequence of messages."""
-
-    title: Text | None = Field(None, description="Name of the exchange.")
-    steps: tuple[StepRef, ...] = Field(strict=False, description="The messages in order.")
-    doc: Text | None = Field(None, description="What the exchange does.")
     source: SourceRef | None = Field(None, description="Where it is written down.")

@@ -64,7 +64,13 @@ class BySender(msgspec.Struct, frozen=True):
     """Mark of a mapping from endpoints to what may also stand there once, for all of them."""
 
 
-Mark = Ref | Formula | Member | NumberPath | FieldPath | FieldValues | BySender
+class Matched(msgspec.Struct, frozen=True):
+    """Mark of a part or field of the messages that the keys `of` of the exchange around name."""
+
+    of: tuple[str, ...]
+
+
+Mark = Ref | Formula | Member | NumberPath | FieldPath | FieldValues | Matched | BySender
 
 EndpointName = Annotated[Name, Ref(Kind.ENDPOINT, missing="PG108")]
 """An endpoint."""

@@ -20,10 +20,10 @@ from protogen.schema.syntax.base import (
     Text,
     written_as,
 )
+from protogen.schema.syntax.exchanges import Exchange
 from protogen.schema.syntax.fields import FieldRef
 from protogen.schema.syntax.forms import Form, keys_of, models_inside
 from protogen.schema.syntax.messages import (
-    Exchange,
     Identity,
     MessageSyntax,
     Overload,
@@ -247,7 +247,8 @@ class ProtocolSyntax(Syntax):
         description="Messages of one sender that share an identity.",
     )
     exchanges: dict[Name, Exchange] = Field(
-        default_factory=dict, description="Named sequences of messages."
+        default_factory=dict,
+        description="Named sequences of messages, and requests with their replies.",
     )
     decisions: dict[Name, Decision] = Field(
         default_factory=dict,

@@ -10,7 +10,7 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.attributes import argument, attribute
 from protogen.targets import descriptions
 from protogen.targets.escape import paragraphs
-from protogen.targets.python import classes, describing, frames
+from protogen.targets.python import classes, describing, frames, lines
 from protogen.targets.python.classes import Attribute, Constructor, EnumClass, RecordClass, slots_of
 from protogen.targets.python.formats import classes_of
 from protogen.targets.python.literals import call, text, tuple_of
@@ -80,6 +80,9 @@ class Module(msgspec.Struct, frozen=True):
     any_parts: str
     literal: str
     protocol_text: str
+    connect_heads: tuple[str, ...]
+    """Of the overloads of `connect`."""
+    connect_head: str
     arguments: dict[str, str]
     """Counters and values that `encode` takes: names of the parts, and of its arguments."""
     kinds: dict[str, str]
@@ -125,7 +128,9 @@ def view(protocol: Protocol) -> Module:
         any_message=any_message,
         any_parts=any_parts,
         literal=f"_typing.Literal[{', '.join(text(item.name) for item in endpoints)}]",
-        protocol_text=_protocol_text(protocol, senders, any_message, any_parts),
+        protocol_text=_protocol_text(protocol, senders, names, any_message, any_parts),
+        connect_heads=lines.connect_heads(protocol, names, any_message),
+        connect_head=lines.connect_head(protocol),
         arguments=arguments,
         kinds={name: _kind(protocol, name) for name in arguments},
         arguments_doc=_arguments_doc(protocol),
@@ -403,11 +408,23 @@ def _sender_spec(sender: Sender, frame: str, parts: str, names: Names) -> str:
 
 
 def _protocol_text(
-    protocol: Protocol, senders: tuple[SenderView, ...], message: str, parts: str
+    protocol: Protocol,
+    senders: tuple[SenderView, ...],
+    names: Names,
+    message: str,
+    parts: str,
 ) -> str:
     name = f"PROTOCOL: _rt.Protocol[{message}, {parts}] = "
     specs = [f"{sender.upper}_SENDER" for sender in senders]
-    expression = call("_rt.Protocol", text(protocol.name), *specs, spec_hash="SPEC_HASH")
+    asked = [lines.exchange(item, protocol, names) for item in lines.requests_of(protocol)]
+    expression = call(
+        "_rt.Protocol",
+        text(protocol.name),
+        *specs,
+        spec_hash="SPEC_HASH",
+        line=lines.line(protocol),
+        exchanges=tuple_of(asked) if asked else None,
+    )
     return name + wrapped(expression, len(name), 0, after=0)
 
 

@@ -6,7 +6,7 @@ from protogen.runtime.attributes import KEYWORDS
 
 _OWN = """
 EncodeError DecodeError SPEC_HASH VERSION MESSAGES PROTOCOL Parts Sender Encoder Decoder encode
-decode None True False
+decode connect None True False
 """
 """What a module has itself, and reserved words that classes could be called."""
 

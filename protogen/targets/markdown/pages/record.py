@@ -12,20 +12,59 @@ from protogen.targets.markdown.fields.paths import fields_inside, named_fields
 from protogen.targets.markdown.text.anchors import example_anchor, message_link
 from protogen.targets.markdown.text.origin import about_line, place
 from protogen.targets.markdown.text.table import Table, View, table
-from protogen.targets.markdown.text.words import code, hex_bytes, plural, sentence, sentences
+from protogen.targets.markdown.text.words import (
+    code,
+    hex_bytes,
+    number,
+    plural,
+    sentence,
+    sentences,
+)
 
 _MOST_BYTES = 24
 """Bytes of an exchange's step that are printed."""
 
 
 def exchange_view(exchange: Exchange, protocol: Protocol) -> View:
-    """Return a sequence of messages with the bytes of their examples."""
-    rows = [_step(index, step, protocol) for index, step in enumerate(exchange.steps, 1)]
+    """Return a sequence of messages with the bytes of their examples, or a request as rows."""
     return {
         "title": markdown(exchange.title or exchange.name),
         "about": about_line(exchange.about),
-        "table": table(("Step", "From", "Message", "Example", "Bytes", "What happens"), rows),
+        "table": _request(exchange) if exchange.requests else _sequence(exchange, protocol),
     }
+
+
+def _sequence(exchange: Exchange, protocol: Protocol) -> Table:
+    rows = [_step(index, step, protocol) for index, step in enumerate(exchange.steps, 1)]
+    return table(("Step", "From", "Message", "Example", "Bytes", "What happens"), rows)
+
+
+def _request(exchange: Exchange) -> Table:
+    rows = [("Request", _any_of(exchange.requests)), ("Reply", _any_of(exchange.replies))]
+    if exchange.refusals:
+        rows.append(("Refusal", _any_of(exchange.refusals)))
+    rows.append(("Told by", _told_by(exchange)))
+    if exchange.timeout is not None:
+        rows.append(("Timeout", f"{number(exchange.timeout * 1000)} ms"))
+    if exchange.retries:
+        rows.append(("Retries", str(exchange.retries)))
+    return table(("What", "Which"), rows)
+
+
+def _any_of(messages: Iterable[str]) -> str:
+    return " or ".join(map(message_link, messages))
+
+
+def _told_by(exchange: Exchange) -> str:
+    """Return what tells which request a reply is of."""
+    if not exchange.match:
+        return "their order: one request waits at a time"
+    pairs = (
+        f"the same {code(one)}" if one == other else f"{code(other)}, equal to {code(one)}"
+        for one, other in exchange.match
+    )
+    refusal = "" if exchange.is_refusal_matched else "; a refusal is of the request that waits"
+    return f"{' and '.join(pairs)}{refusal}"
 
 
 def _step(index: int, step: Step, protocol: Protocol) -> tuple[str, ...]:

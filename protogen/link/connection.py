@@ -1,0 +1,179 @@
+"""Opens links: to a port by its address, as one endpoint of a protocol."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import ModuleType, TracebackType
+from typing import TYPE_CHECKING, Any, Generic, TypedDict, Unpack
+
+from protogen.link.blocking import BlockingLink
+from protogen.link.errors import LinkError
+from protogen.link.line import LineDecoders
+from protogen.link.link import Link, ReceivedT, SentT
+from protogen.link.ports.address import PortKind, parse_address
+from protogen.link.ports.lasting import LastingPort
+from protogen.link.ports.opening import open_port
+from protogen.link.ports.port import Port
+from protogen.link.ports.settings import DEFAULT_BAUD, LineSettings
+from protogen.runtime.codec import Protocol as Codec
+
+if TYPE_CHECKING:
+    from protogen.model.protocol import Protocol
+
+MIN_SILENCE = 0.02
+"""Seconds; adapters of USB keep bytes for up to 16 ms, so a shorter silence means nothing."""
+
+_COME_BACK = frozenset({PortKind.SERIAL, PortKind.SOCKET, PortKind.RFC2217})
+"""Ports that are opened again when they were lost."""
+
+
+class Options(TypedDict, total=False):
+    """What may be said of a link beside its port and endpoint."""
+
+    baud: int
+    """Bits per second, in place of those of the schema."""
+    dtr: bool | None
+    """State of DTR; None, which is the default, leaves it as it is."""
+    rts: bool | None
+    peer: str
+    """The endpoint whose bytes come in, where there are more than two."""
+    silence: float | None
+    """Seconds without bytes that end what has come, in place of those of the schema."""
+    lasting: bool
+    """False: a port that is lost is not opened again."""
+    tell: Callable[[str], None]
+    """Takes the news that the port was lost, or is back."""
+
+
+class Connection(Generic[SentT, ReceivedT]):
+    """A link that is not open yet: `async with` gives a Link, `with` a BlockingLink."""
+
+    def __init__(
+        self,
+        codec: Codec[Any, Any],
+        port: str | Port,
+        endpoint: str | None,
+        encode: Callable[..., bytes] | None,
+        options: Options,
+    ) -> None:
+        self._codec = codec
+        self._port = port
+        self._endpoint = endpoint
+        self._encode = encode
+        self._options = options
+        _decoders(codec, endpoint, options)  # What is wrong is told before a port is opened.
+        self._link: Link[SentT, ReceivedT] | None = None
+        self._blocking: BlockingLink[SentT, ReceivedT] | None = None
+
+    async def open(self) -> Link[SentT, ReceivedT]:
+        """Open the port, and begin to read. Raises PortError."""
+        port = self._port if isinstance(self._port, Port) else await self._opened(self._port)
+        decoders = _decoders(self._codec, self._endpoint, self._options)
+        link = Link[SentT, ReceivedT](self._codec, port, self._endpoint, decoders, self._encode)
+        self._link = link
+        return link
+
+    async def _opened(self, address: str) -> Port:
+        settings = _settings(self._codec, self._options)
+        port = await open_port(address, settings)
+        comes_back = parse_address(address).kind in _COME_BACK
+        if not comes_back or not self._options.get("lasting", True):
+            return port
+        lasting = LastingPort(port, lambda: open_port(address, settings), self._take_news)
+        self._lasting = lasting
+        return lasting
+
+    def _take_news(self, news: str) -> None:
+        if self._link is not None and not self._lasting.is_there:
+            self._link.note_loss(news)
+        tell = self._options.get("tell")
+        if tell is not None:
+            tell(news)
+
+    async def __aenter__(self) -> Link[SentT, ReceivedT]:
+        return await self.open()
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._link is not None:
+            await self._link.close()
+
+    def __enter__(self) -> BlockingLink[SentT, ReceivedT]:
+        self._blocking = BlockingLink(self.open)
+        return self._blocking
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._blocking is not None:
+            self._blocking.close()
+
+
+def connect(
+    codec: ModuleType | Codec[Any, Any] | Protocol,
+    port: str | Port,
+    endpoint: str | None = None,
+    *,
+    encode: Callable[..., bytes] | None = None,
+    **options: Unpack[Options],
+) -> Connection[Any, Any]:
+    """Prepare a link to a port, which is opened by `async with`, or by `with`.
+
+    `codec` is a generated module, or the protocol that `protogen.load` gives. `endpoint` is this
+    program; what the others send is decoded. Without one, the link only listens. Raises LinkError
+    where the protocol has no such endpoint.
+    """
+    if isinstance(codec, Codec):
+        return Connection(codec, port, endpoint, encode, options)
+    module: Any = codec if isinstance(codec, ModuleType) else _module_of(codec)
+    if not isinstance(module.PROTOCOL, Codec):
+        problem = f"{module.__name__} carries a runtime of its own along"
+        raise LinkError(problem, "generate it without --standalone")
+    return Connection(module.PROTOCOL, port, endpoint, module.encode, options)
+
+
+def _module_of(protocol: Protocol) -> ModuleType:
+    from protogen.live.codec import kept_module
+
+    return kept_module(protocol)
+
+
+def _decoders(codec: Codec[Any, Any], endpoint: str | None, options: Options) -> LineDecoders:
+    """The decoders of what the others send. Raises LinkError where there is no such endpoint."""
+    for name in filter(None, (endpoint, options.get("peer"))):
+        if name not in codec.line.endpoints:
+            known = ", ".join(codec.line.endpoints)
+            raise LinkError(f"{codec.name} has no endpoint {name!r}", f"there are {known}")
+    peers = [name for name in codec.endpoints if name != endpoint]
+    if "peer" in options:
+        peers = [name for name in peers if name == options["peer"]]
+    if not peers:
+        alone = options.get("peer") or f"no other endpoint than {endpoint}"
+        raise LinkError(f"{alone} sends nothing", "choose another endpoint")
+    silence = options.get("silence", codec.line.silence)
+    decoders = LineDecoders(codec, peers, None if silence is None else max(silence, MIN_SILENCE))
+    if len(peers) > 1:
+        try:
+            decoders.feed("", b"")
+        except ValueError as error:
+            raise LinkError(str(error), f"give peer={' or '.join(map(repr, peers))}") from None
+    return decoders
+
+
+def _settings(codec: Codec[Any, Any], options: Options) -> LineSettings:
+    line: Any = codec.line
+    return LineSettings(
+        baud=options.get("baud") or line.baud or DEFAULT_BAUD,
+        data_bits=line.data_bits,
+        parity=line.parity,
+        stop_bits=line.stop_bits,
+        dtr=options.get("dtr"),
+        rts=options.get("rts"),
+    )

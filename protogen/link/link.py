@@ -1,0 +1,283 @@
+"""A link: what comes in of a port as typed streams, and requests that wait for their replies."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable, Iterable
+from types import TracebackType
+from typing import Any, Generic, Self, TypeVar
+
+import msgspec
+
+from protogen.errors import UserError
+from protogen.link.counts import LinkCounts, name_of
+from protogen.link.errors import LinkClosedError, LinkError
+from protogen.link.line import LineDecoders
+from protogen.link.ports.port import Arrival, Port, PortLostError
+from protogen.link.requests import Requests
+from protogen.link.streams import DEFAULT_LIMIT, Heard, Overflow, Queue, Stream
+from protogen.runtime.codec import Encoder
+from protogen.runtime.codec import Protocol as Codec
+from protogen.runtime.events import Event, MessageEvent
+from protogen.runtime.payload.message import Message
+from protogen.runtime.payload.number import GivenValue
+
+SentT = TypeVar("SentT", bound=Message)
+ReceivedT = TypeVar("ReceivedT", bound=Message)
+MessageT = TypeVar("MessageT", bound=Message)
+
+_AT_ONCE = 64
+"""Events that are given at once; then those who take them have their turn."""
+
+
+class _Subscription(msgspec.Struct, frozen=True, eq=False):
+    """A queue, and the messages that go there; without any, all events do."""
+
+    queue: Queue[Any]
+    kinds: frozenset[type[Message]] | None
+
+    async def give(self, heard: Heard) -> None:
+        event = heard.event
+        if self.kinds is None:
+            await self.queue.put(heard)
+        elif isinstance(event, MessageEvent) and type(event.message) in self.kinds:
+            await self.queue.put(event.message)
+
+
+class Link(Generic[SentT, ReceivedT]):
+    """An open port as one endpoint of a protocol. All of its methods are for one event loop.
+
+    It reads all the time, so that `last`, `counts` and requests are up to date, whether or not
+    somebody takes what comes in.
+    """
+
+    def __init__(
+        self,
+        codec: Codec[Any, Any],
+        port: Port,
+        endpoint: str | None,
+        decoders: LineDecoders,
+        encode: Callable[..., bytes] | None = None,
+    ) -> None:
+        """`endpoint` is this end; None only listens. `encode` is that of the generated module."""
+        self.port = port
+        self.endpoint = endpoint
+        self.counts = LinkCounts()
+        """What was seen and sent since the link was opened."""
+        self._codec = codec
+        self._line = decoders
+        peers = decoders.senders
+        self._source = peers[0] if len(peers) == 1 else ""
+        self._last: dict[type[Message], Message] = {}
+        self._subscriptions: list[_Subscription] = []
+        self._writing = asyncio.Lock()
+        self._has_gap = False
+        """True if bytes are missing in front of those that come next."""
+        self._error: Exception | None = None
+        self._has_ended = False
+        self._encoder: Encoder | None = None
+        self._requests: Requests | None = None
+        if endpoint in codec.endpoints:
+            forms = codec.forms(endpoint)
+            self._encoder = Encoder(forms, encode)
+            self._requests = Requests(
+                codec.exchanges, forms, self._encoder, self._write, self.counts
+            )
+        self._reading: asyncio.Task[Arrival] | None = None
+        self._reader = asyncio.create_task(self._read())
+
+    # --- what comes in ----------------------------------------------------------------------------
+
+    def messages(
+        self, *kinds: type[MessageT], limit: int = DEFAULT_LIMIT, overflow: Overflow = "drop"
+    ) -> Stream[MessageT]:
+        """The messages of these kinds that come in from now on.
+
+        At most `limit` of them wait; see `Overflow` for what becomes of more. Raises LinkError
+        where the other end sends no such message.
+        """
+        known = self.kinds
+        for kind in kinds:
+            if kind not in known:
+                names = ", ".join(item.NAME for item in known)
+                raise LinkError(f"the other end sends no {kind.NAME}; it sends {names}")
+        if not kinds:
+            raise LinkError("which messages?", "name their classes, or take `events()`")
+        return self._stream(frozenset[type[Message]](kinds), limit, overflow)
+
+    def events(self, *, limit: int = DEFAULT_LIMIT, overflow: Overflow = "drop") -> Stream[Heard]:
+        """All events that come in from now on, with their times: unknown and invalid ones, too."""
+        return self._stream(None, limit, overflow)
+
+    def last(self, kind: type[MessageT]) -> MessageT | None:
+        """The last message of a kind; None where none has come yet."""
+        found = self._last.get(kind)
+        return found if isinstance(found, kind) else None
+
+    @property
+    def kinds(self) -> tuple[type[Message], ...]:
+        """The messages that can come in."""
+        forms = (form for name in self._line.senders for form in self._codec.forms(name))
+        return tuple(dict.fromkeys(kind for form in forms for kind in form.messages))
+
+    def _stream(
+        self, kinds: frozenset[type[Message]] | None, limit: int, overflow: Overflow
+    ) -> Stream[Any]:
+        queue = Queue[Any](limit, overflow)
+        if self._has_ended:
+            queue.end(self._error)
+        else:
+            self._subscriptions.append(_Subscription(queue, kinds))
+        return Stream(queue)
+
+    # --- what goes out ----------------------------------------------------------------------------
+
+    async def send(self, message: SentT, *, strict: bool = True, **parts: GivenValue) -> None:
+        """Send a message, and wait for nothing but room on the line.
+
+        `parts` are counters and other parts of the frame; counters count by themselves. Raises
+        EncodeError, PortError.
+        """
+        encoder = self._encoder_for(message)
+        await self._write(encoder.encode_next(message, strict, **parts), message)
+
+    async def request(
+        self,
+        message: SentT,
+        *,
+        timeout: float | None = None,
+        retries: int | None = None,
+        **parts: GivenValue,
+    ) -> ReceivedT:
+        """Send a message and return what answers it, as the schema's `exchanges` say.
+
+        Where nothing answers within `timeout` seconds, the same bytes are sent again, `retries`
+        times; without them, the exchange says both. A request waits for another one that nothing
+        would tell its reply from. Raises RefusedError, NoReplyError, EncodeError, PortError.
+        """
+        self._encoder_for(message)
+        assert self._requests is not None
+        self._check_open()
+        reply: Any = await self._requests.ask(message, timeout, retries, parts)
+        return reply  # type: ignore[no-any-return]
+
+    def _encoder_for(self, message: Message) -> Encoder:
+        if self._encoder is None:
+            who = f"{self.endpoint} sends nothing" if self.endpoint else "it only listens"
+            names = " or ".join(self._codec.endpoints)
+            raise LinkError(
+                f"this link can't send {type(message).NAME}: {who}", f"open it as {names}"
+            )
+        return self._encoder
+
+    async def _write(self, frame: bytes, message: Message) -> None:
+        self._check_open()
+        async with self._writing:
+            # What this end sends may tell what the answers are. Nobody here wants its events.
+            self._line.feed(self.endpoint or "", frame)
+            await self.port.write(frame)
+        self.counts.sent[type(message).NAME] += 1
+
+    def _check_open(self) -> None:
+        if self._has_ended:
+            raise self._closed()
+
+    def _closed(self) -> Exception:
+        name, error = self.port.name, self._error
+        if isinstance(error, UserError):
+            return type(error)(str(error), error.hint)
+        return LinkClosedError(f"the link to {name} is closed" + (f": {error!r}" if error else ""))
+
+    # --- reading ----------------------------------------------------------------------------------
+
+    def note_loss(self, problem: str) -> None:
+        """Take the news that the port was lost: no request will be answered."""
+        self.counts.losses += 1
+        self._has_gap = True
+        if self._requests is not None:
+            self._requests.fail(lambda: PortLostError(problem))
+
+    async def _read(self) -> None:
+        try:
+            await self._read_all()
+        except asyncio.CancelledError:
+            raise
+        except Exception as error:
+            self._end(error)
+        else:
+            self._end(None)
+
+    async def _next(self) -> Arrival | None:
+        """What comes next; None: there was a silence in which nothing did."""
+        silence = self._line.silence if self._line.pending else None
+        if self._reading is None and silence is None:
+            return await self.port.read()
+        if self._reading is None:
+            self._reading = asyncio.create_task(self.port.read())
+        done, _ = await asyncio.wait({self._reading}, timeout=silence)
+        if not done:
+            return None
+        reading, self._reading = self._reading, None
+        return reading.result()
+
+    async def _read_all(self) -> None:
+        while True:
+            arrival = await self._next()
+            if arrival is None:
+                await self._give(self._line.idle(self._source), time.time_ns())
+                continue
+            if self._has_gap:
+                self._has_gap = False
+                await self._give(self._line.flush(), arrival.when)
+            if not arrival.data:
+                await self._give(self._line.flush(), arrival.when)
+                return
+            self.counts.bytes_received += len(arrival.data)
+            await self._give(self._line.feed(self._source, arrival.data), arrival.when)
+
+    async def _give(self, events: Iterable[Event[Any, Any]], when: int) -> None:
+        for number, event in enumerate(events, start=1):
+            if number % _AT_ONCE == 0:
+                await asyncio.sleep(0)
+            self.counts.received[name_of(event)] += 1
+            if isinstance(event, MessageEvent):
+                self._last[type(event.message)] = event.message
+            if self._requests is not None:
+                self._requests.hear(event)
+            heard = Heard(when, event)
+            for subscription in tuple(self._subscriptions):
+                if subscription.queue.is_closed:
+                    self._subscriptions.remove(subscription)
+                else:
+                    await subscription.give(heard)
+
+    def _end(self, error: Exception | None) -> None:
+        self._has_ended = True
+        self._error = error
+        if self._requests is not None:
+            self._requests.fail(self._closed)
+        for subscription in self._subscriptions:
+            subscription.queue.end(error)
+        self._subscriptions.clear()
+
+    async def close(self) -> None:
+        """Give the port back. Streams end, and requests fail with LinkClosedError."""
+        tasks = [task for task in (self._reader, self._reading) if task is not None]
+        for task in tasks:
+            task.cancel()
+        await asyncio.wait(tasks)
+        if not self._has_ended:
+            self._end(None)
+        await self.port.close()
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        await self.close()
