@@ -197,6 +197,24 @@ exchanges:
 """
 
 
+def test_sends_at_the_rates_of_the_schema_unless_others_are_given(tmp_path: Path) -> None:
+    path = tmp_path / "rig.yaml"
+    path.write_text(
+        "protocol: rig\nendpoints: {board: Board}\nframe: {kind: {type: uint8, id: true}, "
+        "payload: {}, end: {literal: 0xC0}}\ntransparency: slip\nmessages:\n"
+        "  often: {id: 1, from: board, rate: 5 ms}\n"
+        "  never: {id: 2, from: board, rate: 100 Hz}\n"
+        "  other: {id: 3, from: board, rate: 0.01}\n"
+    )
+    with SimulatedDevice(path, "board", rates={"never": 0, "other": 200}) as it:
+        with opened(it.port) as port:
+            assert set(read(port, 20)) == {1, 3, 0xC0}
+        assert it.counts.sent.keys() == {"often", "other"}
+    done = run("simulate", str(path), "--rate", "never=0", "--for", "0.2")
+    assert re.search(r"sent \d\d often", done.stderr), done.stderr
+    assert "never" not in done.stderr
+
+
 class TestExchanges:
     """Which of several replies it is, by what the request has."""
 
@@ -287,7 +305,7 @@ class TestCommand:
             (("--endpoint", "esb"), "`esb` is no endpoint of matty that sends"),
             (("--endpoint", "esp", "--rate", "statu=1"), "esp sends no `statu`"),
             (("--endpoint", "esp", "--rate", "status"), "does not say how often status is sent"),
-            (("--endpoint", "esp", "--rate", "status=0"), "does not say how often status is sent"),
+            (("--endpoint", "esp", "--rate", "status=-1"), "does not say how often status is sent"),
             (("--endpoint", "pc", "--refuse", "0.1"), "no exchange of matty has a refusal of pc"),
             (("--endpoint", "esp", "--silent", "--ignore", "1"), "answers no request at all"),
             (("--endpoint", "esp", "--refuse", "1", "--ignore", "1"), "more than 1 together"),

@@ -20,7 +20,7 @@ from protogen.link.simulated_values import (
     computed_values,
     example_values,
 )
-from protogen.link.simulation import Counts, Simulation
+from protogen.link.simulation import Counts, Simulation, rates_of
 from protogen.live.codec import kept_module
 from protogen.model.protocol import Protocol
 
@@ -49,7 +49,7 @@ class SimulatedDevice:
         answers: Literal["exchanges"] | None = "exchanges",
         answer_rates: AnswerRates | None = None,
     ) -> None:
-        """`rates` are messages with how often each is sent, in Hz.
+        """`rates` are messages with how often each is sent, in Hz, in place of the schema's `rate`.
 
         Values are those of examples, or random ones in their ranges; a function of the message's
         name and the seconds since the start gives others. The device is at a pseudo-terminal, or
@@ -64,7 +64,7 @@ class SimulatedDevice:
             protocol,
             kept_module(protocol),
             endpoint,
-            rates or {},
+            rates_of(protocol, endpoint, rates or {}),
             usual if values is None else computed_values(usual, values),
             Damage(damage, seed) if damage is not None else None,
         )

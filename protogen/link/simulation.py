@@ -32,6 +32,16 @@ class Counts(msgspec.Struct):
     """Frames for which the line had no room, because nobody read."""
 
 
+def rates_of(protocol: Protocol, endpoint: str, stated: Mapping[str, float]) -> dict[str, float]:
+    """How often an endpoint sends each message, in Hz: as stated, else as the schema says."""
+    said = {
+        message.name: float(message.rate)
+        for message in protocol.messages
+        if message.rate is not None and endpoint in message.senders
+    }
+    return {name: rate for name, rate in {**said, **stated}.items() if rate > 0}
+
+
 class Simulation:
     """One endpoint of a protocol, on a port."""
 

@@ -39,7 +39,11 @@ def simulate(  # noqa: PLR0913 - each option is one argument
     ] = None,
     rate: Annotated[
         list[str] | None,
-        typer.Option(metavar="MESSAGE=HZ", help="How often to send a message; may be repeated."),
+        typer.Option(
+            metavar="MESSAGE=HZ",
+            help="How often to send a message, in place of its schema's rate; 0: not at all. May be"
+            " repeated.",
+        ),
     ] = None,
     values: Annotated[
         str,
@@ -158,6 +162,7 @@ def _address(port: str | None, *, pty: bool, listen: str | None) -> str:
 
 def _rates(protocol: Protocol, endpoint: str, given: Sequence[str]) -> dict[str, float]:
     """How often each message is sent, in Hz. Raises UsageError."""
+    from protogen.link.simulation import rates_of
     from protogen.problems import hint_for
 
     names = [message.name for message in protocol.messages if endpoint in message.senders]
@@ -170,11 +175,11 @@ def _rates(protocol: Protocol, endpoint: str, given: Sequence[str]) -> dict[str,
         try:
             rates[name] = float(number)
         except ValueError:
-            rates[name] = 0.0
-        if not 0 < rates[name] <= _FASTEST:
+            rates[name] = -1.0
+        if not 0 <= rates[name] <= _FASTEST:
             problem = f"`{text}` does not say how often {name} is sent"
-            raise UsageError(problem, f"write {name}=10 for ten times a second")
-    return rates
+            raise UsageError(problem, f"write {name}=10 for ten times a second, or {name}=0")
+    return rates_of(protocol, endpoint, rates)
 
 
 _FASTEST = 100_000.0
