@@ -10,6 +10,7 @@ import socket
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,9 +20,15 @@ import pytest
 from cli_support import ROOT, run
 from test_cli_line import line_of, opened, read, started
 
+import protogen
 from generated.python import matty
+from protogen.link import NoReplyError, RefusedError
+from protogen.link.answers import AnswerRates
 from protogen.link.damage import DamageRates
 from protogen.link.device import SimulatedDevice
+from protogen.link.simulated_values import example_values
+from protogen.live.codec import kept_module
+from protogen.model.protocol import Protocol
 from protogen.recording import Recorder
 
 pytest.importorskip("serialx")
@@ -82,6 +89,42 @@ class TestDevice:
             assert read(port, 5) == ACK
             assert it.counts.received == {"invalid": 1, "stop": 1}
 
+    def test_answers_as_the_exchanges_say(self) -> None:
+        with device(MATTY, "esp") as (it, port):
+            os.write(port, STOP)
+            assert read(port, 5) == ACK
+            assert it.counts.sent == {"ack": 1}
+
+    def test_an_answer_of_its_own_replaces_that_of_the_exchange(self) -> None:
+        with device(MATTY, "esp") as (it, port):
+            it.on("stop", lambda event: [(it.messages["nack"](), {"counter": 7})])
+            os.write(port, STOP)
+            assert read(port, 5)[3] == ord("N")
+            time.sleep(0.05)
+            assert it.counts.sent == {"nack": 1}
+
+    def test_answers_nothing_where_it_should_not(self) -> None:
+        with device(MATTY, "esp", answers=None) as (it, port):
+            os.write(port, STOP)
+            time.sleep(0.1)
+            assert (it.counts.received, it.counts.sent) == ({"stop": 1}, {})
+
+    def test_refuses_and_ignores_the_shares_that_it_is_told(self) -> None:
+        rates = AnswerRates(refuse=0.3, ignore=0.2)
+        outcomes = Counter[str]()
+        with (
+            SimulatedDevice(MATTY, "esp", answer_rates=rates, seed=5) as it,
+            matty.connect(it.port, "pc") as link,
+        ):
+            for _ in range(100):
+                try:
+                    link.request(matty.Stop(), timeout=0.03, retries=0)
+                except (NoReplyError, RefusedError) as error:
+                    outcomes[type(error).__name__] += 1
+        assert 20 <= outcomes["RefusedError"] <= 40
+        assert 10 <= outcomes["NoReplyError"] <= 30
+        assert it.counts.sent["nack"] == outcomes["RefusedError"]
+
     def test_sends_when_it_is_told(self) -> None:
         with device(MATTY, "esp") as (it, port):
             it.send(it.messages["ack"](), counter=1)
@@ -126,6 +169,95 @@ class TestDevice:
                 while len(found) < 5:
                     found += decoder.feed(client.recv(100))
         assert all(event.kind == "message" for event in found)
+
+
+ASKED = """\
+protocol: rig
+endpoints: {host: Host, board: Board}
+link: {idle_timeout: 20 ms}
+byte_order: little
+frame:
+  kind: {type: uint8, id: true}
+  payload: {}
+  end: {literal: 0xC0}
+transparency: slip
+messages:
+  ask: {id: 1, from: host, fields: {which: uint8, name: {type: bytes, size: 2}}}
+  get: {id: 2, from: host, fields: {wanted: uint8}}
+  value:
+    id: 17
+    from: board
+    fields: {of: {type: uint8, range: [0, 9]}, label: {type: bytes, size: 2}, value: uint16}
+  wide: {id: 18, from: board, fields: {label: {type: bytes, size: 2}, of: uint8}}
+  red: {id: 33, from: board, fields: {level: uint8}}
+  green: {id: 34, from: board, fields: {level: uint8}}
+exchanges:
+  query: {request: ask, reply: [value, wide], match: {which: of, name: label}}
+  colour: {request: get, reply: [red, green], match: {wanted: kind}}
+"""
+
+
+def test_sends_at_the_rates_of_the_schema_unless_others_are_given(tmp_path: Path) -> None:
+    path = tmp_path / "rig.yaml"
+    path.write_text(
+        "protocol: rig\nendpoints: {board: Board}\nframe: {kind: {type: uint8, id: true}, "
+        "payload: {}, end: {literal: 0xC0}}\ntransparency: slip\nmessages:\n"
+        "  often: {id: 1, from: board, rate: 5 ms}\n"
+        "  never: {id: 2, from: board, rate: 100 Hz}\n"
+        "  other: {id: 3, from: board, rate: 0.01}\n"
+    )
+    with SimulatedDevice(path, "board", rates={"never": 0, "other": 200}) as it:
+        with opened(it.port) as port:
+            assert set(read(port, 20)) == {1, 3, 0xC0}
+        assert it.counts.sent.keys() == {"often", "other"}
+    done = run("simulate", str(path), "--rate", "never=0", "--for", "0.2")
+    assert re.search(r"sent \d\d often", done.stderr), done.stderr
+    assert "never" not in done.stderr
+
+
+class TestExchanges:
+    """Which of several replies it is, by what the request has."""
+
+    @pytest.fixture
+    def rig(self, tmp_path: Path) -> Protocol:
+        (tmp_path / "rig.yaml").write_text(ASKED)
+        return protogen.load(tmp_path / "rig.yaml")
+
+    def test_the_first_reply_that_can_have_the_values(self, rig: Protocol) -> None:
+        module: Any = kept_module(rig)
+        with SimulatedDevice(rig, "board") as it, module.connect(it.port, "host") as link:
+            small = link.request(module.Ask(which=9, name=b"ab"))
+            assert (small.NAME, small.of, small.label) == ("value", 9, b"ab")
+            large = link.request(module.Ask(which=10, name=b"ab"))
+            assert (large.NAME, large.of, large.label) == ("wide", 10, b"ab")
+
+    def test_the_reply_whose_identity_was_asked_for(self, rig: Protocol) -> None:
+        module: Any = kept_module(rig)
+        with SimulatedDevice(rig, "board") as it, module.connect(it.port, "host") as link:
+            assert link.request(module.Get(wanted=34)).NAME == "green"
+            assert link.request(module.Get(wanted=33)).NAME == "red"
+            with pytest.raises(NoReplyError):
+                link.request(module.Get(wanted=35), timeout=0.05)
+        assert it.counts.sent == {"green": 1, "red": 1}
+
+    @pytest.mark.parametrize("name", ["mhz19", "ping", "feetech"])
+    def test_each_request_of_the_library_has_an_answer(self, name: str) -> None:
+        one = {"id": 1} if name == "feetech" else {}  # Its requests may also be to all.
+        protocol = protogen.load(f"library:{name}")
+        module: Any = kept_module(protocol)
+        for exchange in module.PROTOCOL.exchanges:
+            (answering,) = {
+                end for reply in exchange.replies for end in protocol.message(reply.NAME).senders
+            }
+            asking = next(end for end in protocol.sending if end != answering)
+            values = example_values(protocol, asking, 3)
+            with (
+                SimulatedDevice(protocol, answering) as it,
+                module.connect(it.port, asking) as link,
+            ):
+                for request in exchange.requests:
+                    fields, parts = values(request.NAME, 0.0)
+                    link.request(request.from_dict(fields), timeout=2, **{**parts, **one})
 
 
 class TestCommand:
@@ -173,7 +305,10 @@ class TestCommand:
             (("--endpoint", "esb"), "`esb` is no endpoint of matty that sends"),
             (("--endpoint", "esp", "--rate", "statu=1"), "esp sends no `statu`"),
             (("--endpoint", "esp", "--rate", "status"), "does not say how often status is sent"),
-            (("--endpoint", "esp", "--rate", "status=0"), "does not say how often status is sent"),
+            (("--endpoint", "esp", "--rate", "status=-1"), "does not say how often status is sent"),
+            (("--endpoint", "pc", "--refuse", "0.1"), "no exchange of matty has a refusal of pc"),
+            (("--endpoint", "esp", "--silent", "--ignore", "1"), "answers no request at all"),
+            (("--endpoint", "esp", "--refuse", "1", "--ignore", "1"), "more than 1 together"),
             (("--endpoint", "esp", "--pty", "--listen", ":1"), "exclude each other"),
             (("--endpoint", "esp", "--values", "no.pgrec"), "no.pgrec: No such file"),
             (("--endpoint", "esp", "--values", "no.py:wave"), "there is no file no.py"),

@@ -27,7 +27,7 @@ def print_analysis(out: Console, path: str, protocol: Protocol) -> None:
         title = next(item.title for item in protocol.endpoints if item.name == sender.endpoint)
         form = "" if sender.is_only_form else f", {sender.form}"
         out.print(Text.assemble(_INDENT, (f"{sender.endpoint}{form}", "bold"), f": {title}"))
-        _print_properties(out, sender)
+        _print_properties(out, protocol, sender)
         _print_messages(out, sender)
     out.print()
 
@@ -50,10 +50,10 @@ def count_examples(protocol: Protocol) -> tuple[int, int]:
     return len(examples) - contradicting, contradicting
 
 
-def _print_properties(out: Console, sender: Sender) -> None:
+def _print_properties(out: Console, protocol: Protocol, sender: Sender) -> None:
     from rich.text import Text
 
-    for name, text in _properties(sender):
+    for name, text in (*_properties(sender), *_busy(protocol, sender)):
         label = Text(f"{_INDENT * 2}{name:<20}", style="dim")
         out.print(label.append(text, style="default"))
 
@@ -71,6 +71,14 @@ def _properties(sender: Sender) -> Iterator[tuple[str, str]]:
     yield "overhead", _overhead(sender)
     for index, sentence in enumerate(framing.undetected or ("none",)):
         yield ("undetected errors" if index == 0 else ""), sentence
+
+
+def _busy(protocol: Protocol, sender: Sender) -> Iterator[tuple[str, str]]:
+    from protogen.model.load import line_load
+
+    load = line_load(protocol, sender.endpoint)
+    if load is not None and sender is protocol.forms(sender.endpoint)[0]:
+        yield "busy line", f"{load.shown}, with the rates of its messages"
 
 
 def _overhead(sender: Sender) -> str:
@@ -111,7 +119,20 @@ def analysis(path: str, protocol: Protocol) -> dict[str, object]:
         "examples_verified": verified,
         "examples_contradicting": contradicting,
         "decisions": len(protocol.decisions),
+        "busy": _busy_shares(protocol),
         "senders": [_sender_analysis(sender) for sender in protocol.senders],
+    }
+
+
+def _busy_shares(protocol: Protocol) -> dict[str, dict[str, float]]:
+    """Shares of the time by endpoint, of those whose messages have rates."""
+    from protogen.model.load import line_load
+
+    loads = {endpoint: line_load(protocol, endpoint) for endpoint in protocol.sending}
+    return {
+        endpoint: {"least": round(float(load.least), 6), "greatest": round(float(load.greatest), 6)}
+        for endpoint, load in loads.items()
+        if load is not None
     }
 
 

@@ -54,6 +54,7 @@ _LEFT_OUT: Mapping[str, Any] = {
     "decisions": (),
     "plan": None,
     "renamed_from": None,
+    "rate": None,
     "at": 0,
 }
 """Keys of text for readers and of derived facts, with what stands for them in a lock."""

@@ -1,74 +1,96 @@
-"""Answers that the schema's exchanges say: a reply with the values by which it is told."""
+"""Answers of a simulated device: what the exchanges say, refused or left out on purpose."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from random import Random
 from typing import Any
 
-from protogen.link.requests import value_of
-from protogen.runtime.attributes import argument, attribute
-from protogen.runtime.codec import Protocol as Codec
-from protogen.runtime.events import MessageEvent
-from protogen.runtime.framing.sender import SenderSpec
-from protogen.runtime.line import Exchange
-from protogen.runtime.payload.message import Message
-from protogen.runtime.values import replace
+import msgspec
 
-Made = Callable[[str], tuple[Any, dict[str, Any]]]
-"""Makes a message, with parts of its frame."""
+from protogen.link.simulated_values import Values
+from protogen.model.messages import Exchange
+from protogen.model.protocol import Protocol
+from protogen.runtime.errors import EncodeError
 
-
-class Answers:
-    """The replies of an endpoint to requests."""
-
-    def __init__(self, codec: Codec[Any, Any], endpoint: str, made: Made) -> None:
-        self._exchanges = {kind: item for item in codec.exchanges for kind in item.requests}
-        self._forms = codec.forms(endpoint) if endpoint in codec.endpoints else ()
-        self._made = made
-
-    def to(self, event: MessageEvent[Any, Any]) -> tuple[Any, dict[str, Any]] | None:
-        """The reply to a request, with parts of its frame; None where none is said."""
-        exchange = self._exchanges.get(type(event.message))
-        for reply in exchange.replies if exchange else ():
-            for form in self._forms:
-                assert exchange is not None
-                if reply in form.messages and _fits(reply, form, exchange, event):
-                    return self._filled(reply, form, exchange, event)
-        return None
-
-    def _filled(
-        self,
-        reply: type[Message],
-        form: SenderSpec[Any, Any],
-        exchange: Exchange,
-        event: MessageEvent[Any, Any],
-    ) -> tuple[Any, dict[str, Any]]:
-        message, parts = self._made(reply.NAME)
-        identity = [part.name for part in form.layout.identity]
-        for asked, name in exchange.match:
-            value = value_of(event.message, event, asked)
-            if attribute(name) in reply.__fields__:
-                message = replace(message, **{attribute(name): value})
-            elif name not in identity or reply.IDENTITIES is not None:
-                parts = {**parts, argument(name): value}
-        return message, parts
+Answer = Callable[[Any], Iterable[Any]]
+"""Messages that answer an event: each a message, or a pair of one and its parts."""
+Make = Callable[[str, Mapping[str, Any]], tuple[Any, Values]]
+"""Makes a message, and its parts, where some fields or parts have to have these values."""
 
 
-def _fits(
-    reply: type[Message],
-    form: SenderSpec[Any, Any],
-    exchange: Exchange,
-    event: MessageEvent[Any, Any],
-) -> bool:
-    """True if the reply can have what it is told by: an identity is that of some messages."""
-    identity = [part.name for part in form.layout.identity]
-    wanted = {
-        name: value_of(event.message, event, asked)
-        for asked, name in exchange.match
-        if name in identity and attribute(name) not in reply.__fields__
-    }
-    known = [reply.IDENTITY] if reply.IDENTITIES is None else reply.IDENTITIES
-    return not wanted or any(
-        all(dict(zip(identity, one, strict=True))[name] == wanted[name] for name in wanted)
-        for one in known
-    )
+class AnswerRates(msgspec.Struct, frozen=True, kw_only=True):
+    """How many requests are not answered as they should; none, if nothing is said."""
+
+    refuse: float = 0.0
+    """Share of requests that are refused, where their exchange has a refusal, from 0 to 1."""
+    ignore: float = 0.0
+    """Share of requests that nothing answers, from 0 to 1."""
+
+
+class _Choices(msgspec.Struct, frozen=True):
+    """What an endpoint can answer to a request."""
+
+    exchange: Exchange
+    replies: tuple[str, ...]
+    refusals: tuple[str, ...]
+
+
+class ExchangeAnswers:
+    """Answers of one endpoint to the requests of the schema's exchanges."""
+
+    def __init__(
+        self, protocol: Protocol, endpoint: str, make: Make, rates: AnswerRates, seed: int
+    ) -> None:
+        self._make = make
+        self._rates = rates
+        self._random = Random(f"{seed} answers")  # noqa: S311 - nothing here is secret
+        self._choices = dict(_choices(protocol, endpoint))
+
+    @property
+    def requests(self) -> tuple[str, ...]:
+        """The messages that are answered."""
+        return tuple(self._choices)
+
+    def __call__(self, event: Any) -> Iterator[tuple[Any, Values]]:
+        """Yield the first answer that can have what the request has; none if it is ignored."""
+        choices = self._choices[event.message.NAME]
+        chance = self._random.random()
+        if chance < self._rates.ignore:
+            return
+        is_refused = chance < self._rates.ignore + self._rates.refuse and choices.refusals
+        names = choices.refusals if is_refused else choices.replies
+        pairs = _pairs(choices.exchange, event)
+        if is_refused and not choices.exchange.is_refusal_matched:
+            pairs = {}
+        for name in names:
+            try:
+                made = self._make(name, pairs)
+            except EncodeError:
+                continue
+            yield made
+            return
+
+
+def can_refuse(protocol: Protocol, endpoint: str) -> bool:
+    """True if an endpoint sends a refusal of some request."""
+    return any(choices.refusals for _, choices in _choices(protocol, endpoint))
+
+
+def _choices(protocol: Protocol, endpoint: str) -> Iterator[tuple[str, _Choices]]:
+    """Yield the requests that an endpoint answers."""
+    sent = {message.name for message in protocol.messages if endpoint in message.senders}
+    for exchange in protocol.exchanges:
+        replies = tuple(name for name in exchange.replies if name in sent)
+        refusals = tuple(name for name in exchange.refusals if name in sent)
+        for request in exchange.requests if replies else ():
+            yield request, _Choices(exchange, replies, refusals)
+
+
+def _pairs(exchange: Exchange, event: Any) -> dict[str, Any]:
+    """What an answer has of its request, by the answer's names, as lines of JSON have it."""
+    if not exchange.match:
+        return {}
+    line = event.as_json()
+    shown = {**line["parts"], **line["fields"]}
+    return {answer: shown[asked] for asked, answer in exchange.match}

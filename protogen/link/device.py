@@ -8,9 +8,10 @@ from collections.abc import Mapping
 from concurrent.futures import Future
 from threading import Thread
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 from protogen.api import load
+from protogen.link.answers import Answer, AnswerRates
 from protogen.link.damage import Damage, DamageRates
 from protogen.link.ports.opening import open_port
 from protogen.link.ports.port import Port, PortError
@@ -19,7 +20,7 @@ from protogen.link.simulated_values import (
     computed_values,
     example_values,
 )
-from protogen.link.simulation import Answer, Counts, Simulation
+from protogen.link.simulation import Counts, Simulation, rates_of
 from protogen.live.codec import kept_module
 from protogen.model.protocol import Protocol
 
@@ -35,7 +36,7 @@ class SimulatedDevice:
     ...     my_program(board.port)
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - an argument for each setting
         self,
         schema: str | os.PathLike[str] | Protocol,
         endpoint: str,
@@ -45,12 +46,16 @@ class SimulatedDevice:
         address: str = "pty:",
         seed: int = 0,
         damage: DamageRates | None = None,
+        answers: Literal["exchanges"] | None = "exchanges",
+        answer_rates: AnswerRates | None = None,
     ) -> None:
-        """`rates` are messages with how often each is sent, in Hz.
+        """`rates` are messages with how often each is sent, in Hz, in place of the schema's `rate`.
 
         Values are those of examples, or random ones in their ranges; a function of the message's
         name and the seconds since the start gives others. The device is at a pseudo-terminal, or
-        listens: `listen://127.0.0.1:0`. Raises SchemaError.
+        listens: `listen://127.0.0.1:0`. Requests are answered as the schema's exchanges say, but
+        for the shares that `answer_rates` has refused or not answered; with `answers=None` none
+        is. Raises SchemaError.
         """
         protocol = schema if isinstance(schema, Protocol) else load(schema)
         usual = example_values(protocol, endpoint, seed)
@@ -59,10 +64,12 @@ class SimulatedDevice:
             protocol,
             kept_module(protocol),
             endpoint,
-            rates or {},
+            rates_of(protocol, endpoint, rates or {}),
             usual if values is None else computed_values(usual, values),
             Damage(damage, seed) if damage is not None else None,
         )
+        if answers is not None:
+            self._simulation.answer_requests(answer_rates or AnswerRates(), seed)
         self.port = ""
         """The port that a program opens."""
         self.messages: dict[str, Any] = kept_module(protocol).MESSAGES
@@ -80,8 +87,9 @@ class SimulatedDevice:
     def on(self, message: str, answer: Answer) -> None:
         """Answer each such message: `answer` takes the event and returns messages to send.
 
-        With a message may come its parts: `[(Ack(), {"counter": event.parts.counter})]`. Raises
-        KeyError if there is no such message.
+        With a message may come its parts: `[(Ack(), {"counter": event.parts.counter})]`. This
+        takes the place of what the schema's exchanges answer. Raises KeyError if there is no such
+        message.
         """
         self._simulation.on(message, answer)
 

@@ -68,9 +68,12 @@ def example_values(protocol: Protocol, endpoint: str, seed: int) -> ValueSource:
 
 
 def recorded_values(
-    module: ModuleType, endpoint: str, pieces: Iterable[tuple[bytes, int]]
+    module: ModuleType, endpoint: str, pieces: Iterable[tuple[bytes, int]], others: ValueSource
 ) -> ValueSource:
-    """Values of a recording: those that each message had at that time, or its first ones."""
+    """Values of a recording: those that each message had at that time, or its first ones.
+
+    A message that the recording does not have takes those of `others`.
+    """
     decoders = LineDecoders(module)
     found: dict[str, list[tuple[float, Values, Values]]] = {}
     start: int | None = None
@@ -84,7 +87,7 @@ def recorded_values(
 
     def values(name: str, seconds: float) -> tuple[Values, Values]:
         if name not in found:
-            raise ValuesError(f"the recording has no `{name}` of {endpoint}")
+            return others(name, seconds)
         rows = found[name]
         _, fields, parts = next((row for row in reversed(rows) if row[0] <= seconds), rows[0])
         return fields, parts

@@ -67,6 +67,8 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     """Name in the version before, where that was another one."""
     forms: tuple[str, ...] = ()
     """The forms of frame that carry it; none are named where all of its senders' do."""
+    rate: Fraction | None = None
+    """How often each of its senders sends it by itself, in Hz; None: it is not said."""
     virtual: tuple[tuple[str, int], ...] = ()
     """Raw values of parts that are not sent, by their names, where they are not the default."""
     about: About = NOTHING

@@ -23,6 +23,7 @@ from protogen.passes.messages.examples import attach_examples
 from protogen.passes.messages.exchanges import resolve_exchanges
 from protogen.passes.messages.identities import check_identities
 from protogen.passes.messages.part_fields import check_part_fields
+from protogen.passes.messages.rates import check_load
 from protogen.passes.messages.virtual_values import check_shared_values
 from protogen.passes.names.checking import check_names
 from protogen.passes.names.decisions import resolve_decisions
@@ -55,6 +56,7 @@ PASSES: tuple[Pass, ...] = (
     resolve_exchanges,
     analyse_framing,
     check_forms,
+    check_load,
 )
 """Each pass asks one question, reports what is wrong, and leaves something to go on with."""
 

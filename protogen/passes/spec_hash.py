@@ -26,7 +26,7 @@ _LEFT_OUT = frozenset(
         "about", "doc", "title", "summary", "source", "span", "examples", "exchanges", "decision",
         "decisions", "unprotected", "unknown", "version", "files", "link", "endpoints", "framing",
         "ranged", "stated", "preset", "spec_hash", "reserved", "plan", "needs", "holds_values",
-        "renamed_from", "behind", "constants", "agrees_with",
+        "renamed_from", "rate", "behind", "constants", "agrees_with",
     }
 )  # fmt: skip
 """Text for readers, and facts that follow from the rest."""

@@ -22,6 +22,8 @@ TEXTS = (
     "0x10",
 )
 UNITS = ("mm", "mm/s", "deg", "V", "degC", "ms", "m/s^2", "%", "1/min", "µs")
+RATES: tuple[Any, ...] = ("0.0001 Hz", 0.0001, "1/9000", "9000 s", "9999999.5 ms")
+"""So seldom that any line has room."""
 
 a_text = st.sampled_from(TEXTS)
 a_unit = st.sampled_from(UNITS)

@@ -298,6 +298,8 @@ class _Message:
         for key in ("title", "summary"):
             if self._draw(forms.one_in(6)):
                 found[key] = self._draw(forms.a_text)
+        if self._draw(forms.one_in(6)):
+            found["rate"] = self._draw(st.sampled_from(forms.RATES))
         if self._draw(forms.one_in(12)):
             found["renamed_from"] = "older"
         return found

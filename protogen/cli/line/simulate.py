@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from protogen.cli.wire.codec import Codec
+    from protogen.link.answers import AnswerRates
     from protogen.link.ports.settings import LineSettings
     from protogen.link.simulated_values import ValueFunction, ValueSource
     from protogen.link.simulation import Counts, Simulation
@@ -38,7 +39,11 @@ def simulate(  # noqa: PLR0913 - each option is one argument
     ] = None,
     rate: Annotated[
         list[str] | None,
-        typer.Option(metavar="MESSAGE=HZ", help="How often to send a message; may be repeated."),
+        typer.Option(
+            metavar="MESSAGE=HZ",
+            help="How often to send a message, in place of its schema's rate; 0: not at all. May be"
+            " repeated.",
+        ),
     ] = None,
     values: Annotated[
         str,
@@ -51,15 +56,22 @@ def simulate(  # noqa: PLR0913 - each option is one argument
     seconds: Annotated[
         float | None, typer.Option("--for", metavar="SECONDS", help="End after so long.")
     ] = None,
+    silent: Annotated[bool, typer.Option("--silent", help="Answer no requests.")] = False,
+    refuse: Annotated[
+        float, typer.Option(min=0, max=1, help="Share of requests to refuse, from 0 to 1.")
+    ] = 0.0,
+    ignore: Annotated[
+        float, typer.Option(min=0, max=1, help="Share of requests not to answer, from 0 to 1.")
+    ] = 0.0,
     drop: Drop = 0.0,
     flip: Flip = 0.0,
     delay: Delay = 0.0,
     seed: Seed = 0,
 ) -> int:
-    """Be a device: send messages at their rates, and say what comes in.
+    """Be a device: send messages at their rates, answer requests, and say what comes in.
 
-    Prints the name of the port that a program has to open. Frames for which nobody reads are lost,
-    as on any line. Ends with Ctrl-C.
+    Requests are answered as the schema's exchanges say. Prints the name of the port that a program
+    has to open. Frames for which nobody reads are lost, as on any line. Ends with Ctrl-C.
     """
     from protogen.cli.wire.codec import open_codec
     from protogen.link.damage import Damage
@@ -78,13 +90,32 @@ def simulate(  # noqa: PLR0913 - each option is one argument
         _values(codec, endpoint, values, seed),
         None if damage.is_none else Damage(damage, seed),
     )
-    if not rates:
+    answers = _answers(codec.protocol, endpoint, refuse, ignore, silent=silent)
+    if answers is not None:
+        simulation.answer_requests(answers, seed)
+    if simulation.is_idle:
         first = next(m.name for m in codec.protocol.messages if endpoint in m.senders)
         typer.echo(f"hint: nothing is sent by itself; give --rate {first}=10", err=True)
     settings = line_settings(codec.protocol.link, None, None, None)
     run_until_stopped(lambda: _simulate(simulation, address, settings), seconds)
     _report(simulation.counts)
     return CLEAN
+
+
+def _answers(
+    protocol: Protocol, endpoint: str, refuse: float, ignore: float, *, silent: bool
+) -> AnswerRates | None:
+    """How requests are answered; None: they are not. Raises UsageError for what can't be."""
+    from protogen.link.answers import AnswerRates, can_refuse
+
+    if silent and (refuse or ignore):
+        raise UsageError("--silent answers no request at all", "leave out --refuse and --ignore")
+    if refuse + ignore > 1:
+        raise UsageError("--refuse and --ignore are more than 1 together", "give smaller shares")
+    if refuse and not can_refuse(protocol, endpoint):
+        hint = "name one in the schema: `refusal: ...` beside the `reply` of an exchange"
+        raise UsageError(f"no exchange of {protocol.name} has a refusal of {endpoint}", hint)
+    return None if silent else AnswerRates(refuse=refuse, ignore=ignore)
 
 
 async def _simulate(simulation: Simulation, address: str, settings: LineSettings) -> None:
@@ -131,6 +162,7 @@ def _address(port: str | None, *, pty: bool, listen: str | None) -> str:
 
 def _rates(protocol: Protocol, endpoint: str, given: Sequence[str]) -> dict[str, float]:
     """How often each message is sent, in Hz. Raises UsageError."""
+    from protogen.link.simulation import rates_of
     from protogen.problems import hint_for
 
     names = [message.name for message in protocol.messages if endpoint in message.senders]
@@ -143,11 +175,11 @@ def _rates(protocol: Protocol, endpoint: str, given: Sequence[str]) -> dict[str,
         try:
             rates[name] = float(number)
         except ValueError:
-            rates[name] = 0.0
-        if not 0 < rates[name] <= _FASTEST:
+            rates[name] = -1.0
+        if not 0 <= rates[name] <= _FASTEST:
             problem = f"`{text}` does not say how often {name} is sent"
-            raise UsageError(problem, f"write {name}=10 for ten times a second")
-    return rates
+            raise UsageError(problem, f"write {name}=10 for ten times a second, or {name}=0")
+    return rates_of(protocol, endpoint, rates)
 
 
 _FASTEST = 100_000.0
@@ -169,7 +201,9 @@ def _values(codec: Codec, endpoint: str, chosen: str, seed: int) -> ValueSource:
     if file.endswith(".py"):
         return simulated_values.computed_values(examples, _function(Path(file), function))
     source = endpoint if endpoint in sources_of(chosen) else None
-    return simulated_values.recorded_values(codec.module, endpoint, pieces_of(chosen, source))
+    return simulated_values.recorded_values(
+        codec.module, endpoint, pieces_of(chosen, source), examples
+    )
 
 
 def _function(file: Path, name: str) -> ValueFunction:

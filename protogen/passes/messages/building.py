@@ -20,6 +20,7 @@ from protogen.passes.framing.capacity import (
     unclear_behind_stuffing,
 )
 from protogen.passes.messages.identity_reader import IdentityReader
+from protogen.passes.messages.rates import rate_of
 from protogen.passes.messages.stated_sizes import greatest_stated, least_stated
 from protogen.passes.messages.virtual_values import virtual_values
 from protogen.passes.types.fields import FieldBuilder
@@ -128,6 +129,7 @@ class _Resolution:
             fields=self._fields,
             sizes=sizes,
             unspecified=isinstance(syntax.fields, str),
+            rate=rate_of(self._context, self._loc, syntax.rate),
             virtual=virtual_values(self._context, self._name, syntax, self._frames),
             renamed_from=syntax.renamed_from,
             about=about(syntax.doc, syntax.source),

@@ -21,6 +21,7 @@ from protogen.problems.catalogue.packing import PACKING_CODES
 from protogen.problems.catalogue.part_bits import PART_BITS_CODES
 from protogen.problems.catalogue.part_fields import PART_FIELD_CODES
 from protogen.problems.catalogue.parts import PART_CODES
+from protogen.problems.catalogue.rates import RATE_CODES
 from protogen.problems.catalogue.silences import SILENCE_CODES
 from protogen.problems.catalogue.sized_arrays import SIZED_ARRAY_CODES
 from protogen.problems.catalogue.switch_cases import SWITCH_CASE_CODES
@@ -56,6 +57,7 @@ SCHEMA_CODES: tuple[Code, ...] = (
     *TRIMMING_CODES,
     *CUTTING_CODES,
     *MESSAGE_CODES,
+    *RATE_CODES,
     *EXCHANGE_CODES,
     *PART_CODES,
     *PART_BITS_CODES,

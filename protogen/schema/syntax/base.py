@@ -33,6 +33,9 @@ _DURATION_UNITS = {
     "s": Fraction(1),
 }
 _SILENCE = re.compile(r"([0-9]{1,9}(?:\.[0-9]{1,9})?) ?(us|ms|s|characters?)")
+_RATE_NUMBER = r"[0-9]{1,20}(?:\.[0-9]{1,20}|/0*[1-9][0-9]{0,20})?"
+_RATE = re.compile(rf"([-+]?{_RATE_NUMBER}) ?([A-Za-zµ]*)")
+_FREQUENCY_UNITS = {"": 1, "Hz": 1, "kHz": 1000}
 _SPAN = re.compile(r"([0-9]{1,4})\.\.([0-9]{1,4})")
 _RATIONAL_PATTERN = (
     r"^\s*[-+]?([0-9]+/0*[1-9][0-9]*|([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]{1,3})?)\s*$"
@@ -90,6 +93,16 @@ def _to_silence(value: object) -> object:
     if match is None or not Fraction(match[1]):
         raise ValueError("expected a time, such as 3.5 characters, 20 ms or 500 us")
     return str(value)
+
+
+def _to_rate(value: object) -> object:
+    """The number and its unit; what the unit is, and whether it can be, is asked by a pass."""
+    text = str(as_written(value)).strip()
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        text = str(exact_number(text) if isinstance(value, float) else int(value))
+    if _RATE.fullmatch(text) is None:
+        raise ValueError("expected how often, such as 50 Hz, or after what time, such as 20 ms")
+    return text
 
 
 def _to_number(value: object) -> object:
@@ -192,6 +205,37 @@ def silence_seconds(text: str, character: Fraction | None) -> Fraction | None:
     assert match is not None
     unit = _DURATION_UNITS.get(match[2], character)
     return None if unit is None else Fraction(match[1]) * unit
+
+
+RATE_UNITS = (*_FREQUENCY_UNITS, *_DURATION_UNITS)
+"""The units of how often something is sent, or after what time again."""
+
+RateText = Annotated[
+    str,
+    BeforeValidator(
+        _to_rate,
+        json_schema_input_type=int
+        | float
+        | Annotated[str, Field(pattern=f"^{_RATE_NUMBER} ?({'|'.join(RATE_UNITS)})$")],
+    ),
+]
+"""How often: a number in Hz, with or without its unit, or the time between."""
+
+
+def rate_number(text: str) -> tuple[Fraction, str]:
+    """The number of a rate as written, and its unit."""
+    match = _RATE.fullmatch(text)
+    assert match is not None
+    return Fraction(match[1]), match[2]
+
+
+def rate_hertz(text: str) -> Fraction | None:
+    """Times a second of a rate as written; None where it is none: of an unknown unit, or zero."""
+    number, unit = rate_number(text)
+    if number <= 0 or unit not in RATE_UNITS:
+        return None
+    period = _DURATION_UNITS.get(unit)
+    return number * _FREQUENCY_UNITS[unit] if period is None else 1 / (number * period)
 
 
 RawNumber = Annotated[int, BeforeValidator(_to_number, json_schema_input_type=int | Character)]

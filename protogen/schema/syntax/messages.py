@@ -14,6 +14,7 @@ from protogen.schema.syntax.base import (
     Name,
     PartValue,
     PartValueForm,
+    RateText,
     SourceRef,
     Syntax,
     Text,
@@ -194,6 +195,11 @@ class MessageSyntax(Syntax):
     parts: dict[Annotated[Name, Ref(Kind.PART)], PartValue] | None = Field(
         None,
         description="Values of the frame's virtual parts in frames of this message.",
+    )
+    rate: RateText | None = Field(
+        None,
+        description="How often it is sent by itself: `50 Hz`, a number in Hz, or the time between, "
+        "such as `20 ms`.",
     )
     title: Text | None = Field(None, description="Name of the message in the document.")
     summary: Text | None = Field(None, description="One line that says what the message is.")

@@ -23,7 +23,7 @@ from protogen.targets.markdown.pages.example import example_view
 from protogen.targets.markdown.text.anchors import decision_link, message_anchor, message_link
 from protogen.targets.markdown.text.origin import about_line, place, prose
 from protogen.targets.markdown.text.table import View
-from protogen.targets.markdown.text.words import listed, plural, rate, sentence
+from protogen.targets.markdown.text.words import how_often, listed, plural, rate, sentence
 
 
 def identity_text(frame: Frame, message: Message) -> str:
@@ -64,6 +64,8 @@ def _summary(message: Message) -> str:
 
 
 def _facts(context: Context, message: Message) -> Iterator[str]:
+    if message.rate is not None:
+        yield f"sent {how_often(message.rate)}"
     groups: dict[MessageFraming, list[str]] = {}
     for sender in context.protocol.senders_of(message):
         framing = context.framings[sender.name, message.name]

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
+from protogen.model.load import line_load
 from protogen.model.meanings import Enum, Flags
-from protogen.model.protocol import Link, Protocol
+from protogen.model.protocol import Protocol
 from protogen.targets.emitted import emitted_names
 from protogen.targets.escape import markdown
 from protogen.targets.markdown.fields.legends import Legend, type_legends
@@ -29,7 +30,7 @@ def page_view(protocol: Protocol) -> View:
         "title": markdown(protocol.title),
         "about": prose(protocol.about.doc),
         "facts": [fact for fact in _facts(protocol) if fact[1]],
-        "link": [*_link_lines(protocol.link)],
+        "link": [*_link_lines(protocol)],
         "frames": frame_views(protocol),
         "seven_bit": protocol.byte_bits == 7,
         "listings": [listing(sender, context) for sender in protocol.senders],
@@ -60,14 +61,20 @@ def _facts(protocol: Protocol) -> Iterator[tuple[str, str]]:
     yield "Spec hash", code(protocol.spec_hash)
 
 
-def _link_lines(line: Link) -> Iterator[str]:
+def _link_lines(protocol: Protocol) -> Iterator[str]:
     """Yield paragraphs about the line."""
+    line = protocol.link
     stop = plural(line.stop_bits, "stop bit")
     form = f"{line.data_bits} data bits, parity {line.parity}, {stop}"
     if line.baud is None:
         yield f"No rate is given; {form}."
     else:
         yield f"{line.baud} baud, {form}. {_byte_time(line.baud, line.bits_per_byte)}"
+    for endpoint in protocol.endpoints:
+        load = line_load(protocol, endpoint.name)
+        if load is not None:
+            name = code(endpoint.name)
+            yield f"What {name} sends by itself keeps the line busy for {load.shown} of the time."
     if line.idle_timeout is not None:
         idle = number(line.idle_timeout * 1000)
         yield f"After {idle} ms of silence a receiver treats what it holds as ended."

@@ -112,6 +112,17 @@ def rate(per_second: Fraction) -> str:
     return str(int(per_second)) if per_second >= 10 else number(Fraction(int(per_second * 10), 10))
 
 
+def how_often(hertz: Fraction) -> str:
+    """Print how often something is sent: ``50 times a second``, or ``every 2.5 s``."""
+    if hertz.denominator == 1:
+        return "once a second" if hertz == 1 else f"{hertz} times a second"
+    period = 1 / hertz
+    seconds, short = number(period), number(period * 1000)
+    if "/" in short:
+        return f"{number(hertz)} times a second"
+    return f"every {seconds} s" if period >= 1 else f"every {short} ms"
+
+
 def listed(items: Sequence[str], last: str = "and") -> str:
     """Join items as prose does: ``a``, ``a and b``, ``a, b and c``."""
     if len(items) < 2:
