@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from protogen.cli.exits import UsageError
 from protogen.cli.wire.codec import Codec
-from protogen.cli.wire.encode import encode_message
+from protogen.cli.wire.given import given_message
 from protogen.cli.wire.values import raw_values, split_assignment, tree_of
 from protogen.model.computed import computed
 from protogen.model.frame import Frame
@@ -248,7 +248,7 @@ def _encoded(codec: Codec, message: Message, command: str) -> tuple[dict[str, An
         *given, name, options[name] = given
     assignments = [split_assignment(word) for word in given if not word.startswith("@")]
     values = raw_values(message.plan.steps, tree_of(assignments))
-    return values, encode_message(codec, message.name, given, *options.values())
+    return values, given_message(codec, message.name, given, *options.values()).frame()
 
 
 def _at(values: Any, key: str) -> Any:

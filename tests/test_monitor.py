@@ -173,6 +173,7 @@ class TestScreen:
         async def test(app: Any, pilot: Any, session: Any) -> None:
             table = app.query_one(DataTable)
             await until(pilot, lambda: table.row_count == 2)
+            table.move_cursor(row=table.get_row_index("esp status"))
             await pilot.press("d")
             await until(
                 pilot, lambda: "voltage: " in str(app.query_one("#detail", Static).render())

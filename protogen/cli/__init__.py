@@ -37,6 +37,7 @@ _MODULES = {
     "tap": "line.tap",
     "replay": "line.replay",
     "simulate": "line.simulate",
+    "serve": "line.serve",
     "fuzz": "fuzz",
     "diff": "evolution.diff",
     "breaking": "evolution.breaking",

@@ -70,8 +70,12 @@ class LineDecoders:
 
     def flush(self) -> list[Event[Any, Any]]:
         """Take the end of all input; the remaining events."""
+        return [event for _, events in self.flush_each() for event in events]
+
+    def flush_each(self) -> list[tuple[str, list[Event[Any, Any]]]]:
+        """Take the end of all input; the remaining events of each source."""
         ends = [(source, decoder.flush()) for source, decoder in self._decoders.items()]
-        return [event for source, events in ends for event in self._heard(source, events)]
+        return [(source, self._heard(source, events)) for source, events in ends]
 
     def _is_wanted(self, source: str) -> bool:
         return not source or source in self.senders

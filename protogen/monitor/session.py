@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Future
 from threading import Lock, Thread
 from typing import TYPE_CHECKING, Any
@@ -13,10 +13,8 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from protogen.errors import UserError
-from protogen.link.line import LineDecoders
-from protogen.link.ports.opening import open_lasting_port
-from protogen.link.ports.port import Port
 from protogen.link.ports.settings import LineSettings
+from protogen.link.reader import LineReader
 from protogen.link.statistics import LineStatistics
 
 if TYPE_CHECKING:
@@ -52,10 +50,8 @@ class Session:
         """True when the input has ended."""
         self.error: UserError | None = None
         """What ended the watching, if it was a mistake."""
-        self._settings = settings
-        self._decoders = LineDecoders(codec.runtime)
+        self._reader = LineReader(codec, ends, settings, self)
         self._loop = asyncio.new_event_loop()
-        self._ports: dict[str, Port] = {}
         self._work: asyncio.Task[None] | None = None
         self._thread = Thread(target=self._run, name="line", daemon=True)
         self._ready: Future[None] = Future()
@@ -73,8 +69,7 @@ class Session:
 
     def send(self, data: bytes) -> None:
         """Send a frame to the first port. Raises PortError."""
-        port = next(iter(self._ports.values()))
-        asyncio.run_coroutine_threadsafe(port.write(data), self._loop).result(_PATIENCE)
+        asyncio.run_coroutine_threadsafe(self._reader.send(data), self._loop).result(_PATIENCE)
 
     def _run(self) -> None:
         try:
@@ -91,58 +86,29 @@ class Session:
 
     async def _watch(self) -> None:
         self._work = asyncio.current_task()
-        for source, address in self.ends.items():
-            self._ports[source] = await open_lasting_port(address, self._settings, self._note)
-        self._ready.set_result(None)
-        reading = [
-            asyncio.create_task(self._read(source, port)) for source, port in self._ports.items()
-        ]
         try:
-            await asyncio.gather(*reading)
-            self._take("", self._decoders.flush(), time.time_ns())
+            await self._reader.open()
+            self._ready.set_result(None)
+            await self._reader.run()
         finally:
-            for task in reading:
-                task.cancel()
-            await asyncio.gather(*reading, return_exceptions=True)
-            for port in self._ports.values():
-                await port.close()
+            await self._reader.close()
 
-    async def _read(self, source: str, port: Port) -> None:
-        silence = self._silence(source)
-        while True:
-            try:
-                arrival = await asyncio.wait_for(port.read(), silence)
-            except TimeoutError:
-                self._take(source, self._decoders.idle(source), time.time_ns())
-                silence = None  # It has ended what it could.
-                continue
-            if not arrival.data:
-                return
-            silence = self._silence(source)
-            with self.lock:
-                self.statistics.take_bytes(source, len(arrival.data), arrival.when)
-            try:
-                events = self._decoders.feed(source, arrival.data)
-            except ValueError as error:
-                name = self.codec.senders[0]
-                raise UserError(f"{error}", f"say who is there: {name}=PORT") from None
-            self._take(source, events, arrival.when)
+    # --- what the reader tells --------------------------------------------------------------------
 
-    def _silence(self, source: str) -> float | None:
-        from protogen.cli.wire.silences import ends_of_frames
+    def take_bytes(self, source: str, data: bytes, when: int) -> None:
+        """Count bytes that came."""
+        with self.lock:
+            self.statistics.take_bytes(source, len(data), when)
 
-        known = ends_of_frames(self.codec.protocol)
-        found = known.get(source, min(known.values(), default=None))
-        idle = found if found is not None else self.codec.protocol.link.idle_timeout
-        return None if idle is None else float(idle)
-
-    def _take(self, source: str, events: list[Any], when: int) -> None:
+    def take_events(self, source: str, events: Sequence[Any], when: int) -> None:
+        """Count events, and keep them for the log."""
         with self.lock:
             for event in events:
                 self.statistics.take(event, when)
                 self._add(Logged(self.number, when, event))
 
-    def _note(self, text: str) -> None:
+    def take_note(self, text: str) -> None:
+        """Keep news for the log."""
         with self.lock:
             self._add(Logged(self.number, time.time_ns(), None, text))
 

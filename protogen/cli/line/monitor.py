@@ -9,13 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from protogen.cli.exits import CLEAN, UsageError
-from protogen.cli.line.options import PORTS, Baud, Dtr, Rts, line_settings, named_port
+from protogen.cli.line.options import PORTS, Baud, Dtr, Rts, line_settings, named_ports
 from protogen.cli.options import SchemaFile
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from protogen.model.protocol import Protocol
     from protogen.monitor.app import MonitorApp
     from protogen.monitor.session import Session
 
@@ -51,7 +48,7 @@ def monitor(  # noqa: PLR0913 - each option is one argument
     from protogen.monitor.session import Session
 
     codec = open_codec(schema)
-    ends = _ends(codec.protocol, ports)
+    ends = named_ports(codec.protocol, ports)
     kept = parse_filter(filter, codec.module)
     session = Session(codec, ends, line_settings(codec.protocol.link, baud, dtr, rts))
     is_plain = plain or not sys.stdout.isatty()
@@ -85,17 +82,3 @@ def _app(session: Session) -> MonitorApp:
         hint = "pip install 'protogen-serial[monitor]', or give --plain"
         raise UsageError(problem, hint) from None
     return app.MonitorApp(session)
-
-
-def _ends(protocol: Protocol, ports: Sequence[str]) -> dict[str, str]:
-    """Ports by the endpoint that is there. Raises UsageError where two have the same."""
-    ends: dict[str, str] = {}
-    for text in ports:
-        name, port = named_port(text, protocol)
-        if not name and len(protocol.sending) == 1:
-            name = protocol.sending[0]
-        if name in ends:
-            hint = f"name them: {protocol.sending[0]}=PORT"
-            raise UsageError("two ports need the names of who is there", hint)
-        ends[name] = port
-    return ends

@@ -10,6 +10,8 @@ import typer
 from protogen.cli.exits import UsageError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from protogen.link.damage import DamageRates
     from protogen.link.ports.settings import LineSettings
     from protogen.model.protocol import Link, Protocol
@@ -66,6 +68,20 @@ def named_port(text: str, protocol: Protocol) -> tuple[str, str]:
         hint = hint_for(name, protocol.sending) or f"these send: {known}"
         raise UsageError(f"`{name}` is no endpoint of {protocol.name}", hint)
     return name, port
+
+
+def named_ports(protocol: Protocol, ports: Sequence[str]) -> dict[str, str]:
+    """Ports by the endpoint that is there. Raises UsageError where two have the same."""
+    ends: dict[str, str] = {}
+    for text in ports:
+        name, port = named_port(text, protocol)
+        if not name and len(protocol.sending) == 1:
+            name = protocol.sending[0]
+        if name in ends:
+            hint = f"name them: {protocol.sending[0]}=PORT"
+            raise UsageError("two ports need the names of who is there", hint)
+        ends[name] = port
+    return ends
 
 
 def line_settings(link: Link, baud: int | None, dtr: bool | None, rts: bool | None) -> LineSettings:

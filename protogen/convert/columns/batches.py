@@ -142,30 +142,11 @@ class EventBatch(msgspec.Struct, frozen=True):
         """The rows of each table that has some."""
         rows: dict[str, list[list[Any]]] = {}
         for event, when in zip(self.events, self.times, strict=True):
-            table = self._table_of(event)
-            rows.setdefault(table.name, []).append(self._row(table, event, when))
+            table = table_of(self.tables, event)
+            rows.setdefault(table.name, []).append(row_of(table, event, when))
         for table in self.tables.all_tables:
             if table.name in rows:
                 yield Rows(table, list(zip(*rows[table.name], strict=True)))
-
-    def _table_of(self, event: Any) -> Table:
-        if event.kind == "message":
-            return self.tables.messages[event.message.NAME]
-        return self.tables.unknown if event.kind == "unknown" else self.tables.invalid
-
-    def _row(self, table: Table, event: Any, when: int | None) -> list[Any]:
-        if event.kind == "message":
-            assert table.message is not None
-            values = plain_fields(table.message.fields, event.message.to_dict())
-        elif event.kind == "unknown":
-            values = {"payload": event.payload}
-        else:
-            values = {"reason": event.reason, "raw": event.raw}
-        frame = {"offset": event.offset, "size": event.size, "t_ns": when}
-        return [
-            *(_frame_value(column, frame, event) for column in table.frame_columns),
-            *(value_in(column, values) for column in table.columns),
-        ]
 
     def lines(self) -> Iterator[bytes]:
         """The events as lines of JSON."""
@@ -185,6 +166,29 @@ class EventBatch(msgspec.Struct, frozen=True):
         ordered = {key: line.pop(key) for key in _ORDER if key in line}
         timed = {} if when is None else {"t_ns": when}
         return json.dumps({**ordered, **line, **timed}, ensure_ascii=False) + "\n"
+
+
+def table_of(tables: Tables, event: Any) -> Table:
+    """The table that has the row of an event."""
+    if event.kind == "message":
+        return tables.messages[event.message.NAME]
+    return tables.unknown if event.kind == "unknown" else tables.invalid
+
+
+def row_of(table: Table, event: Any, when: int | None) -> list[Any]:
+    """The row of an event: a value for each of the table's columns."""
+    if event.kind == "message":
+        assert table.message is not None
+        values = plain_fields(table.message.fields, event.message.to_dict())
+    elif event.kind == "unknown":
+        values = {"payload": event.payload}
+    else:
+        values = {"reason": event.reason, "raw": event.raw}
+    frame = {"offset": event.offset, "size": event.size, "t_ns": when}
+    return [
+        *(_frame_value(column, frame, event) for column in table.frame_columns),
+        *(value_in(column, values) for column in table.columns),
+    ]
 
 
 def _frame_value(column: Column, frame: Mapping[str, Any], event: Any) -> Any:

@@ -27,6 +27,8 @@ class Arrival(msgspec.Struct, frozen=True):
 
     data: bytes
     when: int
+    source: str = ""
+    """Who sent them, as far as a recording says it."""
 
 
 class Port(abc.ABC):

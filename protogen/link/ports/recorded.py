@@ -11,8 +11,8 @@ from protogen.link.ports.port import Arrival, Port, PortError
 class RecordedPort(Port):
     """Gives the bytes of a recording when they are due; nothing can be sent."""
 
-    def __init__(self, name: str, pieces: Iterator[tuple[bytes, int]], speed: float) -> None:
-        """`pieces` are bytes with their times in nanoseconds.
+    def __init__(self, name: str, pieces: Iterator[Arrival], speed: float) -> None:
+        """`pieces` are what has been recorded.
 
         With a `speed` of 2 they come in half the time; with 0, each as soon as it is asked for.
         """
@@ -20,17 +20,17 @@ class RecordedPort(Port):
         self._pieces = pieces
         self._speed = speed
         self._begin: tuple[int, float] | None = None
-        self._due: tuple[bytes, int] | None = None
+        self._due: Arrival | None = None
 
     async def read(self) -> Arrival:
         """Wait until the next bytes are due; none mean the end. Times are as recorded."""
         if self._due is None:
-            self._due = next(self._pieces, (b"", 0))
-        data, when = self._due
-        if data and self._speed:
-            await self._wait_until(when)
+            self._due = next(self._pieces, Arrival(b"", 0))
+        due = self._due
+        if due.data and self._speed:
+            await self._wait_until(due.when)
         self._due = None  # One who gives up waiting finds it here again.
-        return Arrival(data, when)
+        return due
 
     async def _wait_until(self, when: int) -> None:
         now = asyncio.get_running_loop().time()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from protogen.link.ports.port import PortError
+from protogen.link.ports.port import Arrival, PortError
 from protogen.link.ports.recorded import RecordedPort
 from protogen.recording import Record, RecordKind, records
 from protogen.recording.reader import is_recording
@@ -18,7 +18,7 @@ _HEAD = 8
 
 def open_recording(name: str, speed: float, source: str | None = None) -> RecordedPort:
     """Open a recording, of what one source sent or of all. Raises PortError."""
-    return RecordedPort(name, pieces_of(name, source), speed)
+    return RecordedPort(name, _arrivals(name, source), speed)
 
 
 def sources_of(name: str) -> list[str]:
@@ -29,9 +29,13 @@ def sources_of(name: str) -> list[str]:
 
 def pieces_of(name: str, source: str | None = None) -> Iterator[tuple[bytes, int]]:
     """Bytes of a recording with their times, of one source or of all. Raises PortError."""
+    return ((item.data, item.when) for item in _arrivals(name, source))
+
+
+def _arrivals(name: str, source: str | None) -> Iterator[Arrival]:
     path = _checked(name)
     return (
-        (record.data, record.when)
+        Arrival(record.data, record.when, record.source)
         for record in _records(path)
         if record.kind is RecordKind.BYTES and source in (None, record.source)
     )

@@ -1,0 +1,1 @@
+"""What is on a line, served to programs that show it."""
