@@ -206,7 +206,8 @@ class TestPublishing:
         frames: list[bytes] = []
         with SimulatedDevice(MATTY, "esp") as board:
             board.on("go", lambda event: frames.append(event.raw) or [])
-            with serving(f"esp={board.port}", "--port", "0") as address, client(address) as viewer:
+            args = (f"esp={board.port}", "--port", "0", "--endpoint", "pc")
+            with serving(*args) as address, client(address) as viewer:
                 viewer.subscribe()
                 viewer.publish("/pc/go", '{"speed": 500, "steer": "-2.5deg"}')
                 ((topic, _, row),) = viewer.messages(1)
@@ -237,7 +238,8 @@ class TestPublishing:
         frames: list[bytes] = []
         with SimulatedDevice(MATTY, "esp") as board:
             board.on("go", lambda event: frames.append(event.raw) or [])
-            with serving(f"esp={board.port}", "--port", "0") as address, client(address) as viewer:
+            args = (f"esp={board.port}", "--port", "0", "--endpoint", "pc")
+            with serving(*args) as address, client(address) as viewer:
                 for topic, text, problem in mistakes:
                     viewer.publish(topic, text)
                     assert re.search(problem, viewer.status()), problem
@@ -247,6 +249,14 @@ class TestPublishing:
                 assert viewer._next("removeStatus")["statusIds"] == ["/pc/go"]
                 assert received(frames, 1) == [bytes.fromhex("55 06 00 47 00 00 00 00 B3")]
             assert board.counts.received == {"go": 1}
+
+
+def test_nobody_can_publish_unless_it_is_said_as_whom() -> None:
+    with SimulatedDevice(MATTY, "esp") as board:
+        with serving(f"esp={board.port}", "--port", "0") as address, client(address) as viewer:
+            viewer.publish("/pc/stop", "{}")
+            assert "sent as nobody, not as pc" in viewer.status()
+        assert board.counts.received == {}
 
 
 def test_plotjuggler_gets_a_datagram_for_each_message(tmp_path: Path) -> None:

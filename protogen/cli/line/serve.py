@@ -12,7 +12,7 @@ from protogen.cli.line.running import run_until_stopped, tell
 from protogen.cli.options import SchemaFile
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Sequence
+    from collections.abc import Iterable, Sequence
 
     from protogen.cli.wire.codec import Codec
     from protogen.link.ports.settings import LineSettings
@@ -39,7 +39,7 @@ def serve(  # noqa: PLR0913 - each option is one argument
     ] = None,
     endpoint: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="Who sends what clients publish. Default: the others."),
+        typer.Option(metavar="NAME", help="Send what clients publish, as this endpoint."),
     ] = None,
     plotjuggler: Annotated[
         str | None,
@@ -60,8 +60,9 @@ def serve(  # noqa: PLR0913 - each option is one argument
 ) -> int:
     """Serve a line to Foxglove: a channel for each message, with its schema and units.
 
-    A client that publishes JSON on /ENDPOINT/MESSAGE sends that message to the port. A recording
-    begins when the first client has subscribed. Ends with Ctrl-C.
+    With --endpoint, a client that publishes JSON on /ENDPOINT/MESSAGE sends that message to the
+    port; any page in a browser here could do so. A recording begins when the first client has
+    subscribed. Ends with Ctrl-C.
     """
     from protogen.cli.wire.codec import open_codec
 
@@ -72,7 +73,7 @@ def serve(  # noqa: PLR0913 - each option is one argument
         None
         if plotjuggler is not None and port is None
         else (host, _PORT if port is None else port),
-        _speakers(codec.protocol, ends, endpoint),
+        _speakers(codec.protocol, endpoint),
         None if plotjuggler is None else _address(plotjuggler),
     )
     if outputs.foxglove is not None:
@@ -160,15 +161,15 @@ def _require_foxglove() -> None:
         raise UsageError(problem, hint)
 
 
-def _speakers(protocol: Protocol, ends: Collection[str], endpoint: str | None) -> Sequence[str]:
-    """The endpoints as which is sent: one that is named, or those that are not at the ports.
+def _speakers(protocol: Protocol, endpoint: str | None) -> Sequence[str]:
+    """The endpoint as which is sent, if one is named: a board is not to move by accident.
 
     Raises UsageError for a name that sends nothing.
     """
     from protogen.problems import hint_for
 
     if endpoint is None:
-        return [name for name in protocol.sending if name not in ends]
+        return []
     if endpoint not in protocol.sending:
         hint = hint_for(endpoint, protocol.sending) or _list(protocol.sending)
         raise UsageError(f"`{endpoint}` is no endpoint of {protocol.name} that sends", hint)
