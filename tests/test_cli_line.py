@@ -12,7 +12,7 @@ import termios
 import time
 import tty
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import IO
 
@@ -111,8 +111,7 @@ class TestRecord:
             device() as (own, name),
             started("record", MATTY, f"esp={name}", "-o", str(file)) as it,
         ):
-            until(file, 8)
-            time.sleep(0.3)  # The port is opened behind that.
+            assert line_of(it.stderr) == f"recording {name}; Ctrl-C ends it\n"
             os.write(own, ACK)
             until(file, 8 + 16 + 3 + 16 + 5)
             os.write(own, ACK)
@@ -123,39 +122,32 @@ class TestRecord:
         assert b"".join(item.data for item in found) == ACK * 2
         assert {item.source for item in found} == {"esp"}
         assert before < found[0].when < found[-1].when < time.time_ns()
-        decoded = run("decode", MATTY, str(file))
-        assert decoded.stdout.split() == [
-            "0",
-            "esp",
-            "ack",
-            "@counter=1",
-            "5",
-            "esp",
-            "ack",
-            "@counter=1",
-        ]
+        decoded = run("decode", MATTY, str(file)).stdout.splitlines()
+        ack = ["esp", "ack", "@counter=1"]
+        assert [line.split() for line in decoded] == [["0", *ack], ["5", *ack]]
 
     def test_a_port_that_comes_back_is_noted(self, tmp_path: Path) -> None:
         file, link = tmp_path / "run.pgrec", tmp_path / "port"
-        with device() as (own, name):
+        with started("record", MATTY, str(link), "-o", str(file)) as it:
+            assert "there is no such port" in line_of(it.stderr)
+        with ExitStack() as stack:
+            with device() as (own, name):
+                link.symlink_to(name)
+                args = ("record", MATTY, str(link), "-o", str(file), "--force")
+                it = stack.enter_context(started(*args))
+                assert line_of(it.stderr) == f"recording {link}; Ctrl-C ends it\n"
+                os.write(own, STOP)
+                until(file, 8 + 16 + 5)
+            assert "is gone" in line_of(it.stderr)
+            link.unlink()
+            own, name = stack.enter_context(device())
             link.symlink_to(name)
-            it = started("record", MATTY, str(link), "-o", str(file))
-            process = it.__enter__()
-            until(file, 8)
-            time.sleep(0.5)
-            os.write(own, STOP)
-            until(file, 8 + 16 + 5)
-        assert "is gone" in line_of(process.stderr)
-        link.unlink()
-        with device() as (own, name):
-            link.symlink_to(name)
-            assert line_of(process.stderr) == f"{link} is back\n"
+            assert line_of(it.stderr) == f"{link} is back\n"
             os.write(own, STOP)
             end = time.monotonic() + 20
             while found_in(file)[-1].kind is not RecordKind.BYTES and time.monotonic() < end:
                 time.sleep(0.01)
-            stopped(process)
-        it.__exit__(None, None, None)
+            stopped(it)
         kinds = [item.kind.name for item in found_in(file)]
         assert kinds == ["BYTES", "NOTE", "NOTE", "BYTES"]
 
@@ -299,6 +291,7 @@ def test_a_pseudo_terminal_passes_control_characters(tmp_path: Path) -> None:
     """No byte is a signal, an end or a newline: the device that is made is raw."""
     with started("record", MATTY, "pty:", "-o", str(tmp_path / "run.pgrec")) as it:
         made = line_of(it.stderr).split()[-1]
+        assert line_of(it.stderr).startswith("recording /dev/")
         port = os.open(made, os.O_RDWR | os.O_NOCTTY)
         assert not termios.tcgetattr(port)[3] & (termios.ICANON | termios.ECHO | termios.ISIG)
         os.write(port, bytes(range(256)))

@@ -23,6 +23,8 @@ DEV = PROJECT["optional-dependencies"]["dev"]
 TOOLS = ("pytest>", "hypothesis>")
 EXTRAS = ("capture", "parquet", "mcap", "dask")
 """Those that `protogen convert` needs."""
+LIVE = ("serial", "monitor", "foxglove")
+"""Those that commands on a line need."""
 
 
 def oldest(*extras: str) -> list[str]:
@@ -81,7 +83,7 @@ def run(python: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_every_dependency_has_a_lower_bound():
-    assert all("==" in requirement for requirement in oldest(*EXTRAS))
+    assert all("==" in requirement for requirement in oldest(*EXTRAS, *LIVE))
 
 
 @pytest.mark.parametrize(
@@ -143,3 +145,24 @@ def test_the_oldest_dask_goes_on_where_a_worker_is_killed(converting):
 def test_the_newest_versions_do_the_work():
     assert load(ROOT / "schemas" / "rn1.yaml").name == "rn1"
     assert sys.version_info >= (3, 11)
+
+
+def test_the_oldest_versions_of_the_extras_of_a_line_do_the_work(tmp_path):
+    """The tests that need no more than these: ports, the full screen, a server."""
+    tools = [item for item in DEV if item.startswith(("pytest>", "pytest-timeout>"))]
+    clients = [item.replace(">=", "==") for item in DEV if item.startswith("websockets")]
+    # textual needs a newer rich than we do, and says so itself.
+    needed = [item for item in oldest(*LIVE) if not item.startswith("rich=")]
+    python = environment(tmp_path / "oldest", [*needed, *tools, *clients])
+    result = subprocess.run(
+        [
+            *(python, "-m", "pytest", "-o", "addopts=", "-p", "no:cacheprovider", "--noconftest"),
+            *("tests/test_link_ports.py", "tests/test_monitor.py", "-k", "not terminal"),
+        ],
+        cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": f"{ROOT}:{ROOT / 'tests'}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == 0, result.stdout + result.stderr

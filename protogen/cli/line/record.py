@@ -84,6 +84,7 @@ async def _record(
 
     async with await open_lasting_port(address, settings, noted) as port:
         tell_name(address, port)
+        tell(f"recording {port.name}; Ctrl-C ends it")
         syncing = asyncio.create_task(_synced(recorder))
         try:
             await _take(port, source, recorder, taken)
