@@ -77,11 +77,11 @@ def load_of(frames: Iterable[RatedFrame], character: Fraction | None) -> Load | 
 
 def line_load(protocol: Protocol, endpoint: str) -> Load | None:
     """How busy an endpoint keeps its line; None where the schema does not say it."""
-    frames = [
-        RatedFrame.of(message, item, sender.frame)
-        for sender in protocol.forms(endpoint)
-        for item in sender.framing.messages
-        for message in sender.messages
-        if message.name == item.message
-    ]
+    frames = []
+    for sender in protocol.forms(endpoint):
+        known = {message.name: message for message in sender.messages}
+        frames += [
+            RatedFrame.of(known[item.message], item, sender.frame)
+            for item in sender.framing.messages
+        ]
     return load_of(frames, protocol.link.byte_time)

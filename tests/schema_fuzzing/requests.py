@@ -25,9 +25,9 @@ def requests(
     answers = [item for item in asking if request and item.senders != request.senders]
     if request is None or not answers or draw(forms.one_in(4)):
         return None
-    least = min(len(answers), draw(st.integers(1, 2)))
+    least = min(len(answers), draw(st.sampled_from((1, 2, 2, 2))))
     chosen = draw(st.lists(st.sampled_from(answers), min_size=least, max_size=3, unique_by=_name))
-    replies, refusals = (chosen, []) if draw(forms.one_in(4)) else (chosen[:1], chosen[1:])
+    replies, refusals = (chosen, []) if draw(forms.one_in(6)) else (chosen[:1], chosen[1:])
     exchange: dict[str, Any] = {
         **draw(forms.about()),
         "request": draw(_one_or_several([request])),
@@ -38,7 +38,7 @@ def requests(
     match = draw(_match(root, request, chosen))
     if match is not None:
         exchange["match"] = match
-        if refusals and draw(forms.one_in(2)):
+        if refusals and not draw(forms.one_in(4)):
             exchange["unmatched_refusal"] = True
     if draw(st.booleans()):
         exchange["timeout"] = draw(st.sampled_from(_TIMES))
