@@ -48,10 +48,16 @@ def started(*args: str) -> Iterator[subprocess.Popen[str]]:
 
 
 def line_of(stream: IO[str] | None) -> str:
-    """The next line, which has to come soon."""
+    """The next line, which has to come soon. Nothing behind it is read yet."""
     assert stream is not None
-    assert select.select([stream], [], [], 20)[0], "nothing was printed"
-    return stream.readline()
+    line = b""
+    while not line.endswith(b"\n"):
+        assert select.select([stream], [], [], 20)[0], "nothing was printed"
+        byte = os.read(stream.fileno(), 1)
+        if not byte:
+            break
+        line += byte
+    return line.decode()
 
 
 def stopped(process: subprocess.Popen[str]) -> tuple[str, str]:

@@ -161,8 +161,12 @@ async def until(pilot: Any, holds: Callable[[], bool]) -> None:
 
 
 async def typed(pilot: Any, key: str, text: str) -> None:
+    """Open the line to type in by its key, and enter a text at once: each key is a drawing."""
+    from textual.widgets import Input
+
     await pilot.press(key)
-    await pilot.press(*("space" if letter == " " else letter for letter in text), "enter")
+    pilot.app.query_one(Input).value = text
+    await pilot.press("enter")
     await pilot.pause(0.3)
 
 

@@ -10,11 +10,10 @@ from protogen.link.blocking import BlockingLink
 from protogen.link.errors import LinkError
 from protogen.link.line import LineDecoders
 from protogen.link.link import Link, ReceivedT, SentT
-from protogen.link.ports.address import PortKind, parse_address
 from protogen.link.ports.lasting import LastingPort
-from protogen.link.ports.opening import open_port
+from protogen.link.ports.opening import open_lasting_port, open_port
 from protogen.link.ports.port import Port
-from protogen.link.ports.settings import DEFAULT_BAUD, LineSettings
+from protogen.link.ports.settings import settings_of
 from protogen.runtime.codec import Protocol as Codec
 
 if TYPE_CHECKING:
@@ -22,9 +21,6 @@ if TYPE_CHECKING:
 
 MIN_SILENCE = 0.02
 """Seconds; adapters of USB keep bytes for up to 16 ms, so a shorter silence means nothing."""
-
-_COME_BACK = frozenset({PortKind.SERIAL, PortKind.SOCKET, PortKind.RFC2217})
-"""Ports that are opened again when they were lost."""
 
 
 class Options(TypedDict, total=False):
@@ -74,17 +70,20 @@ class Connection(Generic[SentT, ReceivedT]):
         return link
 
     async def _opened(self, address: str) -> Port:
-        settings = _settings(self._codec, self._options)
-        port = await open_port(address, settings)
-        comes_back = parse_address(address).kind in _COME_BACK
-        if not comes_back or not self._options.get("lasting", True):
-            return port
-        lasting = LastingPort(port, lambda: open_port(address, settings), self._take_news)
-        self._lasting = lasting
-        return lasting
+        options = self._options
+        settings = settings_of(
+            self._codec.line,
+            options.get("baud"),
+            dtr=options.get("dtr"),
+            rts=options.get("rts"),
+        )
+        if not options.get("lasting", True):
+            return await open_port(address, settings)
+        return await open_lasting_port(address, settings, self._take_news)
 
     def _take_news(self, news: str) -> None:
-        if self._link is not None and not self._lasting.is_there:
+        port = None if self._link is None else self._link.port
+        if self._link is not None and isinstance(port, LastingPort) and not port.is_there:
             self._link.note_loss(news)
         tell = self._options.get("tell")
         if tell is not None:
@@ -165,15 +164,3 @@ def _decoders(codec: Codec[Any, Any], endpoint: str | None, options: Options) ->
         except ValueError as error:
             raise LinkError(str(error), f"give peer={' or '.join(map(repr, peers))}") from None
     return decoders
-
-
-def _settings(codec: Codec[Any, Any], options: Options) -> LineSettings:
-    line: Any = codec.line
-    return LineSettings(
-        baud=options.get("baud") or line.baud or DEFAULT_BAUD,
-        data_bits=line.data_bits,
-        parity=line.parity,
-        stop_bits=line.stop_bits,
-        dtr=options.get("dtr"),
-        rts=options.get("rts"),
-    )

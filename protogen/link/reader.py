@@ -119,9 +119,7 @@ class LineReader:
         self._listener.take_events(source, events, when)
 
     def _silence(self, source: str) -> float | None:
-        from protogen.cli.wire.silences import ends_of_frames
-
-        known = ends_of_frames(self._codec.protocol)
+        known = self._codec.protocol.frame_silences
         found = known.get(source, min(known.values(), default=None))
         idle = found if found is not None else self._codec.protocol.link.idle_timeout
         return None if idle is None else float(idle) / (self._speed or 1)

@@ -222,12 +222,22 @@ class Protocol(msgspec.Struct, frozen=True, kw_only=True):
         return bool(self.told)
 
     @property
+    def frame_silences(self) -> dict[str, Fraction]:
+        """The silence in seconds that ends a frame of each endpoint whose frames one ends."""
+        silences: dict[str, Fraction] = {}
+        for sender in self.senders:
+            silence = sender.frame.silence
+            if silence is not None:
+                known = silences.get(sender.endpoint, silence.seconds)
+                silences[sender.endpoint] = min(known, silence.seconds)
+        return silences
+
+    @property
     def silence(self) -> Fraction | None:
         """Seconds without bytes that end what receivers have begun; None: they never do."""
-        ends = (sender.frame.silence for sender in self.senders)
-        found = [silence.seconds for silence in ends if silence is not None]
         timeout = self.link.idle_timeout
-        return min([*found, *(() if timeout is None else (timeout,))], default=None)
+        ends = [*self.frame_silences.values(), *(() if timeout is None else (timeout,))]
+        return min(ends, default=None)
 
     @property
     def sending(self) -> tuple[str, ...]:

@@ -32,8 +32,7 @@ def watch(session: Session, kept: Filter, seconds: float | None) -> None:
             if item.event is None:
                 typer.echo(item.note, err=True)
             elif kept.keeps(item.event):
-                text = "".join(part for part, _ in lines.segments(item.event)).rstrip()
-                typer.echo(f"{item.when / 1e9:.6f} {text}")
+                typer.echo(f"{item.when / 1e9:.6f} {lines.text(item.event)}")
         if news:
             sys.stdout.flush()
         if is_over:

@@ -131,7 +131,7 @@ def _frames(recording: Path, source: str | None, codec: Codec) -> Iterator[tuple
         for event in events:
             front += event.raw
             if event.kind != "invalid":
-                yield "".join(text for text, _ in lines.segments(event)).rstrip(), front
+                yield lines.text(event), front
                 front = b""
 
     for data, _ in pieces_of(str(recording), source):

@@ -63,6 +63,6 @@ class ShownEvents:
 
     def _show(self, events: Sequence[Any]) -> None:
         for event in events:
-            typer.echo("".join(text for text, _ in self._lines.segments(event)).rstrip())
+            typer.echo(self._lines.text(event))
         if events:
             sys.stdout.flush()

@@ -25,7 +25,7 @@ from protogen.cli.wire.capture import (
 )
 from protogen.cli.wire.complaints import Complaints
 from protogen.cli.wire.line_times import LineTimes
-from protogen.cli.wire.silences import Silences, ends_of_frames
+from protogen.cli.wire.silences import Silences
 from protogen.cli.wire.tagged import Complain, Piece, tagged_pieces
 from protogen.convert.inputs.hex_digits import parse_hex
 from protogen.recording.reader import is_recording
@@ -111,7 +111,7 @@ def decode(  # noqa: PLR0913 - each option is one argument
 
 def _hint_at_silences(codec: Codec) -> None:
     """Say what may be wrong where frames end by silences, and none was told of."""
-    if ended := ends_of_frames(codec.protocol):
+    if ended := codec.protocol.frame_silences:
         text = f"only a silence ends a frame of {', '.join(ended)}; --timed takes it from a log"
         typer.echo(f"hint: {text} with times", err=True)
 
@@ -240,4 +240,4 @@ def _printer(codec: Codec, format: EventFormat, *, show_sender: bool) -> Show:
     lines = EventLines(codec.protocol, show_sender=show_sender)
     if out.is_terminal:
         return lambda event: out.print(Text.assemble(*lines.segments(event)))
-    return lambda event: typer.echo("".join(text for text, _ in lines.segments(event)).rstrip())
+    return lambda event: typer.echo(lines.text(event))

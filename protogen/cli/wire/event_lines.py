@@ -57,6 +57,10 @@ class EventLines:
                 line += self._invalid(event)
         return line
 
+    def text(self, event: Any) -> str:
+        """Return the line of an event without styles."""
+        return "".join(text for text, _ in self.segments(event)).rstrip()
+
     def _name(self, name: str, style: str) -> Segment:
         return f"{name:<{self._name_width}} ", style
 

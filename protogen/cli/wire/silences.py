@@ -29,7 +29,7 @@ class Silences:
 
         Raises UsageError where there is neither.
         """
-        link, ends = protocol.link, ends_of_frames(protocol)
+        link, ends = protocol.link, protocol.frame_silences
         if link.idle_timeout is None and not ends:
             raise UsageError(
                 "the schema does not say which silence ends a frame",
@@ -68,14 +68,3 @@ class Silences:
     def _is_over(self, sender: str, passed: Fraction) -> bool:
         silence = self._of(sender)
         return silence is not None and passed >= silence * _SECOND
-
-
-def ends_of_frames(protocol: Protocol) -> dict[str, Fraction]:
-    """The silence that ends a frame of each endpoint whose frames one ends."""
-    silences: dict[str, Fraction] = {}
-    for sender in protocol.senders:
-        silence = sender.frame.silence
-        if silence is not None:
-            known = silences.get(sender.endpoint, silence.seconds)
-            silences[sender.endpoint] = min(known, silence.seconds)
-    return silences

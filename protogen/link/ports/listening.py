@@ -6,10 +6,8 @@ import asyncio
 import time
 
 from protogen.link.ports.address import Address
-from protogen.link.ports.port import Arrival, Port, PortError
+from protogen.link.ports.port import MOST_READ, Arrival, Port, PortError
 
-_MOST = 1 << 16
-"""The most bytes that are read at once."""
 _MOST_WAITING = 1 << 12
 """So many bytes wait for one who does not read; what comes then is lost."""
 
@@ -49,7 +47,7 @@ class ListeningPort(Port):
             assert self._streams is not None
             reader, writer = self._streams
             try:
-                data = await reader.read(_MOST)
+                data = await reader.read(MOST_READ)
             except OSError:
                 data = b""
             if data:

@@ -10,6 +10,9 @@ import msgspec
 
 from protogen.errors import UserError
 
+MOST_READ = 1 << 16
+"""The most bytes that a port reads at once."""
+
 
 class PortError(UserError):
     """A port can't be opened, or can't do what it was asked for."""

@@ -7,10 +7,7 @@ import os
 import time
 from importlib import import_module
 
-from protogen.link.ports.port import Arrival, Port, PortError, PortLostError
-
-_MOST = 1 << 16
-"""The most bytes that are read at once."""
+from protogen.link.ports.port import MOST_READ, Arrival, Port, PortError, PortLostError
 
 
 class PseudoTerminal(Port):
@@ -27,7 +24,7 @@ class PseudoTerminal(Port):
         """Wait for bytes. Raises PortLostError once it is closed."""
         while True:
             try:
-                return Arrival(os.read(self._open(), _MOST), time.time_ns())
+                return Arrival(os.read(self._open(), MOST_READ), time.time_ns())
             except BlockingIOError:
                 await self._ready(is_reading=True)
             except OSError as error:

@@ -12,14 +12,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from protogen.link.ports.address import Address, PortKind
-from protogen.link.ports.port import Arrival, Port, PortError, PortLostError
+from protogen.link.ports.port import MOST_READ, Arrival, Port, PortError, PortLostError
 from protogen.link.ports.settings import LineSettings
 
 if TYPE_CHECKING:
     import serialx
 
-_MOST = 1 << 16
-"""The most bytes that are read at once."""
 _PATIENCE = 10.0
 """Seconds in which a machine has to answer."""
 _CAUSES = {
@@ -43,7 +41,7 @@ class SerialPort(Port):
         """Wait for bytes. Raises PortLostError where the port is gone: it never just ends."""
         serialx = _serialx()
         try:
-            data = await self._opened.read(_MOST)
+            data = await self._opened.read(MOST_READ)
         except (OSError, serialx.SerialException) as error:
             raise PortLostError(f"{self.name} is gone: {_reason(error)}") from None
         if not data:

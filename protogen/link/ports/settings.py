@@ -8,6 +8,7 @@ import msgspec
 
 if TYPE_CHECKING:
     from protogen.model.protocol import Link
+    from protogen.runtime.line import Line
 
 DEFAULT_BAUD = 115200
 """Rate of a device where neither the schema nor the user says one."""
@@ -28,9 +29,9 @@ class LineSettings(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def settings_of(
-    link: Link, baud: int | None = None, *, dtr: bool | None = None, rts: bool | None = None
+    link: Link | Line, baud: int | None = None, *, dtr: bool | None = None, rts: bool | None = None
 ) -> LineSettings:
-    """The settings of a schema's `link`; what is given here stands in its place."""
+    """The settings of a schema's `link`, or of a module's line; what is given goes before."""
     return msgspec.convert(
         {
             "baud": baud or link.baud or DEFAULT_BAUD,

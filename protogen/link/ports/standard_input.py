@@ -9,10 +9,8 @@ from io import BufferedReader
 from threading import Semaphore, Thread
 from typing import cast
 
-from protogen.link.ports.port import Arrival, Port, PortError
+from protogen.link.ports.port import MOST_READ, Arrival, Port, PortError
 
-_MOST = 1 << 16
-"""The most bytes that are read at once."""
 _WAITING = 16
 """So many pieces may wait to be taken; then whoever writes has to wait."""
 
@@ -38,7 +36,7 @@ class StandardInput(Port):
         data = b"."
         while data:
             self._room.acquire()
-            data = stream.read1(_MOST)
+            data = stream.read1(MOST_READ)
             arrival = Arrival(data, time.time_ns())
             try:
                 self._loop.call_soon_threadsafe(self._arrived.put_nowait, arrival)
