@@ -141,7 +141,9 @@ def test_exchanges_show_their_messages_and_bytes():
     )
     exchange = Exchange(name="start", title="Start", steps=steps, about=about("How it starts."))
     made = protocol(message("m", 1, ("a", UINT8), examples=(shown,)), exchanges=(exchange,))
-    sender = replace(made.senders[0], name="mcu", messages=())
+    first = made.senders[0]
+    silent = replace(first.framing, messages=())
+    sender = replace(first, name="mcu", messages=(), framing=silent)
     both = replace(made.messages[0], examples=(shown, long))
     made = replace(made, messages=(both,), senders=(*made.senders, sender))
     rows = [tuple(row.values()) for row in table_of(made, "Step")]
