@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from protogen.copying import replace
 from protogen.model.constants import allowed
 from protogen.model.expressions import Expression, Number, Operand, folded, names_in
+from protogen.model.field_names import count_name, presence_name
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -55,10 +56,8 @@ from protogen.model.types import (
     Type,
     Until,
     beyond,
-    count_name,
     is_text,
     packing_of,
-    presence_name,
     run_of,
     total,
 )

@@ -76,12 +76,11 @@ __all__ = [
     "bits_of",
     "characters",
     "codec",
-    "count_name",
     "counting_bits",
     "is_integer",
     "is_text",
+    "needed_by",
     "packing_of",
-    "presence_name",
     "run_of",
     "storage_bits",
     "total",
@@ -182,7 +181,7 @@ class Struct:
         sizes = total(self.fields) if run is None else run.sizes
         object.__setattr__(self, "sizes", sizes)
         object.__setattr__(self, "holds_values", stored)
-        object.__setattr__(self, "needs", _needed_by(self.fields))
+        object.__setattr__(self, "needs", needed_by(self.fields))
 
 
 class Array(msgspec.Struct, frozen=True, kw_only=True):
@@ -474,7 +473,8 @@ def total(fields: tuple[Field, ...]) -> SizeSet:
     return sizes
 
 
-def _needed_by(fields: Sequence[Field]) -> frozenset[str]:
+def needed_by(fields: Sequence[Field]) -> frozenset[str]:
+    """The names around that fields ask for."""
     needed = _NO_NAMES
     for field in reversed(fields):
         needed = beyond(needed, field.name) | field.needs
@@ -484,19 +484,3 @@ def _needed_by(fields: Sequence[Field]) -> frozenset[str]:
 def beyond(needed: frozenset[str], name: str) -> frozenset[str]:
     """The names that are needed of what lies around, where one field has this name."""
     return frozenset(path for path in needed if path.partition(".")[0] != name)
-
-
-def count_name(fields: Sequence[Field], field: Field) -> str:
-    """Name beside those of `fields` for the number of elements or bytes of one that has it.
-
-    It hides none of the numbers around that they ask for.
-    """
-    word = "count" if isinstance(field.type, Array) else "size"
-    around = {path.partition(".")[0] for path in _needed_by(fields)}
-    return free_name(f"{field.name}_{word}", {item.name for item in fields} | around)
-
-
-def presence_name(fields: Sequence[Field], field: Field) -> str:
-    """Name beside those of `fields`, and of their counts, for whether an optional one is there."""
-    counts = {count_name(fields, item) for item in fields if item.has_count}
-    return free_name(f"has_{field.name}", {item.name for item in fields} | counts)
