@@ -1,4 +1,4 @@
-"""Output of a decoder: events that it hands to its handler, or rows of tables."""
+"""What a generated file is for: events that a handler takes, or rows of tables."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import msgspec
 
 
 class Fill(msgspec.Struct, frozen=True):
-    """The functions that take what a decoder finds."""
+    """The functions that take what a decoder finds, and what frames are made of."""
 
     deliver: str
     """The function that takes any event, called with the decoder's `user` and the event."""
@@ -17,6 +17,8 @@ class Fill(msgspec.Struct, frozen=True):
     kind, by the message's name; None where all events go to `deliver`."""
     storage: str = "static"
     """Words in front of the function that takes whole frames."""
+    strict: bool = True
+    """False if frames are made again of what came in, whatever an encoder would refuse of it."""
 
 
 EVENTS = Fill("decoder->handler")

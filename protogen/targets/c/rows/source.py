@@ -121,6 +121,7 @@ def rows_source(
         deliver="protogen_take",
         messages={name: f"protogen_fill_{i}" for i, name in enumerate(schema.messages)},
         storage="PROTOGEN_INLINE",
+        strict=False,
     )
     header, source = texts(protocol, options, fill=fill)
     unit = unit_of(protocol, options)
