@@ -2177,8 +2177,12 @@ static uint8_t rflex_linux_search(struct rflex_linux_decoder *decoder, uint8_t b
     }
     decoder->held = longer;
     for (index = 0; index < (uint8_t)(held + 1U - longer); index++) {
-        const uint8_t next = index < held ? (uint8_t)(index == 0U ? 0x1BU : 0x03U) : byte;
-        const uint8_t reason = rflex_linux_pass(decoder, next);
+        uint8_t next = byte;
+        uint8_t reason;
+        if (index < held) {
+            next = (uint8_t)(index == 0U ? 0x1BU : 0x03U);
+        }
+        reason = rflex_linux_pass(decoder, next);
         if (reason != RFLEX_NO_REASON) {
             return reason;
         }
@@ -2884,8 +2888,12 @@ static uint8_t rflex_flex_search(struct rflex_flex_decoder *decoder, uint8_t byt
     }
     decoder->held = longer;
     for (index = 0; index < (uint8_t)(held + 1U - longer); index++) {
-        const uint8_t next = index < held ? (uint8_t)(index == 0U ? 0x1BU : 0x03U) : byte;
-        const uint8_t reason = rflex_flex_pass(decoder, next);
+        uint8_t next = byte;
+        uint8_t reason;
+        if (index < held) {
+            next = (uint8_t)(index == 0U ? 0x1BU : 0x03U);
+        }
+        reason = rflex_flex_pass(decoder, next);
         if (reason != RFLEX_NO_REASON) {
             return reason;
         }

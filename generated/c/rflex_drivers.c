@@ -2660,8 +2660,12 @@ static uint8_t rflex_drivers_linux_search(struct rflex_drivers_linux_decoder *de
     }
     decoder->held = longer;
     for (index = 0; index < (uint8_t)(held + 1U - longer); index++) {
-        const uint8_t next = index < held ? (uint8_t)(index == 0U ? 0x1BU : 0x03U) : byte;
-        const uint8_t reason = rflex_drivers_linux_pass(decoder, next);
+        uint8_t next = byte;
+        uint8_t reason;
+        if (index < held) {
+            next = (uint8_t)(index == 0U ? 0x1BU : 0x03U);
+        }
+        reason = rflex_drivers_linux_pass(decoder, next);
         if (reason != RFLEX_DRIVERS_NO_REASON) {
             return reason;
         }
@@ -3392,8 +3396,12 @@ static uint8_t rflex_drivers_flex_search(struct rflex_drivers_flex_decoder *deco
     }
     decoder->held = longer;
     for (index = 0; index < (uint8_t)(held + 1U - longer); index++) {
-        const uint8_t next = index < held ? (uint8_t)(index == 0U ? 0x1BU : 0x03U) : byte;
-        const uint8_t reason = rflex_drivers_flex_pass(decoder, next);
+        uint8_t next = byte;
+        uint8_t reason;
+        if (index < held) {
+            next = (uint8_t)(index == 0U ? 0x1BU : 0x03U);
+        }
+        reason = rflex_drivers_flex_pass(decoder, next);
         if (reason != RFLEX_DRIVERS_NO_REASON) {
             return reason;
         }

@@ -973,8 +973,12 @@ static uint8_t uherobot_daemon_board_search(struct uherobot_daemon_board_decoder
     }
     decoder->held = longer;
     for (index = 0; index < (uint8_t)(held + 1U - longer); index++) {
-        const uint8_t next = index < held ? (uint8_t)(index == 0U ? 0x0DU : 0x0AU) : byte;
-        const uint8_t reason = uherobot_daemon_board_pass(decoder, next);
+        uint8_t next = byte;
+        uint8_t reason;
+        if (index < held) {
+            next = (uint8_t)(index == 0U ? 0x0DU : 0x0AU);
+        }
+        reason = uherobot_daemon_board_pass(decoder, next);
         if (reason != UHEROBOT_DAEMON_NO_REASON) {
             return reason;
         }

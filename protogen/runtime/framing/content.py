@@ -272,9 +272,11 @@ class Content:
             new = bytes(self.bytes[self._layout.head_size + measurer.taken :])
             self._set_payload(measurer.take(new))
         except PayloadFault as error:
-            if not error.missing or measurer.taken + error.missing > self._room:
+            # How far ahead a reader looks is its own matter; that the room is full is not.
+            left = self._room - measurer.taken
+            if not error.missing or left <= 0:
                 raise Rejected(error.reason, error.problem) from None
-            self._next = len(self.bytes) + error.missing
+            self._next = len(self.bytes) + min(error.missing, left)
             return
         self._measurer = None
         self.index += 1

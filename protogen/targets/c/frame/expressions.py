@@ -8,6 +8,7 @@ writes a fragment gives its C.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
 
 import msgspec
 
@@ -64,8 +65,10 @@ def byte_at(data: bytes, index: str) -> str:
     last = byte(data[-1])
     if len(data) == 1:
         return last
-    chosen = "".join(f"{index} == {i}U ? {byte(value)} : " for i, value in enumerate(data[:-1]))
-    return f"({chosen}{last})"
+    # Where all are the same, the place is asked for nevertheless: else nothing would use it.
+    ends = [i for i, pair in enumerate(pairwise(data)) if pair[0] != pair[1]] or [0]
+    chosen = (f"{index} {f'<= {i}U' if i else '== 0U'} ? {byte(data[i])} : " for i in ends)
+    return f"({''.join(chosen)}{last})"
 
 
 def among(values: Sequence[int], at: str) -> str:

@@ -260,10 +260,11 @@ export class Content {
         catch (error) {
             if (!(error instanceof Fault))
                 throw error;
-            const room = frame.greatest - frame.headSize - frame.tailSize;
-            if (!error.missing || start.length + error.missing > room)
+            // How far ahead a reader looks is its own matter; that the room is full is not.
+            const left = frame.greatest - frame.headSize - frame.tailSize - start.length;
+            if (!error.missing || left <= 0)
                 throw error;
-            this.next = this.size + error.missing;
+            this.next = this.size + Math.min(error.missing, left);
             return;
         }
         this.isMeasuring = false;
