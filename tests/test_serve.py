@@ -75,7 +75,7 @@ class Client:
         self._socket = socket
         self.info = self._next("serverInfo")
         self.channels: dict[str, Any] = {}
-        while "/invalid_spans" not in self.channels:
+        while "/matty/invalid_spans" not in self.channels:
             found = self._next("advertise")["channels"]
             self.channels |= {channel["topic"]: channel for channel in found}
         self._topics = {channel["id"]: topic for topic, channel in self.channels.items()}
@@ -148,7 +148,7 @@ def of_mcap(folder: Path, recording: Path, sender: str) -> list[tuple[str, int, 
     (file,) = (folder / sender).glob("*.mcap")
     with file.open("rb") as stream:
         return [
-            (channel.topic.removeprefix("/matty"), message.log_time, json.loads(message.data))
+            (channel.topic, message.log_time, json.loads(message.data))
             for _, channel, message in reader.make_reader(stream).iter_messages()
         ]
 
@@ -158,7 +158,7 @@ def replayed(recording: Path) -> tuple[Client, list[tuple[str, int, Any]], str]:
     """A client, what it got of a replay, and what it was told when it published something."""
     args = (str(recording), "--port", "0", "--speed", "2", "--endpoint", "pc")
     with serving(*args) as address, client(address) as viewer:
-        viewer.publish("/pc/stop", "{}")
+        viewer.publish("/matty/pc/stop", "{}")
         problem = viewer.status()
         viewer.subscribe()
         return viewer, viewer.messages(100 * 4), problem
@@ -179,8 +179,13 @@ class TestReplay:
         assert viewer.info["capabilities"] == ["clientPublish"]
         assert viewer.info["supportedEncodings"] == ["json"]
         topics = set(viewer.channels)
-        channel = viewer.channels["/esp/status"]
-        assert {"/pc/go", "/esp/ack", "/esp/unknown_frames", "/pc/invalid_spans"} <= topics
+        channel = viewer.channels["/matty/esp/status"]
+        assert {
+            "/matty/pc/go",
+            "/matty/esp/ack",
+            "/matty/esp/unknown_frames",
+            "/matty/pc/invalid_spans",
+        } <= topics
         assert (channel["encoding"], channel["schemaEncoding"]) == ("json", "jsonschema")
         assert channel["schemaName"] == "matty.status"
         members = json.loads(channel["schema"])["properties"]
@@ -209,10 +214,10 @@ class TestPublishing:
             args = (f"esp={board.port}", "--port", "0", "--endpoint", "pc")
             with serving(*args) as address, client(address) as viewer:
                 viewer.subscribe()
-                viewer.publish("/pc/go", '{"speed": 500, "steer": "-2.5deg"}')
+                viewer.publish("/matty/pc/go", '{"speed": 500, "steer": "-2.5deg"}')
                 ((topic, _, row),) = viewer.messages(1)
-                viewer.publish("/pc/go", '{"speed": 0, "steer": 0, "@counter": 85}')
-                viewer.publish("/pc/go", '{"speed": 0, "steer": 0}')
+                viewer.publish("/matty/pc/go", '{"speed": 0, "steer": 0, "@counter": 85}')
+                viewer.publish("/matty/pc/go", '{"speed": 0, "steer": 0}')
                 found = received(frames, 3)
         assert found == [
             # length, counter, G, speed 500, steer -250, what makes the sum 0
@@ -221,19 +226,21 @@ class TestPublishing:
             bytes.fromhex("55 06 56 AA 47 00 00 00 00 5E"),
             bytes.fromhex("55 06 01 47 00 00 00 00 B2"),
         ]
-        assert (topic, row["@counter"], row["steer_deg"]) == ("/pc/go", 0, -2.5)
+        assert (topic, row["@counter"], row["steer_deg"]) == ("/matty/pc/go", 0, -2.5)
 
     def test_what_is_wrong_is_told_and_not_sent(self) -> None:
         mistakes = [
-            ("/pc/go", '{"speed": 40000, "steer": 0}', r"/pc/go: speed: .*32767"),
-            ("/pc/go", '{"speed": 1}', r"steer"),
-            ("/pc/go", '{"sped": 1, "steer": 0}', r"no field `sped` .*speed"),
-            ("/pc/go", '{"speed": 1, "steer": 0, "@count": 1}', r"no part `count` .*counter"),
-            ("/pc/go", "{", "not JSON"),
-            ("/pc/go", "[1]", "an object"),
-            ("/pc/gone", "{}", r"`gone`.*go"),
-            ("/esp/ack", "{}", "sent as pc, not as esp"),
-            ("pc/go", "{}", "no topic to publish on"),
+            ("/matty/pc/go", '{"speed": 40000, "steer": 0}', r"/matty/pc/go: speed: .*32767"),
+            ("/matty/pc/go", '{"speed": 1}', r"steer"),
+            ("/matty/pc/go", '{"sped": 1, "steer": 0}', r"no field `sped` .*speed"),
+            ("/matty/pc/go", '{"speed": 1, "steer": 0, "@count": 1}', r"no part `count` .*counter"),
+            ("/matty/pc/go", "{", "not JSON"),
+            ("/matty/pc/go", "[1]", "an object"),
+            ("/matty/pc/gone", "{}", r"`gone`.*go"),
+            ("/matty/esp/ack", "{}", "sent as pc, not as esp"),
+            ("matty/pc/go", "{}", "no topic to publish on"),
+            ("/pc/go", "{}", "no topic to publish on"),
+            ("/rn1/pc/go", "{}", "no topic to publish on"),
         ]
         frames: list[bytes] = []
         with SimulatedDevice(MATTY, "esp") as board:
@@ -243,10 +250,10 @@ class TestPublishing:
                 for topic, text, problem in mistakes:
                     viewer.publish(topic, text)
                     assert re.search(problem, viewer.status()), problem
-                viewer.publish("/pc/go", "{}", encoding="cdr")
+                viewer.publish("/matty/pc/go", "{}", encoding="cdr")
                 assert "publish JSON" in viewer.status()
-                viewer.publish("/pc/go", '{"speed": 0, "steer": 0}')
-                assert viewer._next("removeStatus")["statusIds"] == ["/pc/go"]
+                viewer.publish("/matty/pc/go", '{"speed": 0, "steer": 0}')
+                assert viewer._next("removeStatus")["statusIds"] == ["/matty/pc/go"]
                 assert received(frames, 1) == [bytes.fromhex("55 06 00 47 00 00 00 00 B3")]
             assert board.counts.received == {"go": 1}
 
@@ -254,7 +261,7 @@ class TestPublishing:
 def test_nobody_can_publish_unless_it_is_said_as_whom() -> None:
     with SimulatedDevice(MATTY, "esp") as board:
         with serving(f"esp={board.port}", "--port", "0") as address, client(address) as viewer:
-            viewer.publish("/pc/stop", "{}")
+            viewer.publish("/matty/pc/stop", "{}")
             assert "sent as nobody, not as pc" in viewer.status()
         assert board.counts.received == {}
 
@@ -296,7 +303,8 @@ def test_names_with_dots_are_nested() -> None:
     from protogen.serving.plotjuggler import _datagram, _paths_of
 
     values = {"t_ns": 5, "a.b.c": 1, "a.b.d": None, "a.e": b"\1", "turn_deg.x": 2, "turn_deg": 3}
-    row = LiveRow(Topic(("board", "state"), Table("state", (), (), {})), values, 2 * SECOND)
+    topic = Topic("rover", ("board", "state"), Table("state", (), (), {}))
+    row = LiveRow(topic, values, 2 * SECOND)
     assert json.loads(_datagram(row, _paths_of(row))) == {
         "timestamp": 2.0,
         "board": {

@@ -16,14 +16,20 @@ from protogen.model.protocol import Protocol
 class Topic(msgspec.Struct, frozen=True, eq=False):
     """A stream of rows: one for each message of each sender, and for what is no message."""
 
+    protocol: str
     path: tuple[str, ...]
     """Who sends it, and the name of its table; the table alone where it is not known who did."""
     table: Table
 
     @property
     def name(self) -> str:
-        """The name, as Foxglove has it: `/board/state`."""
-        return "".join(f"/{step}" for step in self.path)
+        """The name, as Foxglove has it, and as MCAP files of `convert` do: `/rover/board/state`."""
+        return topic_of(self.protocol, *self.path)
+
+
+def topic_of(protocol: str, *path: str) -> str:
+    """The name of a topic."""
+    return "".join(f"/{step}" for step in (protocol, *path))
 
 
 class LiveRow(msgspec.Struct, frozen=True):
@@ -58,10 +64,10 @@ class LiveRows:
     def _all(self, protocol: Protocol) -> Iterator[Topic]:
         for name, tables in self._tables.items():
             for table in (*tables.messages.values(), tables.unknown):
-                yield Topic((name, table.name), table)
+                yield Topic(protocol.name, (name, table.name), table)
         for source in (*protocol.sending, ""):
             table = self._invalid(source)
-            yield Topic(_path(source, table), table)
+            yield Topic(protocol.name, _path(source, table), table)
 
     def _invalid(self, source: str) -> Table:
         """The table of what is no frame: it is the same in each form of frame."""

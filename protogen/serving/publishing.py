@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from protogen.cli.wire.given import given_message
 from protogen.errors import UserError
 from protogen.runtime.codec import Encoder
+from protogen.serving.live_rows import topic_of
 
 if TYPE_CHECKING:
     from protogen.cli.wire.codec import Codec
@@ -25,14 +26,14 @@ class Publisher:
     def topics(self) -> tuple[str, ...]:
         """The topics on which may be published."""
         return tuple(
-            f"/{message.endpoint}/{item.name}"
+            topic_of(self._codec.protocol.name, message.endpoint, item.name)
             for name in self._encoders
             for message in self._codec.protocol.forms(name)
             for item in message.messages
         )
 
     def frame(self, topic: str, data: bytes) -> tuple[str, bytes]:
-        """Who sends what is published on `/ENDPOINT/MESSAGE`, and its frame.
+        """Who sends what is published on `/PROTOCOL/ENDPOINT/MESSAGE`, and its frame.
 
         Values may be written as on a command line: numbers, names, `"90deg"`; parts of the frame
         are members `@PART`. Raises UserError, which names the field.
@@ -45,8 +46,8 @@ class Publisher:
         return endpoint, frame
 
     def _split(self, topic: str) -> tuple[str, str]:
-        _, endpoint, name, *rest = [*topic.split("/"), "", ""]
-        if not name or any(rest) or not topic.startswith("/"):
+        root, protocol, endpoint, name, *rest = [*topic.split("/"), *4 * [""]]
+        if root or protocol != self._codec.protocol.name or not name or any(rest):
             raise UserError("is no topic to publish on", f"there are {', '.join(self.topics)}")
         if endpoint not in self._encoders:
             who = " or ".join(self._encoders) or "nobody"
