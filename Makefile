@@ -37,8 +37,10 @@ test-rest: export HYPOTHESIS_PROFILE ?= ci
 test-rest: $(INSTALLED)
 	@$(call tested,-m slow)
 
-# Everything that must hold.
-test-all: test test-rest
+# Everything that must hold, in one go: what tests compile for one another is compiled once.
+test-all: export HYPOTHESIS_PROFILE ?= ci
+test-all: check
+	@$(call tested,)
 
 # All tests, with the lines and branches that no test reaches. Watching them takes twice the time.
 coverage: check

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -10,7 +11,7 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
-from tooling import require_module, require_tool
+from tooling import require_module, require_tool, unavailable
 
 from protogen.cli.wire.codec import Codec
 from protogen.cli.wire.explain import _rows, _sender, _title, _value
@@ -18,6 +19,9 @@ from protogen.model.protocol import Protocol
 from protogen.targets.html.emit import emit
 
 AXE = Path(__file__).parents[1] / ".cache" / "axe" / "node_modules" / "axe-core" / "axe.min.js"
+SCHEMES = {"light": {}, "dark": {"runOnly": ["color-contrast", "link-in-text-block"]}}
+"""Options of axe-core for both schemes, which differ in colours alone. What else it looks for takes
+most of its time, and is the same in the dark."""
 
 
 @contextmanager
@@ -70,6 +74,20 @@ class Opened:
     def run(self, code: str, value: object = None) -> Any:
         """What a function of JavaScript gives for a value."""
         return self.page.evaluate(code, value)
+
+    def run_on_much(self, code: str, value: object) -> Any:
+        """The same of values that JSON has: Playwright takes long to look at each of thousands."""
+        text = f"text => JSON.stringify(({code})(JSON.parse(text)))"
+        return json.loads(self.page.evaluate(text, json.dumps(value)))
+
+    def barriers(self, scheme: str) -> list[Any]:
+        """What axe-core finds, with some of the places; skips the test, or fails, without it."""
+        if not AXE.is_file():
+            unavailable("axe-core is not installed in .cache/axe")
+        if not self.run("'axe' in window"):
+            self.run(AXE.read_text(encoding="utf-8"))
+        found = self.run("options => axe.run(options)", SCHEMES[scheme])["violations"]
+        return [(item["id"], [node["html"][:200] for node in item["nodes"]][:3]) for item in found]
 
     def __enter__(self) -> Opened:
         return self

@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 import typescript_engine as engine
-from browser_pages import AXE, chromium, served
+from browser_pages import AXE, SCHEMES, chromium, served
 from compiled import ROOT, module_at, protocol_of
 from corpus import material_of, portions, stream_of
 from tooling import unavailable
@@ -393,7 +393,7 @@ class TestPort:
 
 
 class TestAccess:
-    @pytest.mark.parametrize("scheme", ["light", "dark"])
+    @pytest.mark.parametrize("scheme", SCHEMES)
     def test_axe_finds_nothing(self, opened: Opener, scheme: str) -> None:
         if not AXE.is_file():
             unavailable("axe-core is not installed in .cache/axe")
@@ -409,7 +409,7 @@ class TestAccess:
         page.page.wait_for_selector("text=/^ParityError/")
         page.run(AXE.read_text(encoding="utf-8"))
         page.page.clock.resume()
-        found = page.run("() => axe.run()")["violations"]
+        found = page.run("options => axe.run(options)", SCHEMES[scheme])["violations"]
         told = [(item["id"], [node["html"][:200] for node in item["nodes"]]) for item in found]
         assert told == []
 
