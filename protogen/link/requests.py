@@ -1,7 +1,8 @@
 """Requests: what was sent, what answers it, and what came instead.
 
-A request that is settled while a repetition of it may still be answered, or that is given up, is
-*expected late* for a while: a request that its late answer could be taken for waits for that long.
+An answer may come up to two timeouts after its request was sent. A request that is settled while a
+repetition of it may still be answered, or that is given up, is *expected late* until then: a request
+that its late answer could be taken for waits for that long.
 """
 
 from __future__ import annotations
@@ -59,6 +60,8 @@ class Pending:
         """Set once no answer is expected any more."""
         self.unanswered = 0
         """Repetitions that may yet be answered."""
+        self.last_sent = 0.0
+        """When it was last sent, by the event loop's clock."""
         self.came = Counter[str]()
 
     def accepts(self, event: MessageEvent[Any, Any]) -> bool:
@@ -215,6 +218,7 @@ class Requests:
         for attempt in range(attempts):
             self._counts.retries += attempt > 0
             pending.unanswered += 1
+            pending.last_sent = asyncio.get_running_loop().time()
             try:
                 async with asyncio.timeout(timeout):
                     await self._write(frame, message)
@@ -234,10 +238,11 @@ class Requests:
         return pending.reply
 
     def _leave(self, pending: Pending, timeout: float) -> None:
-        """Wait for an answer no longer; a late one is expected for one more timeout."""
+        """Wait for an answer no longer; a late one is expected until two timeouts have passed."""
         pending.is_over = True
         if pending.unanswered > 0:
-            asyncio.get_running_loop().call_later(timeout, self._forget, pending)
+            end = pending.last_sent + 2 * timeout
+            asyncio.get_running_loop().call_at(end, self._forget, pending)
         else:
             self._forget(pending)
 
