@@ -1,83 +1,90 @@
 """Thousands of requests over a line that loses bytes and holds them back.
 
-What the link says of them is compared with what was on the wire. Each request has a token that
-its answer repeats and that the link knows nothing of: it goes by the counter, or by the order.
+What the link says of them is compared with what was on the wire. Each request has a target of its
+own, which its answer repeats and by which the link does not go: it goes by the counter, or the
+order. The protocol, and the firmware in C, are those of `docs/howto/test-firmware.md`.
 """
 
 from __future__ import annotations
 
 import asyncio
+import re
+import select
+import subprocess
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
+from cli_support import PATIENCE, run
+from doc_pages import Page, named_schemas
 from link_wire import WireEnd, run_in_virtual_time, wire
+from tooling import require_tool
 
 import protogen
 from protogen.link import Link, NoReplyError, RefusedError, connect
 from protogen.link.answers import AnswerRates
 from protogen.link.damage import Damage, DamageRates
-from protogen.link.ports.port import Arrival
+from protogen.link.ports.opening import open_port
+from protogen.link.ports.port import Arrival, Port
 from protogen.link.simulated_values import example_values
 from protogen.link.simulation import Simulation
 from protogen.link.tapping import End, tap
 from protogen.live.codec import kept_module
+from protogen.model.protocol import Protocol
 
-SCHEMA = """\
-protocol: valve
-endpoints: {{host: Host, board: Board}}
-byte_order: little
-frame:
-  counter: {{type: uint8, counter: true}}
-  kind: {{type: uint8, id: true}}
-  payload: {{}}
-  crc: {{type: uint32, algorithm: CRC-32/ISO-HDLC, covers: counter..payload}}
-  end: {{literal: 0x00}}
-transparency: {{covers: counter..crc, encoding: cobs}}
-messages:
-  set: {{id: 1, from: host, fields: {{token: uint32}}}}
-  done: {{id: 17, from: board, fields: {{token: uint32}}}}
-  refused: {{id: 18, from: board, fields: {{token: uint32}}}}
-exchanges:
-  command: {{request: set, reply: done, refusal: refused, {match}}}
-"""
-BY_COUNTER = "match: counter"
-BY_ORDER = "retries: 0"
-REPEATED = "match: {counter: counter, token: token}"
-"""What the simulator goes by, so that its answers have the token, too."""
+PAGE = Page("docs/howto/test-firmware.md")
+SCHEMA = named_schemas()["axis.yaml"]
+BY_COUNTER = "match: counter,"
+BY_ORDER = ""
+REPEATED = "match: {counter: counter, target: target},"
+"""What the simulator goes by, so that its answers have the target, too."""
 
-TIMEOUT, RETRIES = 0.1, 2
-LOST = 0.01
+TIMEOUT, RETRIES = 0.2, 2
+"""Those of the schema."""
 LATEST = 2 * TIMEOUT
 """So long the link expects an answer."""
+LOST = 0.01
+"""Share of the bytes that the tap leaves out."""
 
 
-def module_of(match: str, folder: Path) -> tuple[Any, ModuleType]:
-    """The protocol, where an exchange goes by this."""
-    path = folder / "valve.yaml"
-    path.write_text(SCHEMA.format(match=match))
-    protocol = protogen.load(path)
-    return protocol, kept_module(protocol)
+def schema_in(folder: Path, *changes: tuple[str, str]) -> Path:
+    """The schema of the page, with changes."""
+    text = SCHEMA
+    for old, new in changes:
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    folder.mkdir(exist_ok=True)
+    path = folder / "axis.yaml"
+    path.write_text(text)
+    return path
+
+
+def protocol_in(folder: Path, match: str) -> Protocol:
+    return protogen.load(schema_in(folder, (BY_COUNTER, match)))
 
 
 class Line:
-    """Two wires with a tap between them, which loses bytes and holds them back."""
+    """A wire, and a tap behind it that loses bytes and holds them back."""
 
-    def __init__(self, held: float) -> None:
-        """`held` are the most seconds for which bytes wait, either way."""
+    def __init__(self, far: Port, held: float) -> None:
+        """`far` leads to the board; either way, bytes wait for at most `held` seconds."""
         self.here, middle = wire()
-        other, self.there = wire()
         self.passed = {"host": bytearray(), "board": bytearray()}
         """What the tap let through, by who sent it."""
         rates = DamageRates(drop=LOST, delay=held)
-        self._ends = End("host", middle, Damage(rates, 1)), End("board", other, Damage(rates, 2))
+        self._ends = End("host", middle, Damage(rates, 1)), End("board", far, Damage(rates, 2))
 
     def _take(self, source: str, arrival: Arrival) -> None:
         self.passed[source] += arrival.data
+
+    def messages(self, module: Any, source: str) -> int:
+        """How many messages the tap let through."""
+        events = module.Decoder(source).feed(bytes(self.passed[source]))
+        return sum(event.kind == "message" for event in events)
 
     async def __aenter__(self) -> Line:
         self._tapping = asyncio.create_task(tap(*self._ends, self._take))
@@ -88,14 +95,9 @@ class Line:
         self._tapping.cancel()
 
 
-def messages(decoder: Any, data: bytearray) -> int:
-    """How many messages are in what came."""
-    return sum(event.kind == "message" for event in decoder.feed(bytes(data)))
-
-
 @dataclass
 class Outcomes:
-    """What became of requests, by their tokens."""
+    """What became of requests, by their targets."""
 
     replies: set[int] = field(default_factory=set)
     refusals: set[int] = field(default_factory=set)
@@ -104,71 +106,65 @@ class Outcomes:
     """When each was settled, by the link's clock."""
 
 
-async def ask(link: Link[Any, Any], module: Any, number: int, at_once: int) -> Outcomes:
-    """Make so many requests. None may get an answer with another's token."""
+async def ask(
+    link: Link[Any, Any], module: Any, targets: range, at_once: int, timeout: float
+) -> Outcomes:
+    """Make a request for each target. None may get an answer with another's."""
     found = Outcomes()
     room = asyncio.Semaphore(at_once)
 
-    async def one(token: int) -> None:
+    async def one(target: int) -> None:
         async with room:
             try:
-                reply = await link.request(
-                    module.Set(token=token), timeout=TIMEOUT, retries=RETRIES
-                )
-                assert reply == module.Done(token=token)
-                found.replies.add(token)
+                reply = await link.request(module.Move(target=target), timeout=timeout)
+                assert reply == module.Moving(target=target)
+                found.replies.add(target)
             except RefusedError as error:
-                assert error.refusal == module.Refused(token=token)
-                found.refusals.add(token)
+                assert error.refusal == module.Refused(target=target)
+                found.refusals.add(target)
             except NoReplyError as error:
                 assert error.attempts == 1 + RETRIES
-                found.unanswered.add(token)
-            found.settled[token] = asyncio.get_running_loop().time()
+                found.unanswered.add(target)
+            found.settled[target] = asyncio.get_running_loop().time()
 
     async with asyncio.TaskGroup() as group:
-        for token in range(number):
-            group.create_task(one(token))
+        for target in targets:
+            group.create_task(one(target))
     return found
 
 
-def frames_of(end: WireEnd) -> Iterator[tuple[float, bytes]]:
-    """Each frame that was written at an end, with its time: in COBS, all up to a zero."""
-    for when, data in end.written:
-        assert data.count(0) == 1
-        assert data.endswith(b"\0")
-        yield when, data
-
-
 class Sent:
-    """The requests on the wire, which are found without the link."""
+    """The requests on the wire, found without the link."""
 
     def __init__(self, end: WireEnd, module: Any) -> None:
         self.number = Counter[int]()
-        """How often each request was sent, by its token."""
+        """How often each request was sent, by its target."""
         self.first: dict[int, float] = {}
         frames: dict[int, bytes] = {}
-        for when, frame in frames_of(end):
-            token = module.PROTOCOL.read(frame, "host").message.token
-            self.number[token] += 1
-            self.first.setdefault(token, when)
-            assert frames.setdefault(token, frame) == frame  # Repeated, it is the same.
+        for when, frame in end.written:
+            assert frame.index(0) == len(frame) - 1  # In COBS, a zero ends each frame.
+            target = module.PROTOCOL.read(frame, "host").message.target
+            self.number[target] += 1
+            self.first.setdefault(target, when)
+            assert frames.setdefault(target, frame) == frame  # Repeated, it is the same.
 
 
-def check(link: Link[Any, Any], sent: Sent, found: Outcomes, number: int, slack: float) -> None:
-    """Compare what the link says with what was sent."""
+def check(link: Link[Any, Any], sent: Sent, found: Outcomes, timeout: float, slack: float) -> None:
+    """Compare what the link says with what was sent.
+
+    `slack` are seconds by which the event loop may call late.
+    """
     counts = link.counts
-    assert sent.number.keys() == set(range(number))
-    assert counts.sent == {"set": sent.number.total()}
-    assert counts.retries == sent.number.total() - number
-    assert (counts.replies, counts.refusals, counts.unanswered) == (
-        len(found.replies), len(found.refusals), len(found.unanswered)
-    )  # fmt: skip
-    assert counts.replies + counts.refusals + counts.unanswered == number
-    for token, times in sent.number.items():
-        took = found.settled[token] - sent.first[token]
-        assert (times - 1) * TIMEOUT - 1e-6 <= took <= times * TIMEOUT + slack
+    outcomes = [found.replies, found.refusals, found.unanswered]
+    assert [counts.replies, counts.refusals, counts.unanswered] == [len(it) for it in outcomes]
+    assert sum(len(it) for it in outcomes) == len(found.settled) == len(sent.number)
+    assert counts.sent == {"move": sent.number.total()}
+    assert counts.retries == sent.number.total() - len(sent.number)
+    for target, times in sent.number.items():
+        took = found.settled[target] - sent.first[target]
+        assert (times - 1) * timeout - slack <= took <= times * timeout + slack
         assert times <= 1 + RETRIES
-        assert token not in found.unanswered or times == 1 + RETRIES
+        assert times == 1 + RETRIES or target not in found.unanswered
 
 
 @pytest.mark.parametrize(
@@ -185,25 +181,125 @@ def test_against_the_simulator(
     match: str, number: int, at_once: int, held: float, tmp_path: Path
 ) -> None:
     """In virtual time, which is the same on each machine, whatever else it does."""
-    protocol, board = module_of(REPEATED, tmp_path)
-    _, host = module_of(match, tmp_path)
-    simulation = Simulation(protocol, board, "board", {}, example_values(protocol, "board", 1))
+    repeating = protocol_in(tmp_path / "board", REPEATED)
+    values = example_values(repeating, "board", 1)
+    simulation = Simulation(repeating, kept_module(repeating), "board", {}, values)
     simulation.answer_requests(AnswerRates(refuse=0.1, ignore=0.02), seed=1)
+    host: Any = kept_module(protocol_in(tmp_path / "host", match))
 
     async def asked() -> None:
-        async with Line(held) as line:
-            device = asyncio.create_task(simulation.run(line.there))
-            async with connect(host, line.here, "host") as link:
-                found = await ask(link, host, number, at_once)
-                await asyncio.sleep(LATEST)
-                check(link, Sent(line.here, host), found, number, 1e-6)
-                assert min(len(found.replies), len(found.refusals), len(found.unanswered)) > 10
-                assert link.counts.late > 10
-                # What comes is of a request that waits, or too late for it, and nothing else.
-                came = messages(host.Decoder("board"), line.passed["board"])
-                assert came == link.counts.replies + link.counts.refusals + link.counts.late
-                got = messages(host.Decoder("host"), line.passed["host"])
-                assert simulation.counts.received["set"] == got
+        far, there = wire()
+        async with Line(far, held) as line, connect(host, line.here, "host") as link:
+            device = asyncio.create_task(simulation.run(there))
+            found = await ask(link, host, range(number), at_once, TIMEOUT)
+            await asyncio.sleep(LATEST)
             device.cancel()
+            check(link, Sent(line.here, host), found, TIMEOUT, 1e-6)
+            assert len(found.settled) == number
+            assert min(len(found.refusals), len(found.unanswered), link.counts.late) > 10
+            # What comes is of a request that waits, or too late for it, and nothing else.
+            counts = link.counts
+            came = line.messages(host, "board")
+            assert came == counts.replies + counts.refusals + counts.late
+            assert simulation.counts.received["move"] == line.messages(host, "host")
 
     run_in_virtual_time(asked())
+
+
+# --- generated C on an emulated board -------------------------------------------------------------
+
+
+def firmware(folder: Path) -> Path:
+    """The page's firmware, compiled as the page says."""
+    done = run(
+        *("generate", f"{folder}/axis.yaml", "--target", "c", "--events", "messages"),
+        *("--no-project", "--output", f"{folder}/generated"),
+    )
+    assert done.exit_code == 0, done.output
+    (source,) = (block for block in PAGE.blocks if block.language == "c")
+    (folder / source.file).write_text(source.text)
+    (command,) = re.findall(r"^\$ (arm-none-eabi-gcc .*)", PAGE.commands, re.MULTILINE)
+    require_tool("arm-none-eabi-gcc")
+    made = subprocess.run(
+        command.split(), cwd=folder, capture_output=True, text=True, check=False, timeout=PATIENCE
+    )
+    assert made.returncode == 0, made.stderr
+    return folder / "drive.elf"
+
+
+@contextmanager
+def emulated(program: Path) -> Iterator[str]:
+    """A board that runs a program; gives the pseudo-terminal of its UART."""
+    quiet = ("-display", "none", "-monitor", "none")
+    board = subprocess.Popen(
+        [
+            require_tool("qemu-system-arm"),
+            *("-M", "mps2-an385", *quiet, "-serial", "pty", "-kernel", program),
+        ],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert board.stdout is not None
+        assert select.select([board.stdout], [], [], PATIENCE)[0], "it said nothing"
+        found = re.search(r"/dev/\S+", board.stdout.readline())
+        assert found is not None
+        yield found[0]
+    finally:
+        board.kill()
+        board.communicate()
+
+
+class Listened(Port):
+    """A port, and what was read of it."""
+
+    def __init__(self, port: Port) -> None:
+        super().__init__(port.name)
+        self._port = port
+        self.came = bytearray()
+
+    async def read(self) -> Arrival:
+        arrival = await self._port.read()
+        self.came += arrival.data
+        return arrival
+
+    async def write(self, data: bytes) -> None:
+        await self._port.write(data)
+
+    async def close(self) -> None:
+        await self._port.close()
+
+
+def test_against_c_on_an_emulated_board(tmp_path: Path) -> None:
+    """Ten thousand requests, of which the firmware refuses a quarter.
+
+    A counter of two bytes is never the same for two of them, so that a machine which stands still
+    for long makes no answer too late.
+    """
+    pytest.importorskip("serialx")
+    schema = schema_in(tmp_path, ("{type: uint8, counter: true}", "{type: uint16, counter: true}"))
+    host: Any = kept_module(protogen.load(schema))
+    targets = range(0, 400_000, 40)
+    timeout = 0.4
+
+    async def asked(address: str) -> None:
+        async with Listened(await open_port(address)) as board:
+            # QEMU takes a while to see that somebody has opened its pseudo-terminal.
+            await board.write(host.encode(host.Move(target=-1), counter=0))
+            while board.came != host.encode(host.Refused(target=-1), counter=0):
+                await board.read()
+            board.came.clear()
+            async with Line(board, 0.03) as line, connect(host, line.here, "host") as link:
+                found = await ask(link, host, targets, 50, timeout)
+                check(link, Sent(line.here, host), found, timeout, 10)
+                assert found.settled.keys() == set(targets)
+                assert found.replies <= set(range(0, 300_001, 40))
+                assert found.refusals <= set(range(300_040, 400_000, 40))
+                # Of the damaged bytes, C has read what Python does, and has answered each once.
+                while board.came.count(0) < line.messages(host, "host"):
+                    await asyncio.sleep(0.05)
+            assert board.came.count(0) == line.messages(host, "host")
+
+    with emulated(firmware(tmp_path)) as port:
+        asyncio.run(asyncio.wait_for(asked(port), PATIENCE))

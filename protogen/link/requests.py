@@ -1,8 +1,8 @@
 """Requests: what was sent, what answers it, and what came instead.
 
 An answer may come up to two timeouts after its request was sent. A request that is settled while a
-repetition of it may still be answered, or that is given up, is *expected late* until then: a request
-that its late answer could be taken for waits for that long.
+repetition of it may still be answered, or that is given up, is *expected late* until then: a
+request that its late answer could be taken for waits for that long.
 """
 
 from __future__ import annotations
