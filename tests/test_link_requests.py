@@ -25,7 +25,7 @@ from link_wire import WireEnd, run_in_virtual_time, wire
 from tooling import require_tool
 
 import protogen
-from protogen.link import Link, NoReplyError, RefusedError, connect
+from protogen.link import Link, LinkClosedError, NoReplyError, RefusedError, connect
 from protogen.link.answers import AnswerRates
 from protogen.link.damage import Damage, DamageRates
 from protogen.link.ports.opening import open_port
@@ -202,6 +202,43 @@ def test_against_the_simulator(
             came = line.messages(host, "board")
             assert came == counts.replies + counts.refusals + counts.late
             assert simulation.counts.received["move"] == line.messages(host, "host")
+
+    run_in_virtual_time(asked())
+
+
+class SlowEnd(WireEnd):
+    """Takes one byte in ten milliseconds."""
+
+    async def write(self, data: bytes) -> None:
+        for byte in data:
+            await super().write(bytes([byte]))
+            await asyncio.sleep(0.01)
+
+
+def test_a_lazy_line_gets_whole_frames(tmp_path: Path) -> None:
+    """A frame of 12 bytes takes 120 ms, and nobody waits so long for its answer."""
+    host: Any = kept_module(protocol_in(tmp_path, BY_COUNTER))
+
+    async def asked() -> None:
+        here, there = SlowEnd("here"), WireEnd("there")
+        here.other, there.other = there, here
+        async with connect(host, here, "host") as link:
+            found = await ask(link, host, range(5), 5, 0.1)
+            assert found.unanswered == set(range(5))
+            await asyncio.sleep(1)
+            counts = link.counts
+            *frames, rest = b"".join(data for _, data in here.written).split(b"\0")
+            sent = [host.PROTOCOL.read(frame + b"\0", "host").message.target for frame in frames]
+            # They begin at 0, 120 and 240 ms. From 300 ms on, nobody waits.
+            assert (len(sent), rest) == (3, b"")
+            assert counts.sent == {"move": 3}
+            assert counts.retries == 3 - len(set(sent))
+            # Closed, it cuts the frame that it writes, and begins no other.
+            ends = [asyncio.create_task(link.send(host.Move(target=9))) for _ in range(2)]
+            await asyncio.sleep(0.05)
+        for end in ends:
+            with pytest.raises(LinkClosedError):
+                await end
 
     run_in_virtual_time(asked())
 
