@@ -237,7 +237,7 @@ class Requests:
                     continue
             return self._outcome(pending)
         self._counts.unanswered += 1
-        raise NoReplyError(message, attempts, pending.timeout, pending.came)
+        raise NoReplyError(message, pending.times_sent, pending.timeout, pending.came)
 
     @contextmanager
     def _sending(self, pending: Pending) -> Iterator[None]:
