@@ -59,7 +59,9 @@ def serving(*args: str) -> Iterator[str]:
     assert process.stderr is not None
     try:
         assert select.select([process.stderr], [], [], 60)[0], "it said nothing"
-        yield process.stderr.readline().strip()
+        line = process.stderr.readline().strip()
+        assert line.startswith("ws://"), f"{line}\n{process.communicate(timeout=60)[1]}"
+        yield line
         process.send_signal(signal.SIGINT)
         _, error = process.communicate(timeout=20)
         assert process.returncode == 0, error
@@ -333,6 +335,7 @@ class TestMistakes:
         done = run("serve", MATTY, *args)
         assert done.exit_code == 2
         assert problem in done.stderr
+        assert "served 0" not in done.stderr  # It has not begun.
 
     def test_a_port_that_is_taken(self) -> None:
         with socket.create_server(("127.0.0.1", 0)) as taken:
