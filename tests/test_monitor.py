@@ -16,7 +16,7 @@ from types import ModuleType
 from typing import Any
 
 import pytest
-from cli_support import ROOT, run
+from cli_support import PATIENCE, ROOT, run
 from tooling import require_tool
 
 from generated.python import matty
@@ -144,7 +144,7 @@ def watched(ends: dict[str, str], test: Test) -> None:
         async with driven(Codec(PROTOCOL, module()), ends) as (app, pilot, session):
             await test(app, pilot, session)
 
-    asyncio.run(asyncio.wait_for(drive(), 60))
+    asyncio.run(asyncio.wait_for(drive(), PATIENCE))
 
 
 @asynccontextmanager
@@ -168,7 +168,7 @@ async def driven(codec: Codec, ends: dict[str, str]) -> AsyncIterator[tuple[Any,
 
 
 async def until(pilot: Any, holds: Callable[[], bool]) -> None:
-    end = time.monotonic() + 20
+    end = time.monotonic() + PATIENCE
     while not holds():
         assert time.monotonic() < end, "it did not come"
         await pilot.pause(0.05)
@@ -271,7 +271,7 @@ def terminal(command: str) -> Iterator[Callable[[], str]]:
         subprocess.run([*tmux, "kill-server"], check=False)
 
 
-def shown(screen: Callable[[], str], pattern: str, seconds: float = 30) -> re.Match[str]:
+def shown(screen: Callable[[], str], pattern: str, seconds: float = PATIENCE) -> re.Match[str]:
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if found := re.search(pattern, screen()):
