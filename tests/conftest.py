@@ -31,6 +31,7 @@ SLOW = (
     "test_lower_bounds.py",
     "test_c_schemas.py",
     "test_c_machines.py",
+    "test_link_requests.py",
     "test_c_fuzz.py",
     "test_docs.py",
     "test_convert_fleet.py",

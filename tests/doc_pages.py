@@ -83,10 +83,22 @@ class Page:
         return _LINK.findall(_FENCE.sub("", self.text))
 
     @property
+    def commands(self) -> str:
+        """The commands on the page, with what they print."""
+        return "".join(block.text for block in self.blocks if block.language == "console")
+
+    @property
     def generates(self) -> bool:
         """True if a command on the page generates code."""
-        texts = [block.text for block in self.blocks if block.language == "console"]
-        return "$ protogen generate" in "".join(texts)
+        return "$ protogen generate" in self.commands
+
+    def compiles(self, source: Block) -> bool:
+        """True if a command on the page compiles a source."""
+        return f" {source.file} " in self.commands
+
+    def needs(self, program: str) -> bool:
+        """True if a block calls a program by its name."""
+        return any(re.search(rf"\b{program} -", block.text) for block in self.blocks)
 
     def __str__(self) -> str:
         return self.path

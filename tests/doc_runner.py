@@ -8,6 +8,7 @@
     c         `/* NAME.c */` in the first line: a source, compiled together with the generated C of
               the headers that it includes. A program exits with 0. A source without `main` is
               linked with `doc_programs/NAME.c`, which stands in for the rest of the firmware.
+              A source that a command of the page compiles is only written.
     cpp       `// NAME.ino` in the first line: an Arduino sketch, linked in the same way
     toml      `# NAME.toml` in the first line: a file
     markdown  `<!-- NAME.md -->` in the first line: a file
@@ -33,6 +34,8 @@ from tooling import require_tool
 from typescript_engine import require_npm
 
 PROGRAMS = ROOT / "tests" / "doc_programs"
+BOARDS = ("arm-none-eabi-gcc", "qemu-system-arm")
+"""Tools for boards, which not every machine has."""
 _WARNINGS = ("-Wall", "-Wextra", "-Werror")
 
 
@@ -53,8 +56,10 @@ class Runner:
 
     def run(self, page: Page) -> None:
         """Run all blocks of a page."""
+        for tool in filter(page.needs, BOARDS):
+            require_tool(tool)
         for block in page.blocks:
-            if block.language in FILES:
+            if block.language in FILES or (block.language == "c" and page.compiles(block)):
                 (self._workspace / block.file).write_text(block.text, encoding="utf-8")
             elif step := getattr(self, f"_run_{block.language}", None):
                 step(block)

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import IO
 
 import pytest
-from cli_support import ROOT, run
+from cli_support import PATIENCE, ROOT, run
 
 from protogen.recording import Record, Recorder, RecordKind, records
 
@@ -52,7 +52,7 @@ def line_of(stream: IO[str] | None) -> str:
     assert stream is not None
     line = b""
     while not line.endswith(b"\n"):
-        assert select.select([stream], [], [], 20)[0], "nothing was printed"
+        assert select.select([stream], [], [], PATIENCE)[0], "nothing was printed"
         byte = os.read(stream.fileno(), 1)
         if not byte:
             break
@@ -62,7 +62,7 @@ def line_of(stream: IO[str] | None) -> str:
 
 def stopped(process: subprocess.Popen[str]) -> tuple[str, str]:
     process.send_signal(signal.SIGINT)
-    out, error = process.communicate(timeout=20)
+    out, error = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, error
     return out, error
 
@@ -92,7 +92,7 @@ def opened(name: str) -> Iterator[int]:
 def read(port: int, size: int) -> bytes:
     data = b""
     while len(data) < size:
-        assert select.select([port], [], [], 20)[0], f"no more than {data.hex(' ')}"
+        assert select.select([port], [], [], PATIENCE)[0], f"no more than {data.hex(' ')}"
         data += os.read(port, size - len(data))
     return data
 
@@ -103,7 +103,7 @@ def found_in(file: Path) -> list[Record]:
 
 def until(file: Path, size: int) -> None:
     """Wait until a file has grown."""
-    end = time.monotonic() + 20
+    end = time.monotonic() + PATIENCE
     while not file.exists() or file.stat().st_size < size:
         assert time.monotonic() < end, "nothing was recorded"
         time.sleep(0.01)
@@ -150,7 +150,7 @@ class TestRecord:
             link.symlink_to(name)
             assert line_of(it.stderr) == f"{link} is back\n"
             os.write(own, STOP)
-            end = time.monotonic() + 20
+            end = time.monotonic() + PATIENCE
             while found_in(file)[-1].kind is not RecordKind.BYTES and time.monotonic() < end:
                 time.sleep(0.01)
             stopped(it)

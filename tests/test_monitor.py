@@ -9,14 +9,14 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Awaitable, Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import pytest
-from cli_support import ROOT, run
+from cli_support import PATIENCE, ROOT, run
 from tooling import require_tool
 
 from generated.python import matty
@@ -139,22 +139,36 @@ Test = Callable[[Any, Any, Any], Awaitable[None]]
 
 def watched(ends: dict[str, str], test: Test) -> None:
     """Run the full screen at 80 x 24, driven by textual's pilot."""
+
+    async def drive() -> None:
+        async with driven(Codec(PROTOCOL, module()), ends) as (app, pilot, session):
+            await test(app, pilot, session)
+
+    asyncio.run(asyncio.wait_for(drive(), PATIENCE))
+
+
+@asynccontextmanager
+async def driven(codec: Codec, ends: dict[str, str]) -> AsyncIterator[tuple[Any, Any, Any]]:
+    """The full screen, its pilot and its session.
+
+    A session that outlives a failed test would take the next test's port, as soon as that has the
+    name of the one that it lost.
+    """
     from protogen.monitor.app import MonitorApp
     from protogen.monitor.session import Session
 
-    async def drive() -> None:
-        session = Session(Codec(PROTOCOL, module()), ends, LineSettings())
-        session.start()
+    session = Session(codec, ends, LineSettings())
+    session.start()
+    try:
         app = MonitorApp(session)
         async with app.run_test(size=(80, 24)) as pilot:
-            await test(app, pilot, session)
+            yield app, pilot, session
+    finally:
         session.stop()
-
-    asyncio.run(asyncio.wait_for(drive(), 60))
 
 
 async def until(pilot: Any, holds: Callable[[], bool]) -> None:
-    end = time.monotonic() + 20
+    end = time.monotonic() + PATIENCE
     while not holds():
         assert time.monotonic() < end, "it did not come"
         await pilot.pause(0.05)
@@ -230,18 +244,11 @@ class TestScreen:
         with Recorder(tmp_path / "run.pgrec") as recorder:
             for number in range(200):
                 recorder.write(own.encode(own.MESSAGES[f"m{number}"](x=1)), t_ns=number)
-        from protogen.monitor.app import MonitorApp
-        from protogen.monitor.session import Session
 
         async def drive() -> None:
-            session = Session(
-                Codec(protocol, own), {"board": f"{tmp_path}/run.pgrec"}, LineSettings()
-            )
-            session.start()
-            app = MonitorApp(session)
-            async with app.run_test(size=(80, 24)) as pilot:
+            ends = {"board": f"{tmp_path}/run.pgrec"}
+            async with driven(Codec(protocol, own), ends) as (app, pilot, _):
                 await until(pilot, lambda: app.query_one(DataTable).row_count == 200)
-            session.stop()
 
         asyncio.run(drive())
 
@@ -264,7 +271,7 @@ def terminal(command: str) -> Iterator[Callable[[], str]]:
         subprocess.run([*tmux, "kill-server"], check=False)
 
 
-def shown(screen: Callable[[], str], pattern: str, seconds: float = 30) -> re.Match[str]:
+def shown(screen: Callable[[], str], pattern: str, seconds: float = PATIENCE) -> re.Match[str]:
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if found := re.search(pattern, screen()):

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from cli_support import ROOT, run
+from cli_support import PATIENCE, ROOT, run
 
 from generated.python import matty
 from protogen.api import load
@@ -58,10 +58,12 @@ def serving(*args: str) -> Iterator[str]:
     )
     assert process.stderr is not None
     try:
-        assert select.select([process.stderr], [], [], 60)[0], "it said nothing"
-        yield process.stderr.readline().strip()
+        assert select.select([process.stderr], [], [], PATIENCE)[0], "it said nothing"
+        line = process.stderr.readline().strip()
+        assert line.startswith("ws://"), f"{line}\n{process.communicate(timeout=PATIENCE)[1]}"
+        yield line
         process.send_signal(signal.SIGINT)
-        _, error = process.communicate(timeout=20)
+        _, error = process.communicate(timeout=PATIENCE)
         assert process.returncode == 0, error
     finally:
         process.kill()
@@ -88,7 +90,7 @@ class Client:
         """Topic, time and content of the next messages."""
         found = []
         while len(found) < count:
-            data = self._socket.recv(timeout=20)
+            data = self._socket.recv(timeout=PATIENCE)
             if isinstance(data, bytes):
                 kind, number, when = struct.unpack_from("<BIQ", data)
                 assert kind == 1
@@ -109,7 +111,7 @@ class Client:
 
     def _next(self, op: str) -> Any:
         while True:
-            data = self._socket.recv(timeout=20)
+            data = self._socket.recv(timeout=PATIENCE)
             if isinstance(data, str) and (found := json.loads(data))["op"] == op:
                 return found
 
@@ -199,7 +201,7 @@ class TestReplay:
 
 
 def received(frames: list[bytes], count: int) -> list[bytes]:
-    end = time.monotonic() + 20
+    end = time.monotonic() + PATIENCE
     while len(frames) < count:
         assert time.monotonic() < end, "it did not come"
         time.sleep(0.01)
@@ -274,7 +276,7 @@ def test_plotjuggler_gets_a_datagram_for_each_message(tmp_path: Path) -> None:
         recorder.write(matty.encode(matty.Stop(), counter=1), t_ns=BEGIN + SECOND, source="pc")
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as plotter:
         plotter.bind(("127.0.0.1", 0))
-        plotter.settimeout(20)
+        plotter.settimeout(PATIENCE)
         port = plotter.getsockname()[1]
         done = run("serve", MATTY, str(file), "--plotjuggler", f"127.0.0.1:{port}")
         assert done.exit_code == 0, done.output
@@ -333,6 +335,7 @@ class TestMistakes:
         done = run("serve", MATTY, *args)
         assert done.exit_code == 2
         assert problem in done.stderr
+        assert "served 0" not in done.stderr  # It has not begun.
 
     def test_a_port_that_is_taken(self) -> None:
         with socket.create_server(("127.0.0.1", 0)) as taken:

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from cli_support import ROOT, run
+from cli_support import PATIENCE, ROOT, run
 from test_cli_line import line_of, opened, read, started
 
 import protogen
@@ -163,7 +163,7 @@ class TestDevice:
         address = "listen://127.0.0.1:0"
         with SimulatedDevice(MATTY, "pc", rates={"stop": 100}, address=address) as it:
             host, number = it.port.removeprefix("socket://").split(":")
-            with socket.create_connection((host, int(number)), timeout=20) as client:
+            with socket.create_connection((host, int(number)), timeout=PATIENCE) as client:
                 decoder = matty.Decoder("pc")
                 found: list[Any] = []
                 while len(found) < 5:
@@ -267,7 +267,7 @@ class TestCommand:
         with simulating(*options) as (it, port):
             found = events_of(port, 0.5)
             it.send_signal(signal.SIGINT)
-            _, error = it.communicate(timeout=20)
+            _, error = it.communicate(timeout=PATIENCE)
         assert it.returncode == 0
         assert re.search(r"sent \d+ status", error)
         voltages = {event.message.voltage for event in found}

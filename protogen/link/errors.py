@@ -32,15 +32,24 @@ class NoReplyError(LinkError):
     def __init__(
         self, request: Message, attempts: int, timeout: float, came: Mapping[str, int]
     ) -> None:
+        name = type(request).NAME
         times = "once" if attempts == 1 else f"{attempts} times"
         waited = f"waited {timeout:g} s" if attempts == 1 else f"waited {timeout:g} s each time"
-        problem = f"no reply to {type(request).NAME}, sent {times}, {waited}: {_listed(came)}"
-        super().__init__(problem, _hint(came))
+        if attempts:
+            super().__init__(
+                f"no reply to {name}, sent {times}, {waited}: {_listed(came)}", _hint(came)
+            )
+        else:
+            super().__init__(f"{name} was not sent: the port did not take it in time", _FULL)
         self.request = request
         self.attempts = attempts
+        """How often it was sent; not at all, where the port took nothing for so long."""
         self.timeout = timeout
         self.came = Counter(came)
         """Messages by name, `unknown`, and invalid bytes by reason, as `invalid: checksum`."""
+
+
+_FULL = "does the other end read, or does its flow control hold the line back?"
 
 
 def _shown(message: Message) -> str:

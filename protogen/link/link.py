@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager, nullcontext
 from types import TracebackType
 from typing import Any, Generic, Self, TypeVar
 
@@ -72,6 +73,8 @@ class Link(Generic[SentT, ReceivedT]):
         self._last: dict[type[Message], Message] = {}
         self._subscriptions: list[_Subscription] = []
         self._writing = asyncio.Lock()
+        self._written: asyncio.Task[None] | None = None
+        """What writes the last frame that was begun."""
         self._has_gap = False
         """True if bytes are missing in front of those that come next."""
         self._error: Exception | None = None
@@ -171,13 +174,36 @@ class Link(Generic[SentT, ReceivedT]):
             )
         return self._encoder
 
-    async def _write(self, frame: bytes, message: Message) -> None:
+    async def _write(
+        self, frame: bytes, message: Message, sending: AbstractContextManager[None] | None = None
+    ) -> None:
+        """Write a frame; the port takes it while `sending` is entered.
+
+        Cancelled, it writes either all of the frame or nothing: half of one would spoil the next.
+        """
+        await self._writing.acquire()
+        whole = self._write_whole(frame, message, sending or nullcontext())
+        self._written = written = asyncio.create_task(whole)
+        written.add_done_callback(self._end_write)
+        await asyncio.wait({written})
+        if written.cancelled():
+            raise self._closed()
+        written.result()
+
+    async def _write_whole(
+        self, frame: bytes, message: Message, sending: AbstractContextManager[None]
+    ) -> None:
         self._check_open()
-        async with self._writing:
-            # What this end sends may tell what the answers are. Nobody here wants its events.
-            self._line.feed(self.endpoint or "", frame)
+        # What this end sends may tell what the answers are. Nobody here wants its events.
+        self._line.feed(self.endpoint or "", frame)
+        with sending:
             await self.port.write(frame)
         self.counts.sent[type(message).NAME] += 1
+
+    def _end_write(self, written: asyncio.Task[None]) -> None:
+        self._writing.release()
+        if not written.cancelled():
+            written.exception()  # It is told to who waits, if anybody still does.
 
     def _check_open(self) -> None:
         if self._has_ended:
@@ -263,10 +289,11 @@ class Link(Generic[SentT, ReceivedT]):
 
     async def close(self) -> None:
         """Give the port back. Streams end, and requests fail with LinkClosedError."""
-        tasks = [task for task in (self._reader, self._reading) if task is not None]
+        owned = (self._reader, self._reading, self._written)
+        tasks = [task for task in owned if task is not None]
         for task in tasks:
             task.cancel()
-        await asyncio.wait(tasks)
+        await asyncio.gather(*tasks, return_exceptions=True)
         if not self._has_ended:
             self._end(None)
         await self.port.close()

@@ -1,14 +1,16 @@
 """Requests: what was sent, what answers it, and what came instead.
 
-A request that is settled while a repetition of it may still be answered, or that is given up, is
-*expected late* for a while: a request that its late answer could be taken for waits for that long.
+An answer may come up to two timeouts after its request was sent. A request that is settled while a
+repetition of it may still be answered, or that is given up, is *expected late* until then: a
+request that its late answer could be taken for waits for that long.
 """
 
 from __future__ import annotations
 
 import asyncio
 from collections import Counter
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
 from protogen.link.counts import LinkCounts, name_of
@@ -25,8 +27,8 @@ from protogen.runtime.payload.number import GivenValue
 DEFAULT_TIMEOUT = 1.0
 """Seconds until a request is lost where neither the schema nor the caller says it."""
 
-Write = Callable[[bytes, Message], Awaitable[None]]
-"""Sends the frame of a message."""
+Write = Callable[[bytes, Message, AbstractContextManager[None]], Awaitable[None]]
+"""Sends the frame of a message; it is in the context while the port takes the frame."""
 Pairs = Mapping[str, Any]
 """Values that an answer has to have, by the names of its fields or parts."""
 
@@ -47,9 +49,12 @@ def value_of(message: Message, event: MessageEvent[Any, Any] | None, name: str) 
 class Pending:
     """A request that waits for its answer, or whose answer may come late."""
 
-    def __init__(self, wanted: Mapping[type[Message], Pairs], exchange: Exchange) -> None:
+    def __init__(
+        self, wanted: Mapping[type[Message], Pairs], exchange: Exchange, timeout: float
+    ) -> None:
         self._wanted = wanted
         self._exchange = exchange
+        self.timeout = timeout
         self.settled = asyncio.Event()
         self.reply: Message | None = None
         self.error: Exception | None = None
@@ -57,8 +62,13 @@ class Pending:
         """True once nobody waits for the answer."""
         self.gone = asyncio.Event()
         """Set once no answer is expected any more."""
+        self.is_being_sent = False
+        """True while the port takes its frame, which may be longer than somebody waits for it."""
+        self.times_sent = 0
         self.unanswered = 0
-        """Repetitions that may yet be answered."""
+        """Frames of it that may yet be answered."""
+        self.last_sent = 0.0
+        """When it was last sent, by the event loop's clock."""
         self.came = Counter[str]()
 
     def accepts(self, event: MessageEvent[Any, Any]) -> bool:
@@ -132,7 +142,7 @@ class Requests:
             return
         self._counts.late += 1
         if pending.is_over and not pending.unanswered:
-            self._forget(pending)
+            self._retire(pending)
 
     def fail(self, error: Callable[[], Exception]) -> None:
         """Let all requests fail, each with an error of its own; nothing comes late any more."""
@@ -160,11 +170,12 @@ class Requests:
         if timeout is None:
             timeout = DEFAULT_TIMEOUT if exchange.timeout is None else exchange.timeout
         attempts = 1 + (exchange.retries if retries is None else retries)
-        frame, pending = await self._begun(exchange, message, parts)
+        frame, pending = await self._begun(exchange, message, timeout, parts)
         try:
-            reply = await self._sent(frame, message, pending, timeout, attempts)
+            reply = await self._sent(frame, message, pending, attempts)
         finally:
-            self._leave(pending, timeout)
+            pending.is_over = True
+            self._retire(pending)
         self._counts.replies += 1
         return reply
 
@@ -179,13 +190,17 @@ class Requests:
         return found
 
     async def _begun(
-        self, exchange: Exchange, message: Message, parts: Mapping[str, GivenValue]
+        self,
+        exchange: Exchange,
+        message: Message,
+        timeout: float,
+        parts: Mapping[str, GivenValue],
     ) -> tuple[bytes, Pending]:
         """The frame of a request, once no other one could be taken for it."""
         async with self._turns[exchange.name]:
             while True:
                 frame = self._encoder.preview(message, True, **parts)
-                pending = Pending(self._wanted(exchange, message, frame), exchange)
+                pending = Pending(self._wanted(exchange, message, frame), exchange, timeout)
                 rival = next((item for item in self._pending if item.rivals(pending)), None)
                 if rival is None:
                     break
@@ -210,21 +225,33 @@ class Requests:
         }
 
     async def _sent(
-        self, frame: bytes, message: Message, pending: Pending, timeout: float, attempts: int
+        self, frame: bytes, message: Message, pending: Pending, attempts: int
     ) -> Message:
-        for attempt in range(attempts):
-            self._counts.retries += attempt > 0
-            pending.unanswered += 1
+        for _ in range(attempts):
             try:
-                async with asyncio.timeout(timeout):
-                    await self._write(frame, message)
+                async with asyncio.timeout(pending.timeout):
+                    await self._write(frame, message, self._sending(pending))
                     await pending.settled.wait()
             except TimeoutError:
                 if not pending.settled.is_set():
                     continue
             return self._outcome(pending)
         self._counts.unanswered += 1
-        raise NoReplyError(message, attempts, timeout, pending.came)
+        raise NoReplyError(message, pending.times_sent, pending.timeout, pending.came)
+
+    @contextmanager
+    def _sending(self, pending: Pending) -> Iterator[None]:
+        pending.is_being_sent = True
+        try:
+            yield
+            self._counts.retries += pending.times_sent > 0
+            pending.times_sent += 1
+            pending.unanswered += 1
+            pending.last_sent = asyncio.get_running_loop().time()
+        finally:
+            pending.is_being_sent = False
+            if pending.is_over:
+                self._retire(pending)
 
     def _outcome(self, pending: Pending) -> Message:
         if pending.error is not None:
@@ -233,11 +260,13 @@ class Requests:
         assert pending.reply is not None
         return pending.reply
 
-    def _leave(self, pending: Pending, timeout: float) -> None:
-        """Wait for an answer no longer; a late one is expected for one more timeout."""
-        pending.is_over = True
+    def _retire(self, pending: Pending) -> None:
+        """Forget a request that is over, as soon as no answer to it is expected any more."""
+        if pending.is_being_sent:
+            return  # It is retired once its frame is out.
         if pending.unanswered > 0:
-            asyncio.get_running_loop().call_later(timeout, self._forget, pending)
+            end = pending.last_sent + 2 * pending.timeout
+            asyncio.get_running_loop().call_at(end, self._forget, pending)
         else:
             self._forget(pending)
 

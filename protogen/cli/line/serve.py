@@ -130,10 +130,12 @@ async def _serve(line: _Line, outputs: _Outputs) -> None:
             datagrams = _add_plotjuggler(server, outputs.plotjuggler)
         if outputs.foxglove is not None:
             tell(server.add_foxglove(outputs.foxglove, outputs.speakers).address)
-        await server.run(waits=line.is_replay and datagrams is None)
+        try:
+            await server.run(waits=line.is_replay and datagrams is None)
+        finally:
+            _report(server, datagrams)
     finally:
         await server.close()
-        _report(server, datagrams)
 
 
 def _add_plotjuggler(server: LineServer, address: tuple[str, int]) -> DatagramSender:
