@@ -23,7 +23,7 @@ from protogen.recording import records
 
 sys.path.append(str(ROOT / "benchmarks"))
 
-from peers.pacing import Way, carry  # noqa: E402
+from peers.pacing import Way, carry
 
 pytest.importorskip("serialx")
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals are of POSIX")
@@ -108,7 +108,9 @@ def converted(capture: Path, sender: str, folder: Path) -> dict[str, list[dict[s
         with file.open(newline="") as text:
             rows = list(csv.DictReader(text))
         table = file.relative_to(folder)
-        tables[str(table).replace(capture.stem, "CAPTURE")] = [{k: v for k, v in row.items() if k != "t_ns"} for row in rows]
+        tables[str(table).replace(capture.stem, "CAPTURE")] = [
+            {k: v for k, v in row.items() if k != "t_ns"} for row in rows
+        ]
     return tables
 
 

@@ -64,12 +64,12 @@ def ready() -> None:
     print("ready", flush=True)
 
 
-def _linked(module: Any, *names: str) -> Program:
-    """protogen's link: messages as an asynchronous stream."""
+def _linked(module: Any, endpoint: str | None, *names: str) -> Program:
+    """Protogen's link: messages as an asynchronous stream."""
 
     async def take(port: str, taker: Taker) -> None:
         kinds = [getattr(module, name) for name in names]
-        async with _connected(module, port) as link:
+        async with _connected(module, port, endpoint) as link:
             stream = link.messages(*kinds, limit=1_000_000)
             ready()
             async for message in stream:
@@ -80,12 +80,12 @@ def _linked(module: Any, *names: str) -> Program:
     return lambda port, taker: asyncio.run(take(port, taker))
 
 
-def _blocking(module: Any, *names: str) -> Program:
+def _blocking(module: Any, endpoint: str | None, *names: str) -> Program:
     """The same without async."""
 
     def take(port: str, taker: Taker) -> None:
         kinds = [getattr(module, name) for name in names]
-        with _connected(module, port) as link:
+        with _connected(module, port, endpoint) as link:
             stream = link.messages(*kinds, limit=1_000_000)
             ready()
             for message in stream:
@@ -96,22 +96,22 @@ def _blocking(module: Any, *names: str) -> Program:
     return take
 
 
-def _connected(module: Any, port: str) -> Any:
+def _connected(module: Any, port: str, endpoint: str | None) -> Any:
     from protogen.link import connect
 
-    return connect(module, port, baud=_BAUD)
+    return connect(module, port, endpoint, baud=_BAUD)
 
 
 def _rn1_link(port: str, taker: Taker) -> None:
     from generated.python import rn1
 
-    _linked(rn1, "Gyro")(port, taker)
+    _linked(rn1, "host", "Gyro")(port, taker)
 
 
 def _rn1_blocking(port: str, taker: Taker) -> None:
     from generated.python import rn1
 
-    _blocking(rn1, "Gyro")(port, taker)
+    _blocking(rn1, "host", "Gyro")(port, taker)
 
 
 def _rn1_by_hand(port: str, taker: Taker) -> None:
@@ -137,11 +137,11 @@ def _library(name: str) -> Any:
 
 
 def _mavlink_link(port: str, taker: Taker) -> None:
-    _linked(_library("mavlink2"), "Attitude", "Heartbeat")(port, taker)
+    _linked(_library("mavlink2"), None, "Attitude", "Heartbeat")(port, taker)
 
 
 def _mavlink_blocking(port: str, taker: Taker) -> None:
-    _blocking(_library("mavlink2"), "Attitude", "Heartbeat")(port, taker)
+    _blocking(_library("mavlink2"), None, "Attitude", "Heartbeat")(port, taker)
 
 
 def _pymavlink(port: str, taker: Taker) -> None:
@@ -158,11 +158,11 @@ def _pymavlink(port: str, taker: Taker) -> None:
 
 
 def _sbp_link(port: str, taker: Taker) -> None:
-    _linked(_library("sbp"), "ImuRaw", "GpsTime")(port, taker)
+    _linked(_library("sbp"), None, "ImuRaw", "GpsTime")(port, taker)
 
 
 def _sbp_blocking(port: str, taker: Taker) -> None:
-    _blocking(_library("sbp"), "ImuRaw", "GpsTime")(port, taker)
+    _blocking(_library("sbp"), None, "ImuRaw", "GpsTime")(port, taker)
 
 
 def _libsbp(port: str, taker: Taker) -> None:

@@ -27,7 +27,9 @@ def _attitudes(dice: Random) -> Iterator[bytes]:
     sender = common.MAVLink(None, srcSystem=1, srcComponent=1)
     for number in count():
         if number % _HEARTBEATS:
-            values = (struct.unpack("<f", struct.pack("<f", dice.uniform(-3, 3)))[0] for _ in "rpyrpy")
+            values = (
+                struct.unpack("<f", struct.pack("<f", dice.uniform(-3, 3)))[0] for _ in "rpyrpy"
+            )
             message = common.MAVLink_attitude_message(number, *values)
         else:
             message = common.MAVLink_heartbeat_message(2, 3, 81, 0, 4, 3)

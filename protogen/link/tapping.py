@@ -41,7 +41,8 @@ class End(msgspec.Struct):
 async def tap(one: End, other: End, take: Take) -> None:
     """Pass bytes on both ways until one end has no more.
 
-    `take` sees them first: what it records is there before anybody has got it. Raises PortLostError where a port is gone, with the ports left to the caller.
+    `take` sees them first: what it records is there before anybody has got it. Raises
+    PortLostError where a port is gone, with the ports left to the caller.
     """
     ways = [
         asyncio.create_task(_pass_on(one, other.port, take)),

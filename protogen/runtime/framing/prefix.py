@@ -8,7 +8,7 @@ its head, its size and its stuffing may decide is left to a `Candidate` of its o
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from operator import and_
 from typing import Any
 
@@ -40,6 +40,14 @@ def prefix_of(sender: SenderSpec[Any, Any]) -> Prefix | None:
         sender.prefix = Prefix(sender)
     prefix: Prefix | None = sender.prefix
     return prefix
+
+
+def prefix_of_any(senders: Sequence[SenderSpec[Any, Any]]) -> Prefix | FormsPrefix | None:
+    """The same of several senders, or forms of frames, of which one begins there."""
+    if len(senders) == 1:
+        return prefix_of(senders[0])
+    each = [prefix for sender in senders if (prefix := prefix_of(sender)) is not None]
+    return FormsPrefix(each) if len(each) == len(senders) else None
 
 
 def _is_unclear(sender: SenderSpec[Any, Any]) -> bool:
@@ -126,6 +134,12 @@ class Prefix:
         if isinstance(frame.start, StartMark) and frame.start.protected:
             special |= {word[0] for word in layout.start_words}
         return bytes({*range(0x80 if frame.seven_bit else 0x100)} - special)
+
+    def may_begin(self, data: bytes, at: int) -> bool | None:
+        """Whether a frame may begin there; None: more bytes have to tell."""
+        if self._starts.find(data, at, at + 1) == at:
+            return True
+        return None if self._starts.undecided(data, at) == at else False
 
     def wanted(self, data: bytes, at: int) -> int:
         """Bytes, all plain but for the last, that may follow the data without a verdict.
@@ -215,6 +229,28 @@ class Prefix:
         # What may yet turn out to be an end has told nothing.
         is_told = candidate.content_size == self._head_size
         return candidate.content_limit or 0 if is_told else 0
+
+
+class FormsPrefix:
+    """Judge of the beginnings of several forms at once: none of them may have a verdict."""
+
+    def __init__(self, each: Sequence[Prefix]) -> None:
+        self._each = each
+        self.plain = bytes(set.intersection(*(set(prefix.plain) for prefix in each)))
+        """Bytes that are plain in all forms."""
+
+    def wanted(self, data: bytes, at: int) -> int:
+        """The fewest bytes after which a form that begins there may have a verdict."""
+        least = 0
+        for prefix in self._each:
+            may_begin = prefix.may_begin(data, at)
+            if may_begin is False:
+                continue
+            wanted = prefix.wanted(data, at) if may_begin else 0
+            if not wanted:
+                return 0
+            least = min(least or wanted, wanted)
+        return least
 
 
 def _any_number_of(plain: bytes, codes: Iterable[bytes], *, in_pairs: bool) -> re.Pattern[bytes]:
