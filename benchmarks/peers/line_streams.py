@@ -1,4 +1,4 @@
-"""Frames that programs on a line are given, made by the encoders of those they are compared with."""
+"""Frames for programs on a line, made by the encoders of those that are compared."""
 
 from __future__ import annotations
 

@@ -71,7 +71,8 @@ def delays(written: Sequence[tuple[int, int]], came: Sequence[tuple[int, int]]) 
 def carry(ways: Sequence[Way], rate: float = MEGABAUD, most: int | None = None) -> float:
     """Carry all bytes of all ways at so many bytes a second, or at 0 as fast as they are taken.
 
-    Ends when `most` bytes have come out of all together. Returns the seconds that it took. Raises TimeoutError where nothing moves any more.
+    Ends when `most` bytes have come out of all together. Returns the seconds that it took. Raises
+    TimeoutError where nothing moves any more.
     """
     for way in ways:
         os.set_blocking(way.entry, False)
@@ -82,16 +83,18 @@ def carry(ways: Sequence[Way], rate: float = MEGABAUD, most: int | None = None) 
         if most is not None and sum(len(way.got) for way in ways) >= most:
             break
         now = time.perf_counter()
-        if now >= step:
-            due = int((now - begin) * rate) if rate else 1 << 62
+        entries = {way.entry: way for way in ways if not rate and way.sent < len(way.data)}
+        if rate and now >= step:
             for way in ways:
-                way.write(min(due, way.sent + _MOST))
+                way.write(int((now - begin) * rate))
             step = now + STEP
-        wait = max(0.0, step - time.perf_counter())
-        for port in select.select(exits, [], [], wait)[0]:
+        wait = max(0.0, step - time.perf_counter()) if rate else 1.0
+        came, room, _ = select.select(exits, entries, [], wait)
+        for port in room:
+            entries[port].write(entries[port].sent + _MOST)
+        for port in came:
             exits[port].read()
-            moved = now
-        if not exits:
+        if came or room or not exits:
             moved = now
         if now - moved > _PATIENCE:
             raise TimeoutError(f"{[len(way.got) for way in ways]} bytes came out, and no more")

@@ -44,10 +44,7 @@ def prefix_of(sender: SenderSpec[Any, Any]) -> Prefix | None:
 
 def prefix_of_any(senders: Sequence[SenderSpec[Any, Any]]) -> Prefix | FormsPrefix | None:
     """The same of several senders, or forms of frames, of which one begins there."""
-    if len(senders) == 1:
-        return prefix_of(senders[0])
-    each = [prefix for sender in senders if (prefix := prefix_of(sender)) is not None]
-    return FormsPrefix(each) if len(each) == len(senders) else None
+    return prefix_of(senders[0]) if len(senders) == 1 else FormsPrefix(senders)
 
 
 def _is_unclear(sender: SenderSpec[Any, Any]) -> bool:
@@ -74,10 +71,11 @@ def _is_checked(part: Part, layout: Layout) -> bool:
     """True if some bytes are no value of the part, or of one that is bits of it."""
     if any(item.name in layout.mirrored for item in (part, *members_of(part))):
         return True
+    bounded = [item for item in layout.bounded if not item.holds_all]
     if isinstance(part, BitsPart):
-        is_bounded = any(item in layout.bounded for item in part.members)
+        is_bounded = any(item in bounded for item in part.members)
         return bool(part.mask or part.mirrors) or is_bounded
-    if part in layout.bounded:
+    if part in bounded:
         return True
     if isinstance(part, NumberPart):
         return part.number.bits < 8 * part.size
@@ -134,12 +132,6 @@ class Prefix:
         if isinstance(frame.start, StartMark) and frame.start.protected:
             special |= {word[0] for word in layout.start_words}
         return bytes({*range(0x80 if frame.seven_bit else 0x100)} - special)
-
-    def may_begin(self, data: bytes, at: int) -> bool | None:
-        """Whether a frame may begin there; None: more bytes have to tell."""
-        if self._starts.find(data, at, at + 1) == at:
-            return True
-        return None if self._starts.undecided(data, at) == at else False
 
     def wanted(self, data: bytes, at: int) -> int:
         """Bytes, all plain but for the last, that may follow the data without a verdict.
@@ -232,25 +224,25 @@ class Prefix:
 
 
 class FormsPrefix:
-    """Judge of the beginnings of several forms at once: none of them may have a verdict."""
+    """Judge of the beginnings of several forms at once.
 
-    def __init__(self, each: Sequence[Prefix]) -> None:
-        self._each = each
-        self.plain = bytes(set.intersection(*(set(prefix.plain) for prefix in each)))
-        """Bytes that are plain in all forms."""
+    There is no verdict on them before there is one on the first form that may begin there.
+    """
+
+    def __init__(self, senders: Sequence[SenderSpec[Any, Any]]) -> None:
+        self._each = [(starts_of(sender.frame), prefix_of(sender)) for sender in senders]
+        plain = [prefix.plain for _, prefix in self._each if prefix is not None]
+        self.plain = bytes(byte for byte in range(256) if all(byte in item for item in plain))
+        """Bytes that are plain in all of them."""
 
     def wanted(self, data: bytes, at: int) -> int:
-        """The fewest bytes after which a form that begins there may have a verdict."""
-        least = 0
-        for prefix in self._each:
-            may_begin = prefix.may_begin(data, at)
-            if may_begin is False:
-                continue
-            wanted = prefix.wanted(data, at) if may_begin else 0
-            if not wanted:
+        """Bytes that may follow the data without a verdict, as one form's prefix says it."""
+        for starts, prefix in self._each:
+            if starts.find(data, at, at + 1) == at:
+                return 0 if prefix is None else prefix.wanted(data, at)
+            if starts.undecided(data, at) == at:
                 return 0
-            least = min(least or wanted, wanted)
-        return least
+        return 0
 
 
 def _any_number_of(plain: bytes, codes: Iterable[bytes], *, in_pairs: bool) -> re.Pattern[bytes]:
