@@ -134,7 +134,7 @@ class TestTap:
 
     def test_bytes_do_not_wait_for_who_reads_the_output(self, tmp_path: Path) -> None:
         file = tmp_path / "run.pgrec"
-        sent = stream("pc", 100_000) * 15
+        sent = stream("pc", 100_000) * 25
         with tapped("-o", str(file)) as (process, (board, program)):
             way = Way(program, board, sent)
             carry([way], rate=0)
