@@ -223,7 +223,7 @@ def test_a_recording_has_what_came_out_of_a_tap_that_was_killed(
             assert sent[name].startswith(found[name])
             assert found[name].startswith(way.got)
         sizes.add(file.stat().st_size)
-        if number % 10 == 0:
+        if number % 25 == 0:
             tables = converted(file, "pc", tmp_path / str(number))
             raw = tmp_path / f"{number}.bin"
             raw.write_bytes(found["pc"])

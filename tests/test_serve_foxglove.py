@@ -52,6 +52,6 @@ def test_what_it_publishes_reaches_the_device_as_exact_bytes() -> None:
     with SimulatedDevice(MATTY, "esp") as board:
         board.on("go", lambda event: frames.append(event.raw) or [])
         with serving(f"esp={board.port}", "--port", "0", "--endpoint", "pc") as address:
-            client(address, 1, "/pc/go", '{"speed": 500, "steer": "-2.5deg"}')
+            client(address, 1, "/matty/pc/go", '{"speed": 500, "steer": "-2.5deg"}')
             # length, counter, G, speed 500, steer -250, what makes the sum 0
             assert received(frames, 1) == [bytes.fromhex("55 06 00 47 F4 01 06 FF B9")]
