@@ -8,7 +8,6 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
-import pytest
 from cli_support import PATIENCE, ROOT
 from test_serve import MATTY, of_mcap, received, recording, serving
 from tooling import require_tool, unavailable
