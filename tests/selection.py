@@ -62,6 +62,7 @@ ONLY = {
     "test_import_mavlink_published.py": r"all_files.*\[2|is_named|small_dialects|left_out_are_read",
     "test_import_mavlink_random.py": r"\[[01]-",
     "test_import_sbp_published.py": r"^$",
+    "test_line_pace.py": "TestTap",
     "test_link_requests.py": "by_order|lazy",
     "test_lower_bounds.py": "has_a_lower_bound",
 }

@@ -6,7 +6,6 @@ import asyncio
 import os
 from collections.abc import Callable, Coroutine
 from pathlib import Path
-from random import Random
 from threading import Event, Thread
 from types import ModuleType
 from typing import Any
@@ -172,49 +171,6 @@ class TestRequests:
                 assert (link.counts.replies, link.counts.refusals) == (4, 1)
 
         run(ask())
-
-    def test_none_gets_anothers_answer_where_bytes_are_lost_and_late(self, rig: ModuleType) -> None:
-        """A thousand requests, twenty at a time; of both ways, 1 % of the bytes are lost."""
-        dice = Random(7)
-
-        def behave(event: Any) -> Answers:
-            if event.message.NAME != "set":
-                return
-            counter, value = event.parts.counter, event.message.value
-            late = dice.random() < 0.03
-            answer = rig.Failed(code=value % 251) if value % 17 == 0 else rig.Done(value=value)
-            frame = rig.encode(answer, counter=counter)
-            yield 0.3 if late else 0.0, frame
-            # The answer to another request, which has it already or lost it.
-            yield from ((0, other) for other in before[-1:])
-            if not late:
-                before.append(frame)
-
-        before = list[bytes]()
-
-        async def many() -> None:
-            async with (
-                Board(rig, behave, lost=0.01) as board,
-                rig.connect(board.port.name, "host") as link,
-            ):
-                room = asyncio.Semaphore(20)
-
-                async def one(value: int) -> None:
-                    async with room:
-                        try:
-                            reply = await link.request(rig.Set(value=value))
-                            assert (reply.value, value % 17 > 0) == (value, True)
-                        except RefusedError as error:
-                            assert (error.refusal.code, value % 17) == (value % 251, 0)
-
-                await asyncio.gather(*map(one, range(1000)))
-                counts = link.counts
-                assert (counts.replies, counts.refusals, counts.unanswered) == (941, 59, 0)
-                assert counts.retries > 50
-                assert counts.sent == {"set": 1000 + counts.retries}
-                assert board.arrived == counts.sent
-
-        run(many())
 
     def test_where_order_decides_a_late_answer_is_not_taken_for_the_next(
         self, rig: ModuleType

@@ -5,7 +5,8 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Callable, Coroutine
-from threading import Thread
+from contextlib import suppress
+from threading import Event, Thread
 from types import TracebackType
 from typing import Any, Generic, Self, TypeVar
 
@@ -39,6 +40,11 @@ class _Loop:
             future.cancel()
             raise
 
+    def call(self, work: Callable[[], None]) -> None:
+        """Have something done soon, if the loop has not ended."""
+        with suppress(RuntimeError):
+            self._loop.call_soon_threadsafe(work)
+
     def close(self) -> None:
         """End the thread."""
         if self._loop.is_closed():
@@ -55,8 +61,11 @@ class BlockingStream(Generic[ItemT]):
     def __init__(self, loop: _Loop, stream: Stream[ItemT]) -> None:
         self._loop = loop
         self._stream = stream
+        self._queue = stream.queue
         self._taken = deque[ItemT]()
         """Taken together: to ask another thread for each item would take long."""
+        self._arrived = Event()
+        self._queue.tell = self._arrived.set
 
     @property
     def dropped(self) -> int:
@@ -68,10 +77,22 @@ class BlockingStream(Generic[ItemT]):
 
     def __next__(self) -> ItemT:
         if not self._taken:
-            self._taken.extend(self._loop.do(self._stream.take()))
+            self._taken.extend(self._waited_for())
         if not self._taken:
             raise StopIteration
         return self._taken.popleft()
+
+    def _waited_for(self) -> list[ItemT]:
+        """All that wait, at least one; none mean the end."""
+        while True:
+            self._arrived.clear()
+            has_ended = self._queue.has_ended
+            items = self._queue.take_now()
+            if items and self._queue.waits:
+                self._loop.call(self._queue.make_room)
+            if items or has_ended:
+                return items
+            self._arrived.wait()
 
     def get(self, timeout: float | None = None) -> ItemT:
         """The next item. Raises TimeoutError, and LinkError where the stream has ended."""

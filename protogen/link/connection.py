@@ -63,8 +63,9 @@ class Connection(Generic[SentT, ReceivedT]):
 
     async def open(self) -> Link[SentT, ReceivedT]:
         """Open the port, and begin to read. Raises PortError."""
-        port = self._port if isinstance(self._port, Port) else await self._opened(self._port)
         decoders = _decoders(self._codec, self._endpoint, self._options)
+        decoders.prepare()  # Before bytes come in.
+        port = self._port if isinstance(self._port, Port) else await self._opened(self._port)
         link = Link[SentT, ReceivedT](self._codec, port, self._endpoint, decoders, self._encode)
         self._link = link
         return link

@@ -53,6 +53,13 @@ class LineDecoders:
         """Bytes that were taken and that no event covers yet."""
         return sum(decoder.pending for decoder in self._decoders.values())
 
+    def prepare(self) -> None:
+        """Do now what the first bytes would have to wait for: fill the tables of fast decoding."""
+        for name in self.codec.endpoints if self._is_told else self.senders:
+            for form in self.codec.forms(name):
+                if form.cut is not None:
+                    form.cut(b"", 0, 0, [])
+
     def feed(self, source: str, data: BytesLike) -> list[Event[Any, Any]]:
         """Take bytes; the events that are certain now, of the senders that are wanted.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from types import TracebackType
 from typing import Any, Generic, Self, TypeVar
@@ -38,12 +38,15 @@ class _Subscription(msgspec.Struct, frozen=True, eq=False):
     queue: Queue[Any]
     kinds: frozenset[type[Message]] | None
 
-    async def give(self, heard: Heard) -> None:
-        event = heard.event
+    async def give(
+        self, events: Sequence[Event[Any, Any]], messages: Sequence[Message], when: int
+    ) -> None:
+        """Give events, and the messages that are among them."""
         if self.kinds is None:
-            await self.queue.put(heard)
-        elif isinstance(event, MessageEvent) and type(event.message) in self.kinds:
-            await self.queue.put(event.message)
+            await self.queue.put([Heard(when, event) for event in events])
+        else:
+            kinds = self.kinds
+            await self.queue.put([message for message in messages if type(message) in kinds])
 
 
 class Link(Generic[SentT, ReceivedT]):
@@ -262,21 +265,27 @@ class Link(Generic[SentT, ReceivedT]):
             self.counts.bytes_received += len(arrival.data)
             await self._give(self._line.feed(self._source, arrival.data), arrival.when)
 
-    async def _give(self, events: Iterable[Event[Any, Any]], when: int) -> None:
-        for number, event in enumerate(events, start=1):
-            if number % _AT_ONCE == 0:
+    async def _give(self, events: Sequence[Event[Any, Any]], when: int) -> None:
+        # Where somebody holds the line back, what is known of it goes no further than the stream.
+        is_held = any(item.queue.waits for item in self._subscriptions)
+        step = 1 if is_held else _AT_ONCE
+        for start in range(0, len(events), step):
+            if start and start % _AT_ONCE == 0:
                 await asyncio.sleep(0)
-            self.counts.received[name_of(event)] += 1
-            if isinstance(event, MessageEvent):
-                self._last[type(event.message)] = event.message
-            if self._requests is not None:
-                self._requests.hear(event)
-            heard = Heard(when, event)
-            for subscription in tuple(self._subscriptions):
-                if subscription.queue.is_closed:
-                    self._subscriptions.remove(subscription)
-                else:
-                    await subscription.give(heard)
+            await self._give_at_once(events[start : start + step], when)
+
+    async def _give_at_once(self, events: Sequence[Event[Any, Any]], when: int) -> None:
+        self.counts.received.update(map(name_of, events))
+        messages = [event.message for event in events if isinstance(event, MessageEvent)]
+        for message in messages:
+            self._last[type(message)] = message
+        if self._requests is not None:
+            self._requests.hear_all(events)
+        for subscription in tuple(self._subscriptions):
+            if subscription.queue.is_closed:
+                self._subscriptions.remove(subscription)
+            else:
+                await subscription.give(events, messages, when)
 
     def _end(self, error: Exception | None) -> None:
         self._has_ended = True

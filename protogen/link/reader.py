@@ -55,6 +55,7 @@ class LineReader:
 
     async def open(self) -> None:
         """Open the ports. Raises PortError."""
+        self._decoders.prepare()
         for source, address in self._ends.items():
             self._ports[source] = await open_lasting_port(
                 address, self._settings, self._listener.take_note, self._speed

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter
-from collections.abc import Awaitable, Callable, Iterator, Mapping
+from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
@@ -124,6 +124,12 @@ class Requests:
         self._write = write
         self._counts = counts
         self._pending: dict[Pending, Message] = {}
+
+    def hear_all(self, events: Sequence[Event[Any, Any]]) -> None:
+        """Take what came in, which costs nothing where no answer is expected."""
+        if self._pending:
+            for event in events:
+                self.hear(event)
 
     def hear(self, event: Event[Any, Any]) -> None:
         """Take what came in: an answer, or something else, which those that wait take note of."""

@@ -33,10 +33,8 @@ class MessageStatistics:
         """Frames that are missing in front of these, as the sender's counter tells."""
         self.last: Any = None
         """The last event."""
-        self.changed: frozenset[str] = frozenset()
-        """The fields whose values differ from those of the event before."""
+        self._before: Any = None
         self._times: deque[int] = deque(maxlen=_WINDOW)
-        self._values: Mapping[str, Any] = {}
 
     @property
     def when(self) -> int:
@@ -46,7 +44,15 @@ class MessageStatistics:
     @property
     def values(self) -> Mapping[str, Any]:
         """The last fields, as lines of JSON have them."""
-        return self._values
+        return _values_of(self.last)
+
+    @property
+    def changed(self) -> frozenset[str]:
+        """The fields whose values differ from those of the event before."""
+        before = _values_of(self._before)
+        return frozenset(
+            name for name, value in self.values.items() if before and before.get(name) != value
+        )
 
     def take(self, event: Any, when: int, missing: int) -> None:
         """Count one that came at `when`, with so many missing in front."""
@@ -55,12 +61,7 @@ class MessageStatistics:
         self._times.append(when)
         while self._times[-1] - self._times[0] > _RECENT and len(self._times) > 2:
             self._times.popleft()
-        values = event.message.to_dict()
-        before = self._values
-        self.changed = frozenset(
-            name for name, value in values.items() if before and before.get(name) != value
-        )
-        self._values, self.last = values, event
+        self._before, self.last = self.last, event
 
     def rate(self, now: int) -> float:
         """How many come in a second. A message that has stopped fades."""
@@ -164,6 +165,12 @@ class LineStatistics:
         expected = self._expected.get(event.sender, value)
         self._expected[event.sender] = counter.least + (value - counter.least + 1) % size
         return (value - expected) % size
+
+
+def _values_of(event: Any) -> Mapping[str, Any]:
+    """Fields of an event, if there is one. A line has many that nobody looks at."""
+    values: Mapping[str, Any] = {} if event is None else event.message.to_dict()
+    return values
 
 
 def _counter(frame: Frame) -> CounterPart | None:

@@ -12,7 +12,7 @@ from protogen.link.damage import Damage
 from protogen.link.ports.port import Arrival, Port
 
 Take = Callable[[str, Arrival], None]
-"""Takes what an end sent, as it was passed on."""
+"""Takes what an end sent, as it is about to be passed on."""
 
 
 class Passed(msgspec.Struct):
@@ -39,9 +39,10 @@ class End(msgspec.Struct):
 
 
 async def tap(one: End, other: End, take: Take) -> None:
-    """Pass bytes on both ways until one end has no more; `take` sees them behind that.
+    """Pass bytes on both ways until one end has no more.
 
-    Raises PortLostError where a port is gone, with the ports left to the caller.
+    `take` sees them first: what it records is there before anybody has got it. Raises
+    PortLostError where a port is gone, with the ports left to the caller.
     """
     ways = [
         asyncio.create_task(_pass_on(one, other.port, take)),
@@ -65,10 +66,9 @@ async def _pass_on(source: End, target: Port, take: Take) -> None:
             await asyncio.sleep(source.damage.pause())
             data = source.damage.of(data)
         if data:
+            take(source.name, Arrival(data, arrival.when))
             await target.write(data)
         _note(source.passed, len(data), time.perf_counter() - came)
-        if data:
-            take(source.name, Arrival(data, arrival.when))
 
 
 def _note(passed: Passed, size: int, held: float) -> None:

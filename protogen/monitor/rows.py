@@ -82,9 +82,10 @@ def fields_of(protocol: Protocol, item: MessageStatistics) -> Text:
     """The last values, one in each line; those that have changed are marked."""
     plan = protocol.message(item.name).plan
     text = Text()
+    changed = item.changed
     for name, value in readings(plan, item.values):
         text.append(f"{name}: ", style="dim")
-        text.append(f"{value}{' *' if name in item.changed else ''}\n")
+        text.append(f"{value}{' *' if name in changed else ''}\n")
     return text
 
 
@@ -92,8 +93,9 @@ def _values(protocol: Protocol, item: MessageStatistics) -> Text:
     """The last values; those that have changed are marked."""
     plan = protocol.message(item.name).plan
     text = Text(no_wrap=True)
+    changed = item.changed
     for name, value in readings(plan, item.values):
-        is_new = name in item.changed
+        is_new = name in changed
         text.append(f"{name}=", style="dim")
         text.append(f"{value}{'*' if is_new else ''} ", style="bold" if is_new else "")
     return text

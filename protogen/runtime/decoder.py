@@ -13,7 +13,7 @@ from protogen.runtime.framing.forms import (
 )
 from protogen.runtime.framing.frame import AfterEnd, Anywhere
 from protogen.runtime.framing.machine import Candidate, Cut, Failure
-from protogen.runtime.framing.prefix import Prefix, prefix_of
+from protogen.runtime.framing.prefix import FormsPrefix, Prefix, prefix_of_any
 from protogen.runtime.framing.sender import MessageT_co, PartsT_co, SenderSpec
 from protogen.runtime.framing.told import GivenNumber
 from protogen.runtime.search import Search
@@ -99,8 +99,8 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         self._shares_start = False  # Whether the candidate starts with the end before it.
         self._wanted = 0  # Before so many bytes come in, what stands at `_scan` is not judged.
         # Whether beginnings of frames can be judged.
-        self._judges = len(senders) == 1 and self._plain_cut is not None
-        self._prefix: Prefix | None = None  # Judge of them, made when first needed.
+        self._judges = self._plain_cut is not None
+        self._prefix: Prefix | FormsPrefix | None = None  # Judge of them, made when first needed.
         self._plain = b""  # Bytes that the judge needs not see one by one.
         self._is_fresh = True  # Nothing came in since the start or the last flush.
         self._began_fresh = False  # The same of when the candidate began.
@@ -347,7 +347,7 @@ class Decoder(Generic[MessageT_co, PartsT_co]):
         if not self._judges:
             return 0
         if self._prefix is None:
-            self._prefix = prefix_of(self._senders[0])
+            self._prefix = prefix_of_any(self._senders)
             if self._prefix is None:
                 self._judges = False
                 return 0

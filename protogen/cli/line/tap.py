@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from contextlib import AsyncExitStack, ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -38,6 +39,8 @@ EXAMPLE = "Example: protogen tap rover.yaml board=/dev/ttyUSB0 host=pty: -o run.
 
 _LETTERS = ("a", "b")
 """Names of ports of which no endpoint is named."""
+_SWITCH_INTERVAL = 0.0002
+"""Seconds after which the thread that shows what passes lets the line go on, if there is need."""
 
 
 def tap(  # noqa: PLR0913 - each option is one argument
@@ -80,6 +83,9 @@ def tap(  # noqa: PLR0913 - each option is one argument
         shown = (
             None if quiet else ShownEvents(codec, [name for name in ends if name not in _LETTERS])
         )
+
+        if shown is not None:
+            sys.setswitchinterval(_SWITCH_INTERVAL)
 
         def take(source: str, arrival: Arrival) -> None:
             if recorder is not None:
@@ -128,4 +134,5 @@ async def _tap(
             damage = None if rates.is_none else Damage(rates, f"{seed} {name}")
             opened.append(End(name, port, damage))
             passed[name] = opened[-1].passed
+        tell(f"passing on {opened[0].port.name} and {opened[1].port.name}; Ctrl-C ends it")
         await tap(opened[0], opened[1], take)

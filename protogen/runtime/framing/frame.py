@@ -99,6 +99,14 @@ class ValuePart(NamedTuple):
         """Bytes before any stuffing."""
         return self.number.size
 
+    @property
+    def holds_all(self) -> bool:
+        """True if each number of its bits is one that the part can have."""
+        number = self.number
+        if self.values or isinstance(number, Characters) or not isinstance(number, Number):
+            return False
+        return self.least <= number.least and number.greatest <= self.greatest
+
     def holds(self, value: int) -> bool:
         """True if the value is one that the part can have."""
         if self.values:

@@ -8,7 +8,7 @@ its head, its size and its stuffing may decide is left to a `Candidate` of its o
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from operator import and_
 from typing import Any
 
@@ -42,6 +42,11 @@ def prefix_of(sender: SenderSpec[Any, Any]) -> Prefix | None:
     return prefix
 
 
+def prefix_of_any(senders: Sequence[SenderSpec[Any, Any]]) -> Prefix | FormsPrefix | None:
+    """The same of several senders, or forms of frames, of which one begins there."""
+    return prefix_of(senders[0]) if len(senders) == 1 else FormsPrefix(senders)
+
+
 def _is_unclear(sender: SenderSpec[Any, Any]) -> bool:
     """True if bytes of a beginning do not tell how many bytes of content they are."""
     frame, layout = sender.frame, sender.layout
@@ -66,10 +71,11 @@ def _is_checked(part: Part, layout: Layout) -> bool:
     """True if some bytes are no value of the part, or of one that is bits of it."""
     if any(item.name in layout.mirrored for item in (part, *members_of(part))):
         return True
+    bounded = [item for item in layout.bounded if not item.holds_all]
     if isinstance(part, BitsPart):
-        is_bounded = any(item in layout.bounded for item in part.members)
+        is_bounded = any(item in bounded for item in part.members)
         return bool(part.mask or part.mirrors) or is_bounded
-    if part in layout.bounded:
+    if part in bounded:
         return True
     if isinstance(part, NumberPart):
         return part.number.bits < 8 * part.size
@@ -215,6 +221,28 @@ class Prefix:
         # What may yet turn out to be an end has told nothing.
         is_told = candidate.content_size == self._head_size
         return candidate.content_limit or 0 if is_told else 0
+
+
+class FormsPrefix:
+    """Judge of the beginnings of several forms at once.
+
+    There is no verdict on them before there is one on the first form that may begin there.
+    """
+
+    def __init__(self, senders: Sequence[SenderSpec[Any, Any]]) -> None:
+        self._each = [(starts_of(sender.frame), prefix_of(sender)) for sender in senders]
+        plain = [prefix.plain for _, prefix in self._each if prefix is not None]
+        self.plain = bytes(byte for byte in range(256) if all(byte in item for item in plain))
+        """Bytes that are plain in all of them."""
+
+    def wanted(self, data: bytes, at: int) -> int:
+        """Bytes that may follow the data without a verdict, as one form's prefix says it."""
+        for starts, prefix in self._each:
+            if starts.find(data, at, at + 1) == at:
+                return 0 if prefix is None else prefix.wanted(data, at)
+            if starts.undecided(data, at) == at:
+                return 0
+        return 0
 
 
 def _any_number_of(plain: bytes, codes: Iterable[bytes], *, in_pairs: bool) -> re.Pattern[bytes]:
