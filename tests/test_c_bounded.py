@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from c_proof.bounded import Harness, decode_harness, step_harness
+from c_proof.bounded import Between, Harness, decode_harness, step_harness
 from c_proof.esbmc import Verdict, check
 from c_proof.generated import Generated, generate
 from compiled import ROOT, protocol_of
@@ -117,9 +117,9 @@ def prove_steps(made: Generated, steps: Steps) -> Verdict:
     given = {"upper": upper, "most": most[1], "head": head, "around": head + tail}
     given["groups"] = len(set(re.findall(r"decoder->group = (\d+);", source)))
     taking = steps.taking.format(**given)
-    conditions = (steps.seeking, taking)
+    between = Between(taking, steps.seeking)
     harness = step_harness(
-        made.protocol, (header, source), steps.sender, conditions, loads=steps.loads
+        made.protocol, (header, source), steps.sender, between, loads=steps.loads
     )
     return prove(made, harness, steps.unwind)
 

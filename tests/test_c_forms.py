@@ -29,6 +29,8 @@ FORMS = [
     for endpoint in protocol_of(path).sending
     if len(protocol_of(path).forms(endpoint)) > 1
 ]
+STARTS = ROOT / "tests" / "c_proof" / "bounded" / "forms_starts.yaml"
+"""The greatest frame has the shorter start."""
 EVERY_ENDPOINT = pytest.mark.parametrize(("path", "endpoint"), FORMS, ids=name_of)
 EVENTS = pytest.mark.parametrize("options", [ALL, MESSAGES], ids=["all", "messages"])
 
@@ -112,3 +114,11 @@ def test_forms_inside_of_each_other_have_the_events_that_python_finds(seed: int)
     dice = Random(seed)
     steps = steps_of(trio_stream(dice), dice)
     check_events(process_of(TRIO), module_at(TRIO), "station", steps)
+
+
+def test_a_long_start_that_a_longest_candidate_ends_with_has_room() -> None:
+    """The last byte of the first frame, a wrong sum, is the first one of the second frame."""
+    wrong = bytes.fromhex("AB 04 02 00000000")  # its sum would be 06
+    right = bytes.fromhex("AA 55 02 01 1234 49")
+    steps: list[Step] = [("push", wrong + right + right), ("flush",)]
+    check_events(process_of(STARTS), module_at(STARTS), "board", steps)

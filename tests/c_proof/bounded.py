@@ -46,7 +46,7 @@ static void {prefix}_run(struct {prefix}_decoder *decoder, bool is_end) {{
     __ESBMC_assert(holds(decoder), "what holds in front of a step");
 }}
 """
-_STEPS = """
+_STEPS = """{helpers}
 static bool holds(const struct {prefix}_decoder *decoder) {{
     if (decoder->count > {buffer}U || decoder->next > decoder->count) {{
         return false;
@@ -55,9 +55,11 @@ static bool holds(const struct {prefix}_decoder *decoder) {{
     case {upper}_SEEKING:
         return {seeking};
     case {upper}_FAILED:
-        return true;
+        return {failed};
     case {upper}_TAKING:
         return {taking};
+    case {upper}_LOST:
+        return {lost};
     default:
         return false;
     }}
@@ -98,6 +100,32 @@ int main(void) {{
 """
 
 
+_ROOM = """
+    __ESBMC_assert(goes_on || is_end || decoder->count < {buffer}U, "room for a byte");
+"""
+_READS = """
+/* A frame still has the message that it was found to have. */
+static bool reads_{form}(const struct {prefix}_{form}_candidate *candidate) {{
+    uint8_t message;
+    return {prefix}_{form}_candidate_read(candidate, &message, NULL, NULL) == {upper}_NO_REASON &&
+           message == candidate->message;
+}}
+"""
+
+
+@dataclass(frozen=True)
+class Between:
+    """What holds of a decoder between two of its steps, in each of its states."""
+
+    taking: str
+    seeking: str
+    failed: str = "true"
+    lost: str = "false"
+    """Most decoders never are."""
+    forms: tuple[str, ...] = ()
+    """Those of a decoder of all forms, which has a candidate of each."""
+
+
 @dataclass(frozen=True)
 class Harness:
     """A program that calls generated functions, and the header that it takes."""
@@ -128,44 +156,68 @@ def step_harness(
     protocol: Protocol,
     texts: tuple[str, str],
     sender: str,
-    conditions: tuple[str, str],
+    between: Between,
     *,
     loads: bool,
 ) -> Harness:
     """One step of a decoder from any state in which something holds, that holds again behind it.
 
-    It holds of a decoder that was initialised, so it holds after any number of bytes. `conditions`
-    say what holds without and with a candidate for a frame. Messages are loaded if asked for, which
-    a proof of `decode` also covers where the payload is as it was received. Arrays of the decoder
-    are objects of their own here, so that it is found where an access leaves one of them.
+    It holds of a decoder that was initialised, so it holds after any number of bytes. Messages are
+    loaded if asked for, which a proof of `decode` also covers where the payload is as it was
+    received. Arrays of the decoder are objects of their own here, so that it is found where an
+    access leaves one of them.
     """
     header, source = texts
     prefix, upper = f"{protocol.name}_{sender}", protocol.name.upper()
-    struct = re.search(rf"^struct {prefix}_decoder \{{\n(?:.*\n)*?\}};\n", header, re.MULTILINE)
-    assert struct is not None
-    arrays = _ARRAY.findall(struct.group())
-    pointers = _ARRAY.sub(r"    \1 *\2;\n", struct.group())
-    seeking, taking = conditions
+    changed, arrays = _apart(header, f"{prefix}_decoder")
+    points = [f"decoder.{name} = {name};" for _, name, _ in arrays]
+    for form in between.forms:
+        changed, own = _apart(changed, f"{prefix}_{form}_candidate")
+        points.append(f"decoder.form_{form}.buffer = nondet_bool() ? buffer : NULL;")
+        points += [f"decoder.form_{form}.{name} = {form}_{name};" for _, name, _ in own]
+        arrays += [(type_, f"{form}_{name}", size) for type_, name, size in own]
     given = {
+        "helpers": "".join(
+            _READS.format(form=form, prefix=prefix, upper=upper) for form in between.forms
+        ),
         "reads": f"    {prefix}_dispatch(NULL, event);\n" if loads else "",
         "arrays": "".join(f"    {type_} {name}[{size}];\n" for type_, name, size in arrays),
-        "points": "".join(f"    decoder.{name} = {name};\n" for _, name, _ in arrays),
+        "points": "".join(f"    {point}\n" for point in points),
         "buffer": {name: size for _, name, size in arrays}["buffer"],
+        "taking": between.taking,
+        "seeking": between.seeking,
+        "failed": between.failed,
+        "lost": between.lost,
     }
-    text = _STEPS.format(prefix=prefix, upper=upper, seeking=seeking, taking=taking, **given)
-    stepped = _one_step(source, prefix)
-    changed = header.replace(struct.group(), pointers)
+    text = _STEPS.format(prefix=prefix, upper=upper, **given)
+    stepped = _one_step(source, prefix, _ROOM.format(**given) if between.forms else "")
     return Harness(_head(protocol, stepped) + text, changed)
 
 
-def _one_step(source: str, prefix: str) -> str:
+def _apart(header: str, name: str) -> tuple[str, list[tuple[str, str, str]]]:
+    """The header with pointers for the arrays of a struct; their types, names and sizes."""
+    struct = re.search(rf"^struct {name} \{{\n(?:.*\n)*?\}};\n", header, re.MULTILINE)
+    assert struct is not None
+    pointers = _ARRAY.sub(r"    \1 *\2;\n", struct.group())
+    return header.replace(struct.group(), pointers), _ARRAY.findall(struct.group())
+
+
+def _one_step(source: str, prefix: str, claim: str) -> str:
     """The loop that reads what is kept does one step; what calls it sees what holds in between."""
     loop = re.compile(
-        rf"(static void {prefix}_)run(\((?:.*\n)*?    )while( \(goes_on\) \{{\n(?:.*\n)*?\}}\n)"
+        rf"(static void {prefix}_)run(\((?:.*\n)*?    )while( \(goes_on\) \{{\n(?:.*\n)*?)\}}\n"
     )
-    text, count = loop.subn(rf"\1step\2if\3{_STEP.format(prefix=prefix)}", source)
+    text, count = loop.subn(rf"\1step\2if\3{claim}}}\n{_STEP.format(prefix=prefix)}", source)
     assert count == 1
-    return text
+    return _one_end(text, prefix)
+
+
+def _one_end(source: str, prefix: str) -> str:
+    """The loop that ends what is left does so once: what holds in front of it holds behind it."""
+    loop = re.compile(
+        rf"(void {prefix}_decoder_flush\((?:.*\n){{1,3}}?    )while( \(decoder->state)"
+    )
+    return loop.sub(r"\1if\2", source)
 
 
 def _head(protocol: Protocol, source: str) -> str:

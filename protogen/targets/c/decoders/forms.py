@@ -99,8 +99,10 @@ class FormsDecoder(NamedDecoder, frozen=True, dict=True):
 
     @property
     def counter(self) -> str:
-        """The type of what counts bytes."""
-        return max((item.counter for item in self._each), key=_COUNTERS.index)
+        """The type of what counts bytes, of which the buffer may hold more than any form's own."""
+        room = next(bits for bits in (8, 16, 32) if self.buffer_size < (1 << bits) - 4)
+        own = (item.counter for item in self._each)
+        return max(f"uint{room}_t", *own, key=_COUNTERS.index)
 
     @property
     def greatest(self) -> int:
@@ -109,8 +111,9 @@ class FormsDecoder(NamedDecoder, frozen=True, dict=True):
 
     @property
     def buffer_size(self) -> int:
-        """Bytes of the buffer."""
-        return max(item.buffer_size for item in self._each)
+        """Bytes of the buffer: a candidate of any form, at whose end a start of any form begins."""
+        begun = max(item.start_size for item in self._each) - 1
+        return max(item.plan.given_up_at for item in self._each) + max(begun, 0)
 
     # --- what it is told --------------------------------------------------------------------------
 
