@@ -133,17 +133,18 @@ def write_number(step: IntegerStep | FloatStep, value: Code, at: Code, scope: Sc
 def _call(by: str, type_: Integer | Float, *around: Code) -> Code:
     """What reads or writes whole bytes; it is given a value, if it writes one, and the path."""
     *value, at = around
+    how: list[Data] = []
     if isinstance(type_, Float):
         name, how = f"f{type_.bits}", [is_little(type_)]
         if is_seven(type_):
             name, how = "float7", [type_.bits, *how]
     elif type_.role == "bool":
-        name, how = "bool", []
+        name = "bool"
     elif plain := _plain(type_):
-        name, how = f"{'i' if type_.signed else 'u'}{plain}", []
+        name = f"{'i' if type_.signed else 'u'}{plain}"
     else:
-        kind = f"{'s' if type_.signed else 'u'}{'big' if is_bigint(type_) else 'int'}"
-        name, how = kind, [*_sized(type_)]
+        name = f"{'s' if type_.signed else 'u'}{'big' if is_bigint(type_) else 'int'}"
+        how = [*_sized(type_)]
     return call(f"{by}.{name}", *value, *how, at)
 
 

@@ -1,5 +1,5 @@
 /** Frames from their parts: what is always the same, and what each frame has anew. */
-import { equal } from "./bytes.js";
+import { equal, hasHighBit } from "./bytes.js";
 import { Cut, verdictOn } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { EncodeError } from "./errors.js";
@@ -61,14 +61,15 @@ class GivenPart {
             throw new EncodeError(part.name, `it can't be ${value}`);
         return value;
     }
-    /** The value where a caller gives none. Throws an EncodeError. */
+    /** The value where a caller gives none; null where there has to be one. */
     usual(counts) {
         const { name, isCounter, default: usual } = this.part;
-        const found = (isCounter ? counts?.get(name) : null) ?? usual;
-        if (found !== null)
-            return found;
-        const advice = isCounter ? ", or use an Encoder, which counts" : "";
-        throw new EncodeError(name, `the value is missing; give it as a part${advice}`);
+        return (isCounter ? counts?.get(name) : null) ?? usual;
+    }
+    /** The error where there is no value. */
+    error() {
+        const advice = this.part.isCounter ? ", or use an Encoder, which counts" : "";
+        return new EncodeError(this.name, `the value is missing; give it as a part${advice}`);
     }
     /** Go on counting, where the callers gave no value. */
     count(given, counts) {
@@ -109,17 +110,25 @@ class Assembly {
         let left = 0;
         for (const _name in given)
             left++;
+        let missing = null;
         for (let index = 0; index < parts.length; index++) {
             const part = parts[index];
             const own = part.own(given);
-            if (own === undefined || own === null)
-                values[part.slot] = part.usual(counts);
-            else {
+            if (own !== undefined && own !== null) {
                 values[part.slot] = part.given(own, strict);
                 left--;
             }
+            else {
+                const usual = part.usual(counts);
+                values[part.slot] = usual ?? undefined;
+                if (usual === null)
+                    missing ?? (missing = part);
+            }
         }
-        return left !== 0 && this.takeIdentity(given);
+        const isOther = left !== 0 && this.takeIdentity(given);
+        if (missing)
+            throw missing.error();
+        return isOther;
     }
     /** The same of what callers give of the identity; nothing else is left. */
     takeIdentity(given) {
@@ -243,6 +252,9 @@ export function unknownFrameOf(sender, payload, given) {
     for (const { name, slot, number } of sender.identityParts) {
         if (assembly.values[slot] === undefined)
             givenTo(number, undefined, name);
+    }
+    if (sender.frame.sevenBit && hasHighBit(payload, 0, payload.length)) {
+        throw new EncodeError("payload", "a byte has its most significant bit set");
     }
     const writer = writerOf(false, headSize);
     const place = writer.room(payload.length);

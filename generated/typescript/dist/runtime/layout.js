@@ -1,10 +1,10 @@
 /** The places of a frame's parts, and what makes those that are not always the same. */
-import { concatenated, hasHighBit } from "./bytes.js";
+import { concatenated } from "./bytes.js";
 import { dueOf } from "./candidate.js";
 import { EncodeError } from "./errors.js";
 import { numbersOf } from "./sender.js";
-function spotIn(spot, payload) {
-    return spot.moves ? spot.offset + payload : spot.offset;
+function spotIn({ offset, moves }, payload) {
+    return offset + moves * payload;
 }
 /** The error of a part, whose number does not take its value. */
 export function inside(error, name) {
@@ -35,26 +35,34 @@ class Source {
         this.other = other;
     }
     value(content, payload, values) {
-        if (this.slot >= 0)
-            return values[this.slot];
-        if (this.length)
-            return lengthOf(this.length, payload);
-        if (!this.sum)
+        const { slot, length, sum } = this;
+        if (slot >= 0)
+            return values[slot];
+        if (length)
+            return length.of(payload);
+        if (!sum)
             return this.other(content, payload, values);
-        const { algorithm, from, to } = this.sum;
-        return algorithm.compute(content, spotIn(from, payload), spotIn(to, payload));
+        const { algorithm, from, to } = sum;
+        return algorithm.compute(content, from.offset + from.moves * payload, to.offset + to.moves * payload);
     }
 }
 function other(value) {
     return new Source(-1, null, null, value);
 }
-/** The value of a length. Throws an EncodeError. */
-function lengthOf(part, payload, more = 0) {
-    const { name, base, optional, least, greatest } = part;
-    const value = base + more + (payload ? payload + optional : 0);
-    if (value >= least && value <= greatest)
-        return value;
-    throw new EncodeError("payload", `makes ${name} ${value}, not in ${least}..${greatest}`);
+/** A length in a layout: so many bytes more than the payload. */
+class Length {
+    constructor(part, isEmpty) {
+        this.part = part;
+        this.base = part.base + (isEmpty ? 0 : part.optional);
+    }
+    /** Its value in a frame whose payload has so many bytes. Throws an EncodeError. */
+    of(payload) {
+        const value = this.base + payload;
+        const { name, least, greatest } = this.part;
+        if (value >= least && value <= greatest)
+            return value;
+        throw new EncodeError("payload", `makes ${name} ${value}, not in ${least}..${greatest}`);
+    }
 }
 /** A part that is put into each frame. */
 class Step {
@@ -66,9 +74,10 @@ class Step {
         this.isByte = isByte(number);
     }
     make(content, payload, values) {
+        const { offset, moves } = this.spot;
+        const at = offset + moves * payload;
         const value = this.source.value(content, payload, values);
-        const at = spotIn(this.spot, payload);
-        if (this.isByte && typeof value === "number" && value >= 0 && value <= 0xff)
+        if (this.isByte && typeof value === "number" && value === (value & 0xff))
             content[at] = value;
         else
             put(this.number, value, content, at, this.name);
@@ -93,6 +102,7 @@ export class Layout {
         this.slots = new Int16Array(headSize).fill(-1);
         this.tail = fixed.subarray(headSize);
         this.region = this.regionOf();
+        this.told = sender.toldLength && new Length(sender.toldLength, isEmpty);
         parts.forEach((part, index) => {
             if (part.kind === "literal" && !this.isAbsent(part))
                 fixed.set(part.bytes, offsets[index]);
@@ -107,7 +117,7 @@ export class Layout {
     /** The frame around the payload that was written. Throws an EncodeError. */
     wire(writer, payload, values) {
         const { head, tail, slots, region, steps } = this;
-        const { frame, length, toldLength } = this.sender;
+        const { frame, length } = this.sender;
         if (payload > frame.greatestPayload && (length !== null || frame.isBounded)) {
             const problem = `has ${payload} bytes, at most ${frame.greatestPayload} fit`;
             throw new EncodeError("payload", problem);
@@ -116,11 +126,7 @@ export class Layout {
         writer.size = behind;
         writer.room(tail.length);
         const { bytes } = writer;
-        if (frame.sevenBit && hasHighBit(bytes, head.length, behind)) {
-            throw new EncodeError("payload", "a byte has its most significant bit set");
-        }
-        if (toldLength)
-            lengthOf(toldLength, payload);
+        this.told?.of(payload);
         for (let index = 0; index < head.length; index++) {
             const slot = slots[index];
             bytes[index] = slot < 0 ? head[index] : values[slot];
@@ -194,10 +200,11 @@ export class Layout {
         return length?.kind === "length" ? this.length(length) : new Source(slot);
     }
     length(part) {
+        const length = new Length(part, this.isEmpty);
         const more = part.overWire ? this.stuffing() : null;
         if (!more)
-            return new Source(-1, part);
-        return other((content, payload) => lengthOf(part, payload, more(content, payload)));
+            return new Source(-1, length);
+        return other((content, payload) => length.of(payload + more(content, payload)));
     }
     /** Bytes that stuffing adds; null where nothing is stuffed. */
     stuffing() {

@@ -166,7 +166,7 @@ export function substitution(codes, lenient = false) {
         const more = added(words.more, bytes, from, to);
         if (!more)
             return bytes.slice(0, size);
-        return replaced(bytes, from, to, words, new Uint8Array(size + more));
+        return replaced(bytes, from, to, words.words, new Uint8Array(size + more));
     };
     return {
         isStrict: !lenient,
@@ -179,10 +179,10 @@ export function substitution(codes, lenient = false) {
     };
 }
 function wordsOf(codes) {
-    const words = [...BYTES];
+    const words = BYTES.map(() => null);
     for (const [byte, word] of codes)
         words[byte] = word;
-    return { more: Uint8Array.from(words, (word) => word.length - 1), words };
+    return { more: Uint8Array.from(words, (word) => (word ? word.length - 1 : 0)), words };
 }
 /** Bytes that are replaced in a run of some. */
 function added(more, bytes, from, to) {
@@ -192,18 +192,20 @@ function added(more, bytes, from, to) {
     return count;
 }
 /** Some bytes, of which those in a run are replaced. */
-function replaced(bytes, from, to, { more, words }, out) {
+function replaced(bytes, from, to, words, out) {
     let at = 0;
-    for (let index = 0; at < out.length; index++) {
-        const byte = bytes[index];
-        if (!more[byte] || index < from || index >= to)
-            out[at++] = byte;
-        else {
-            const word = words[byte];
+    for (; at < from; at++)
+        out[at] = bytes[at];
+    for (let index = from; index < to; index++) {
+        const word = words[bytes[index]];
+        if (!word)
+            out[at++] = bytes[index];
+        else
             for (let place = 0; place < word.length; place++)
                 out[at++] = word[place];
-        }
     }
+    for (let index = to; at < out.length; index++)
+        out[at++] = bytes[index];
     return out;
 }
 /** Any byte behind the escape byte is transformed back; others stand for themselves. */

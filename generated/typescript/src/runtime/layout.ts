@@ -1,6 +1,6 @@
 /** The places of a frame's parts, and what makes those that are not always the same. */
 
-import { concatenated, hasHighBit } from "./bytes.js";
+import { concatenated } from "./bytes.js";
 import { dueOf } from "./candidate.js";
 import type { Checksum } from "./checksums.js";
 import { EncodeError } from "./errors.js";
@@ -21,8 +21,8 @@ interface Spot {
   readonly moves: 0 | 1;
 }
 
-function spotIn(spot: Spot, payload: number): number {
-  return spot.moves ? spot.offset + payload : spot.offset;
+function spotIn({ offset, moves }: Spot, payload: number): number {
+  return offset + moves * payload;
 }
 
 interface Numbered {
@@ -69,17 +69,22 @@ interface RunSum {
 class Source {
   constructor(
     readonly slot: number,
-    private readonly length: LengthNumber | null = null,
+    private readonly length: Length | null = null,
     private readonly sum: RunSum | null = null,
     private readonly other: ValueOf | null = null,
   ) {}
 
   value(content: Uint8Array, payload: number, values: Values): Value {
-    if (this.slot >= 0) return values[this.slot]!;
-    if (this.length) return lengthOf(this.length, payload);
-    if (!this.sum) return this.other!(content, payload, values);
-    const { algorithm, from, to } = this.sum;
-    return algorithm.compute(content, spotIn(from, payload), spotIn(to, payload));
+    const { slot, length, sum } = this;
+    if (slot >= 0) return values[slot]!;
+    if (length) return length.of(payload);
+    if (!sum) return this.other!(content, payload, values);
+    const { algorithm, from, to } = sum;
+    return algorithm.compute(
+      content,
+      from.offset + from.moves * payload,
+      to.offset + to.moves * payload,
+    );
   }
 }
 
@@ -87,12 +92,24 @@ function other(value: ValueOf): Source {
   return new Source(-1, null, null, value);
 }
 
-/** The value of a length. Throws an EncodeError. */
-function lengthOf(part: LengthNumber, payload: number, more = 0): number {
-  const { name, base, optional, least, greatest } = part;
-  const value = base + more + (payload ? payload + optional : 0);
-  if (value >= least && value <= greatest) return value;
-  throw new EncodeError("payload", `makes ${name} ${value}, not in ${least}..${greatest}`);
+/** A length in a layout: so many bytes more than the payload. */
+class Length {
+  private readonly base: number;
+
+  constructor(
+    private readonly part: LengthNumber,
+    isEmpty: boolean,
+  ) {
+    this.base = part.base + (isEmpty ? 0 : part.optional);
+  }
+
+  /** Its value in a frame whose payload has so many bytes. Throws an EncodeError. */
+  of(payload: number): number {
+    const value = this.base + payload;
+    const { name, least, greatest } = this.part;
+    if (value >= least && value <= greatest) return value;
+    throw new EncodeError("payload", `makes ${name} ${value}, not in ${least}..${greatest}`);
+  }
 }
 
 /** A part that is put into each frame. */
@@ -109,9 +126,10 @@ class Step {
   }
 
   make(content: Uint8Array, payload: number, values: Values): void {
+    const { offset, moves } = this.spot;
+    const at = offset + moves * payload;
     const value = this.source.value(content, payload, values);
-    const at = spotIn(this.spot, payload);
-    if (this.isByte && typeof value === "number" && value >= 0 && value <= 0xff) content[at] = value;
+    if (this.isByte && typeof value === "number" && value === (value & 0xff)) content[at] = value;
     else put(this.number, value, content, at, this.name);
   }
 }
@@ -128,6 +146,8 @@ export class Layout {
   /** What is stuffed; null where nothing is. */
   private readonly region: readonly [Spot, Spot] | null;
   private readonly steps: Step[] = [];
+  /** The length that a receiver is told. */
+  private readonly told: Length | null;
   private readonly isPlanned: boolean[] = [];
 
   constructor(
@@ -146,6 +166,7 @@ export class Layout {
     this.slots = new Int16Array(headSize).fill(-1);
     this.tail = fixed.subarray(headSize);
     this.region = this.regionOf();
+    this.told = sender.toldLength && new Length(sender.toldLength, isEmpty);
     parts.forEach((part, index) => {
       if (part.kind === "literal" && !this.isAbsent(part)) fixed.set(part.bytes, offsets[index]);
       else this.plan(index);
@@ -160,7 +181,7 @@ export class Layout {
   /** The frame around the payload that was written. Throws an EncodeError. */
   wire(writer: Writer, payload: number, values: Values): Uint8Array {
     const { head, tail, slots, region, steps } = this;
-    const { frame, length, toldLength } = this.sender;
+    const { frame, length } = this.sender;
     if (payload > frame.greatestPayload && (length !== null || frame.isBounded)) {
       const problem = `has ${payload} bytes, at most ${frame.greatestPayload} fit`;
       throw new EncodeError("payload", problem);
@@ -169,10 +190,7 @@ export class Layout {
     writer.size = behind;
     writer.room(tail.length);
     const { bytes } = writer;
-    if (frame.sevenBit && hasHighBit(bytes, head.length, behind)) {
-      throw new EncodeError("payload", "a byte has its most significant bit set");
-    }
-    if (toldLength) lengthOf(toldLength, payload);
+    this.told?.of(payload);
     for (let index = 0; index < head.length; index++) {
       const slot = slots[index]!;
       bytes[index] = slot < 0 ? head[index]! : (values[slot] as number);
@@ -243,9 +261,10 @@ export class Layout {
   }
 
   private length(part: LengthNumber): Source {
+    const length = new Length(part, this.isEmpty);
     const more = part.overWire ? this.stuffing() : null;
-    if (!more) return new Source(-1, part);
-    return other((content, payload) => lengthOf(part, payload, more(content, payload)));
+    if (!more) return new Source(-1, length);
+    return other((content, payload) => length.of(payload + more(content, payload)));
   }
 
   /** Bytes that stuffing adds; null where nothing is stuffed. */

@@ -199,7 +199,7 @@ export function substitution(
     words ??= wordsOf(codes);
     const more = added(words.more, bytes, from, to);
     if (!more) return bytes.slice(0, size);
-    return replaced(bytes, from, to, words, new Uint8Array(size + more));
+    return replaced(bytes, from, to, words.words, new Uint8Array(size + more));
   };
   return {
     isStrict: !lenient,
@@ -215,13 +215,13 @@ export function substitution(
 /** What each byte is replaced by, and how many bytes more that is. */
 interface Words {
   readonly more: Uint8Array;
-  readonly words: readonly Uint8Array[];
+  readonly words: readonly (Uint8Array | null)[];
 }
 
 function wordsOf(codes: readonly (readonly [number, Uint8Array])[]): Words {
-  const words = [...BYTES];
+  const words: (Uint8Array | null)[] = BYTES.map(() => null);
   for (const [byte, word] of codes) words[byte] = word;
-  return { more: Uint8Array.from(words, (word) => word.length - 1), words };
+  return { more: Uint8Array.from(words, (word) => (word ? word.length - 1 : 0)), words };
 }
 
 /** Bytes that are replaced in a run of some. */
@@ -236,18 +236,17 @@ function replaced(
   bytes: Uint8Array,
   from: number,
   to: number,
-  { more, words }: Words,
+  words: readonly (Uint8Array | null)[],
   out: Uint8Array,
 ): Uint8Array {
   let at = 0;
-  for (let index = 0; at < out.length; index++) {
-    const byte = bytes[index]!;
-    if (!more[byte] || index < from || index >= to) out[at++] = byte;
-    else {
-      const word = words[byte]!;
-      for (let place = 0; place < word.length; place++) out[at++] = word[place]!;
-    }
+  for (; at < from; at++) out[at] = bytes[at]!;
+  for (let index = from; index < to; index++) {
+    const word = words[bytes[index]!]!;
+    if (!word) out[at++] = bytes[index]!;
+    else for (let place = 0; place < word.length; place++) out[at++] = word[place]!;
   }
+  for (let index = to; at < out.length; index++) out[at++] = bytes[index]!;
   return out;
 }
 

@@ -1,20 +1,21 @@
 /** Writes the values of a payload, one after another. Generated functions call it. */
 
 import { NO_BYTES } from "./bytes.js";
-import { EncodeError, joined, spelled } from "./errors.js";
+import { Checks } from "./checks.js";
+import { spelled } from "./errors.js";
 import type { Value } from "./numbers.js";
-import { same, shown, type Step, type TextForm } from "./reader.js";
+import { NO_PARTS, type HeldParts } from "./plan.js";
+import { shown, type Step, type TextForm } from "./reader.js";
 
 const WORD_BYTES = new Uint8Array(8);
 const WORD = new DataView(WORD_BYTES.buffer);
-const GREATEST_FLOAT32 = (2 - 2 ** -23) * 2 ** 127;
 
 /** How many values a byte has. */
 type Base = 128 | 256;
 
 /** The greatest unsigned integer of so many bits. */
 function greatestOf(bits: number): number {
-  return bits < 32 ? (1 << bits) - 1 : 2 ** bits - 1;
+  return bits < 31 ? (1 << bits) - 1 : 2 ** bits - 1;
 }
 
 /**
@@ -22,17 +23,14 @@ function greatestOf(bits: number): number {
  *
  * There may be room in front of the payload, for the parts of the frame that stand there.
  */
-export class Writer {
+export class Writer extends Checks {
   /** What is written into where nobody knows how much it will be. */
   private scratch: Uint8Array = new Uint8Array(256);
   bytes: Uint8Array = this.scratch;
   /** Bytes so far, those in front of the payload among them. */
   size = 0;
-  /** With it, values that the schema forbids are refused, even where they fit the wire. */
-  strict = true;
   /** Values of the fields that are parts of the frame, by the names of the parts. */
-  held: Record<string, Value> = {};
-  private readonly path: Step[] = [];
+  held: HeldParts = NO_PARTS;
 
   /**
    * Begin another payload behind so many bytes.
@@ -44,6 +42,7 @@ export class Writer {
     this.bytes = size ? new Uint8Array(size) : this.scratch;
     this.size = 0;
     this.room(from);
+    this.held = NO_PARTS;
     if (this.path.length) this.path.length = 0;
     return this;
   }
@@ -51,19 +50,6 @@ export class Writer {
   /** All that was written. */
   taken(): Uint8Array {
     return this.bytes === this.scratch ? this.bytes.slice(0, this.size) : this.bytes;
-  }
-
-  /** The error of a field. */
-  error(step: Step, problem: string): EncodeError {
-    return new EncodeError(joined([...this.path, step]), problem);
-  }
-
-  enter(step: Step): void {
-    this.path.push(step);
-  }
-
-  leave(): void {
-    this.path.pop();
   }
 
   /** The place of so many more bytes. */
@@ -82,191 +68,137 @@ export class Writer {
 
   /** Leave a number to the frame, whose part it is. */
   part(name: string, value: Value): void {
-    this.held[name] = value;
-  }
-
-  // --- checks --------------------------------------------------------------------------------
-
-  /** An integer that the wire can hold. */
-  int(value: unknown, low: number, high: number, step: Step): number {
-    if (typeof value === "number" && value >= low && value <= high && Number.isInteger(value)) {
-      return value;
-    }
-    throw this.noInteger(value, low, high, step);
-  }
-
-  private noInteger(value: unknown, low: number, high: number, step: Step): EncodeError {
-    if (typeof value === "number" && Number.isInteger(value)) {
-      return this.error(step, `${value} is not in ${low}..${high}`);
-    }
-    return this.error(step, `must be an integer, not ${shown(value)}`);
-  }
-
-  /** An integer of more than 53 bits that the wire can hold. */
-  big(value: unknown, low: bigint, high: bigint, step: Step): bigint {
-    if (typeof value !== "bigint") {
-      throw this.error(step, `must be a bigint, not ${shown(value)}`);
-    }
-    if (value < low || value > high) throw this.error(step, `${value} is not in ${low}..${high}`);
-    return value;
-  }
-
-  /** A value in the range of the schema, or a special one. */
-  ranged<T extends number | bigint>(
-    value: T,
-    least: NoInfer<T> | null,
-    greatest: NoInfer<T> | null,
-    special: readonly NoInfer<T>[],
-    step: Step,
-  ): T {
-    // Not-a-number is in no range that has a bound.
-    const isIn = (least === null || value >= least) && (greatest === null || value <= greatest);
-    if (isIn || !this.strict || special.includes(value)) return value;
-    throw this.error(step, `${value} is not in ${least ?? ""}..${greatest ?? ""}`);
-  }
-
-  /** A value out of a closed enum. */
-  one<T extends number | bigint>(value: number | bigint, values: readonly T[], step: Step): T {
-    if (!values.includes(value as T)) {
-      throw this.error(step, `${value} has no name; there are ${values.join(", ")}`);
-    }
-    return value as T;
-  }
-
-  /** A truth value as a byte. */
-  bool(value: unknown, step: Step): void {
-    this.byte(this.truth(value, step));
-  }
-
-  /** A truth value; 0 and 1 are taken as well. */
-  truth(value: unknown, step: Step): number {
-    if (value === true || value === 1) return 1;
-    if (value === false || value === 0) return 0;
-    throw this.error(step, `must be false or true, not ${shown(value)}`);
-  }
-
-  /** A float that its bits can hold. */
-  real(value: unknown, bits: 32 | 64, step: Step): number {
-    if (typeof value !== "number") throw this.error(step, `must be a number, not ${shown(value)}`);
-    if (bits === 32 && Number.isFinite(value) && Math.abs(value) > GREATEST_FLOAT32) {
-      throw this.error(step, `${value} is too large for 32 bits`);
-    }
-    return value;
-  }
-
-  /** A constant, which needs not be given. */
-  constant<const T>(value: unknown, due: T, step: Step): T {
-    if (value !== undefined && value !== null && !same(value, due)) {
-      throw this.error(step, `must be ${shown(due)}, not ${shown(value)}`);
-    }
-    return due;
-  }
-
-  /** A struct. */
-  // Any: its members are checked one by one.
-  record(value: unknown, step: Step): any {
-    if (typeof value !== "object" || value === null) {
-      throw this.error(step, `must be an object, not ${shown(value)}`);
-    }
-    return value;
-  }
-
-  /** A list of `least` to `greatest` elements. */
-  // Any: they are checked one by one.
-  list(value: unknown, least: number, greatest: number, step: Step): readonly any[] {
-    if (!Array.isArray(value) && !ArrayBuffer.isView(value)) {
-      throw this.error(step, `must be a list, not ${shown(value)}`);
-    }
-    const items = value as unknown as readonly unknown[];
-    this.count(items.length, least, greatest, "elements", step);
-    return items;
-  }
-
-  /** A number of elements or bytes. */
-  count(count: number, least: number, greatest: number, what: string, step: Step): void {
-    if (count >= least && count <= greatest) return;
-    const due = least === greatest ? `exactly ${least}` : `${least} to ${greatest}`;
-    throw this.error(step, `needs ${due} ${what}, not ${count}`);
-  }
-
-  /** Nothing: the value of what is not there, or has no bytes. */
-  nothing(value: unknown, step: Step): void {
-    if (value !== null && value !== undefined) {
-      throw this.error(step, `must be null, not ${shown(value)}`);
-    }
-  }
-
-  /** Refuse a value behind one that is left out. */
-  behind(front: unknown, name: string, step: Step): void {
-    if (front === null || front === undefined) {
-      throw this.error(step, `must be null, as ${name} in front of it is left out`);
-    }
-  }
-
-  /** Refuse an element that says that it is the last where it is not, or the reverse. */
-  last(isLast: boolean, items: readonly unknown[], index: number, by: string): void {
-    if (isLast !== (index === items.length - 1)) {
-      throw this.error(index, `the last element, and no other, is the last by ${by}`);
-    }
-  }
-
-  /** The error of a selector without a case. */
-  noCase(value: number | bigint, by: string, step: Step): EncodeError {
-    return this.error(step, `there is no case for ${by} = ${value}`);
+    this.held = { ...this.held, [name]: value };
   }
 
   // --- integers ------------------------------------------------------------------------------
 
+  // An encoder spends most of its time here, so each of them calls no other.
+
   u8(value: unknown, step: Step): void {
-    this.byte(this.int(value, 0, 0xff, step));
+    if (typeof value !== "number" || value !== (value & 0xff)) {
+      throw this.noInteger(value, 0, 0xff, step);
+    }
+    const at = this.size;
+    this.size = at + 1;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value;
   }
 
   i8(value: unknown, step: Step): void {
-    this.byte(this.int(value, -0x80, 0x7f, step));
+    if (typeof value !== "number" || value !== (value << 24) >> 24) {
+      throw this.noInteger(value, -0x80, 0x7f, step);
+    }
+    const at = this.size;
+    this.size = at + 1;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value;
   }
 
   u16(value: unknown, step: Step): void {
-    const number = this.int(value, 0, 0xffff, step);
-    const at = this.room(2);
-    this.bytes[at] = number;
-    this.bytes[at + 1] = number >> 8;
+    if (typeof value !== "number" || value !== (value & 0xffff)) {
+      throw this.noInteger(value, 0, 0xffff, step);
+    }
+    const at = this.size;
+    this.size = at + 2;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value;
+    bytes[at + 1] = value >> 8;
   }
 
   i16(value: unknown, step: Step): void {
-    const number = this.int(value, -0x8000, 0x7fff, step);
-    const at = this.room(2);
-    this.bytes[at] = number;
-    this.bytes[at + 1] = number >> 8;
+    if (typeof value !== "number" || value !== (value << 16) >> 16) {
+      throw this.noInteger(value, -0x8000, 0x7fff, step);
+    }
+    const at = this.size;
+    this.size = at + 2;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value;
+    bytes[at + 1] = value >> 8;
   }
 
   u16be(value: unknown, step: Step): void {
-    const number = this.int(value, 0, 0xffff, step);
-    const at = this.room(2);
-    this.bytes[at] = number >> 8;
-    this.bytes[at + 1] = number;
+    if (typeof value !== "number" || value !== (value & 0xffff)) {
+      throw this.noInteger(value, 0, 0xffff, step);
+    }
+    const at = this.size;
+    this.size = at + 2;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value >> 8;
+    bytes[at + 1] = value;
   }
 
   i16be(value: unknown, step: Step): void {
-    const number = this.int(value, -0x8000, 0x7fff, step);
-    const at = this.room(2);
-    this.bytes[at] = number >> 8;
-    this.bytes[at + 1] = number;
+    if (typeof value !== "number" || value !== (value << 16) >> 16) {
+      throw this.noInteger(value, -0x8000, 0x7fff, step);
+    }
+    const at = this.size;
+    this.size = at + 2;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value >> 8;
+    bytes[at + 1] = value;
   }
 
   u32(value: unknown, step: Step): void {
-    this.four(this.int(value, 0, 0xffffffff, step));
+    if (typeof value !== "number" || value !== value >>> 0) {
+      throw this.noInteger(value, 0, 0xffffffff, step);
+    }
+    const at = this.size;
+    this.size = at + 4;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value;
+    bytes[at + 1] = value >> 8;
+    bytes[at + 2] = value >> 16;
+    bytes[at + 3] = value >> 24;
   }
 
   i32(value: unknown, step: Step): void {
-    this.four(this.int(value, -0x80000000, 0x7fffffff, step));
+    if (typeof value !== "number" || value !== (value | 0)) {
+      throw this.noInteger(value, -0x80000000, 0x7fffffff, step);
+    }
+    const at = this.size;
+    this.size = at + 4;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value;
+    bytes[at + 1] = value >> 8;
+    bytes[at + 2] = value >> 16;
+    bytes[at + 3] = value >> 24;
   }
 
   u32be(value: unknown, step: Step): void {
-    this.fourBe(this.int(value, 0, 0xffffffff, step));
+    if (typeof value !== "number" || value !== value >>> 0) {
+      throw this.noInteger(value, 0, 0xffffffff, step);
+    }
+    const at = this.size;
+    this.size = at + 4;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value >> 24;
+    bytes[at + 1] = value >> 16;
+    bytes[at + 2] = value >> 8;
+    bytes[at + 3] = value;
   }
 
   i32be(value: unknown, step: Step): void {
-    this.fourBe(this.int(value, -0x80000000, 0x7fffffff, step));
+    if (typeof value !== "number" || value !== (value | 0)) {
+      throw this.noInteger(value, -0x80000000, 0x7fffffff, step);
+    }
+    const at = this.size;
+    this.size = at + 4;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value >> 24;
+    bytes[at + 1] = value >> 16;
+    bytes[at + 2] = value >> 8;
+    bytes[at + 3] = value;
   }
 
   /** The lowest eight bits. */
@@ -275,42 +207,43 @@ export class Writer {
     this.bytes[at] = value;
   }
 
-  private four(value: number): void {
-    const at = this.room(4);
-    const { bytes } = this;
-    bytes[at] = value;
-    bytes[at + 1] = value >> 8;
-    bytes[at + 2] = value >> 16;
-    bytes[at + 3] = value >> 24;
-  }
-
-  private fourBe(value: number): void {
-    const at = this.room(4);
-    const { bytes } = this;
-    bytes[at] = value >> 24;
-    bytes[at + 1] = value >> 16;
-    bytes[at + 2] = value >> 8;
-    bytes[at + 3] = value;
+  /** A truth value as a byte. */
+  bool(value: unknown, step: Step): void {
+    this.byte(this.truth(value, step));
   }
 
   /** An unsigned integer in bytes of 8 bits or, if `base` is 128, of 7. */
   uint(value: unknown, size: number, bits: number, little: boolean, base: Base, step: Step): void {
-    this.lowest(this.int(value, 0, greatestOf(bits), step), size, bits, little, base);
+    const greatest = greatestOf(bits);
+    if (typeof value === "number" && value >= 0 && value <= greatest && Number.isInteger(value)) {
+      this.lowest(value, size, bits, little, base);
+    } else throw this.noInteger(value, 0, greatest, step);
   }
 
   /** The same of a signed one. */
   sint(value: unknown, size: number, bits: number, little: boolean, base: Base, step: Step): void {
     const greatest = greatestOf(bits - 1);
-    this.lowest(this.int(value, -greatest - 1, greatest, step), size, bits, little, base);
+    const least = -greatest - 1;
+    if (typeof value === "number" && value >= least && value <= greatest && Number.isInteger(value)) {
+      this.lowest(value, size, bits, little, base);
+    } else throw this.noInteger(value, least, greatest, step);
   }
 
   /** The lowest bits of an integer. */
   private lowest(value: number, size: number, bits: number, little: boolean, base: Base): void {
-    const first = this.room(size);
+    const first = this.size;
+    this.size = first + size;
+    if (this.size > this.bytes.length) this.grow();
     const { bytes } = this;
+    if (size <= 2 && bits < 32) {
+      const lowest = value & greatestOf(bits);
+      bytes[little ? first : first + size - 1] = lowest & (base - 1);
+      if (size === 2) bytes[little ? first + 1 : first] = base === 128 ? lowest >> 7 : lowest >> 8;
+      return;
+    }
     const next = little ? 1 : -1;
     let at = little ? first : first + size - 1;
-    if (bits <= 32) {
+    if (bits < 32) {
       const shift = base === 128 ? 7 : 8;
       let left = value & greatestOf(bits);
       for (let count = 0; count < size; count++, at += next) {

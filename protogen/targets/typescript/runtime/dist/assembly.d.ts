@@ -1,4 +1,5 @@
 /** Frames from their parts: what is always the same, and what each frame has anew. */
+import { EncodeError } from "./errors.js";
 import { Layout, type Values } from "./layout.js";
 import type { Value } from "./numbers.js";
 import type { MessagePlan, ValueNumber } from "./plan.js";
@@ -23,8 +24,10 @@ declare class GivenPart {
     own(given: GivenParts): unknown;
     /** The value of what a caller gives. Throws an EncodeError. */
     given(own: unknown, strict: boolean): Value;
-    /** The value where a caller gives none. Throws an EncodeError. */
-    usual(counts: Counts | null): Value;
+    /** The value where a caller gives none; null where there has to be one. */
+    usual(counts: Counts | null): Value | null;
+    /** The error where there is no value. */
+    error(): EncodeError;
     /** Go on counting, where the callers gave no value. */
     count(given: GivenParts, counts: Counts): void;
 }

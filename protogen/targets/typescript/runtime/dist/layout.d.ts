@@ -22,6 +22,8 @@ export declare class Layout {
     /** What is stuffed; null where nothing is. */
     private readonly region;
     private readonly steps;
+    /** The length that a receiver is told. */
+    private readonly told;
     private readonly isPlanned;
     constructor(sender: Sender, isEmpty: boolean);
     /** Bytes in front of the payload and behind it, before any stuffing. */

@@ -1,6 +1,7 @@
 /** Writes the values of a payload, one after another. Generated functions call it. */
-import { EncodeError } from "./errors.js";
+import { Checks } from "./checks.js";
 import type { Value } from "./numbers.js";
+import { type HeldParts } from "./plan.js";
 import { type Step, type TextForm } from "./reader.js";
 /** How many values a byte has. */
 type Base = 128 | 256;
@@ -9,17 +10,14 @@ type Base = 128 | 256;
  *
  * There may be room in front of the payload, for the parts of the frame that stand there.
  */
-export declare class Writer {
+export declare class Writer extends Checks {
     /** What is written into where nobody knows how much it will be. */
     private scratch;
     bytes: Uint8Array;
     /** Bytes so far, those in front of the payload among them. */
     size: number;
-    /** With it, values that the schema forbids are refused, even where they fit the wire. */
-    strict: boolean;
     /** Values of the fields that are parts of the frame, by the names of the parts. */
-    held: Record<string, Value>;
-    private readonly path;
+    held: HeldParts;
     /**
      * Begin another payload behind so many bytes.
      *
@@ -28,46 +26,11 @@ export declare class Writer {
     restart(strict: boolean, from: number, size: number): this;
     /** All that was written. */
     taken(): Uint8Array;
-    /** The error of a field. */
-    error(step: Step, problem: string): EncodeError;
-    enter(step: Step): void;
-    leave(): void;
     /** The place of so many more bytes. */
     room(size: number): number;
     private grow;
     /** Leave a number to the frame, whose part it is. */
     part(name: string, value: Value): void;
-    /** An integer that the wire can hold. */
-    int(value: unknown, low: number, high: number, step: Step): number;
-    private noInteger;
-    /** An integer of more than 53 bits that the wire can hold. */
-    big(value: unknown, low: bigint, high: bigint, step: Step): bigint;
-    /** A value in the range of the schema, or a special one. */
-    ranged<T extends number | bigint>(value: T, least: NoInfer<T> | null, greatest: NoInfer<T> | null, special: readonly NoInfer<T>[], step: Step): T;
-    /** A value out of a closed enum. */
-    one<T extends number | bigint>(value: number | bigint, values: readonly T[], step: Step): T;
-    /** A truth value as a byte. */
-    bool(value: unknown, step: Step): void;
-    /** A truth value; 0 and 1 are taken as well. */
-    truth(value: unknown, step: Step): number;
-    /** A float that its bits can hold. */
-    real(value: unknown, bits: 32 | 64, step: Step): number;
-    /** A constant, which needs not be given. */
-    constant<const T>(value: unknown, due: T, step: Step): T;
-    /** A struct. */
-    record(value: unknown, step: Step): any;
-    /** A list of `least` to `greatest` elements. */
-    list(value: unknown, least: number, greatest: number, step: Step): readonly any[];
-    /** A number of elements or bytes. */
-    count(count: number, least: number, greatest: number, what: string, step: Step): void;
-    /** Nothing: the value of what is not there, or has no bytes. */
-    nothing(value: unknown, step: Step): void;
-    /** Refuse a value behind one that is left out. */
-    behind(front: unknown, name: string, step: Step): void;
-    /** Refuse an element that says that it is the last where it is not, or the reverse. */
-    last(isLast: boolean, items: readonly unknown[], index: number, by: string): void;
-    /** The error of a selector without a case. */
-    noCase(value: number | bigint, by: string, step: Step): EncodeError;
     u8(value: unknown, step: Step): void;
     i8(value: unknown, step: Step): void;
     u16(value: unknown, step: Step): void;
@@ -80,8 +43,8 @@ export declare class Writer {
     i32be(value: unknown, step: Step): void;
     /** The lowest eight bits. */
     byte(value: number): void;
-    private four;
-    private fourBe;
+    /** A truth value as a byte. */
+    bool(value: unknown, step: Step): void;
     /** An unsigned integer in bytes of 8 bits or, if `base` is 128, of 7. */
     uint(value: unknown, size: number, bits: number, little: boolean, base: Base, step: Step): void;
     /** The same of a signed one. */
