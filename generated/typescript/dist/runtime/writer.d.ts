@@ -61,7 +61,7 @@ export declare class Writer extends Checks {
     private real64;
     /** `least` to `greatest` bytes. */
     octets(value: unknown, least: number, greatest: number, sevenBit: boolean, step: Step, until?: number): void;
-    /** End bytes from a place on, which have to be such that `until` is their end, if they have one. */
+    /** End the bytes from a place on by `until`, if they have an end, and refuse what they can't be. */
     private ended;
     /** The characters of a text, which are bytes. */
     characters(value: unknown, step: Step): string;

@@ -201,22 +201,21 @@ export class Writer extends Checks {
     }
     /** An unsigned integer in bytes of 8 bits or, if `base` is 128, of 7. */
     uint(value, size, bits, little, base, step) {
-        const greatest = greatestOf(bits);
-        if (typeof value === "number" && value >= 0 && value <= greatest && Number.isInteger(value)) {
+        const most = greatestOf(bits);
+        const isIn = typeof value === "number" && value >= 0 && value <= most;
+        if (isIn && Number.isInteger(value))
             this.lowest(value, size, bits, little, base);
-        }
         else
-            throw this.noInteger(value, 0, greatest, step);
+            throw this.noInteger(value, 0, most, step);
     }
     /** The same of a signed one. */
     sint(value, size, bits, little, base, step) {
-        const greatest = greatestOf(bits - 1);
-        const least = -greatest - 1;
-        if (typeof value === "number" && value >= least && value <= greatest && Number.isInteger(value)) {
+        const most = greatestOf(bits - 1);
+        const isIn = typeof value === "number" && value >= -most - 1 && value <= most;
+        if (isIn && Number.isInteger(value))
             this.lowest(value, size, bits, little, base);
-        }
         else
-            throw this.noInteger(value, least, greatest, step);
+            throw this.noInteger(value, -most - 1, most, step);
     }
     /** The lowest bits of an integer. */
     lowest(value, size, bits, little, base) {
@@ -307,7 +306,7 @@ export class Writer extends Checks {
         this.bytes.set(value, at);
         this.ended(at, sevenBit, until, step);
     }
-    /** End bytes from a place on, which have to be such that `until` is their end, if they have one. */
+    /** End the bytes from a place on by `until`, if they have an end, and refuse what they can't be. */
     ended(from, sevenBit, until, step) {
         const bytes = sevenBit || until >= 0 ? this.bytes.subarray(from, this.size) : NO_BYTES;
         if (until >= 0 && bytes.includes(until)) {
@@ -338,8 +337,9 @@ export class Writer extends Checks {
         const text = this.characters(value, step);
         this.count(text.length, least, greatest, "characters", step);
         const at = this.room(text.length);
+        const { bytes } = this;
         for (let index = 0; index < text.length; index++)
-            this.bytes[at + index] = text.charCodeAt(index);
+            bytes[at + index] = text.charCodeAt(index);
         this.ended(at, sevenBit, until, step);
     }
     /** A text among separators. */

@@ -157,9 +157,9 @@ class Assembly {
   /** The same of what callers give of the identity; nothing else is left. */
   private takeIdentity(given: GivenParts): boolean {
     let isGiven = false;
-    for (const name of Object.keys(given)) {
-      const own = given[name];
-      if (own === undefined || own === null || this.parts.some((part) => part.name === name)) continue;
+    for (const [name, own] of Object.entries(given)) {
+      if (own === undefined || own === null) continue;
+      if (this.parts.some((part) => part.name === name)) continue;
       const part = this.sender.identityParts.find((item) => item.name === name);
       if (!part) throw new EncodeError(name, "there is no such part");
       this.values[part.slot] = givenTo(part.number, own, name);
@@ -173,7 +173,8 @@ class Assembly {
     const { frame } = this.sender;
     const wire = (size ? this.full : this.empty).wire(writer, size, this.values);
     if (frame.isBounded && wire.length > frame.greatest) {
-      const problem = `makes a frame of ${wire.length} bytes, at most ${frame.greatest} are allowed`;
+      const { greatest } = frame;
+      const problem = `makes a frame of ${wire.length} bytes, at most ${greatest} are allowed`;
       throw new EncodeError("payload", problem);
     }
     return wire;

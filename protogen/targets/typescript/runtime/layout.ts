@@ -5,7 +5,8 @@ import { dueOf } from "./candidate.js";
 import type { Checksum } from "./checksums.js";
 import { EncodeError } from "./errors.js";
 import type { PartNumber, Value } from "./numbers.js";
-import type { Bits, Covered, LengthNumber, Mirror, Part, Place, Single, Sum, SumPart } from "./plan.js";
+import type { Bits, Covered, LengthNumber, Mirror, Part, Place, Single } from "./plan.js";
+import type { Sum, SumPart } from "./plan.js";
 import { numbersOf, type Sender } from "./sender.js";
 import type { Writer } from "./writer.js";
 
@@ -222,7 +223,7 @@ export class Layout {
     return { offset: this.sender.frame.headSize + place.offset - absent, moves: 1 };
   }
 
-  // --- steps, each behind those whose bytes it needs -----------------------------------------------
+  // --- steps, each behind those whose bytes it needs ------------------------------------------
 
   private plan(index: number): void {
     const part = this.sender.frame.parts[index]!;
@@ -306,7 +307,7 @@ export class Layout {
     );
   }
 
-  // --- checksums -----------------------------------------------------------------------------------
+  // --- checksums -----------------------------------------------------------------------------
 
   private sum(sum: Sum): Source {
     const { algorithm, covers } = sum;

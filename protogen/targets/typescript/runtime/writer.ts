@@ -214,19 +214,18 @@ export class Writer extends Checks {
 
   /** An unsigned integer in bytes of 8 bits or, if `base` is 128, of 7. */
   uint(value: unknown, size: number, bits: number, little: boolean, base: Base, step: Step): void {
-    const greatest = greatestOf(bits);
-    if (typeof value === "number" && value >= 0 && value <= greatest && Number.isInteger(value)) {
-      this.lowest(value, size, bits, little, base);
-    } else throw this.noInteger(value, 0, greatest, step);
+    const most = greatestOf(bits);
+    const isIn = typeof value === "number" && value >= 0 && value <= most;
+    if (isIn && Number.isInteger(value)) this.lowest(value, size, bits, little, base);
+    else throw this.noInteger(value, 0, most, step);
   }
 
   /** The same of a signed one. */
   sint(value: unknown, size: number, bits: number, little: boolean, base: Base, step: Step): void {
-    const greatest = greatestOf(bits - 1);
-    const least = -greatest - 1;
-    if (typeof value === "number" && value >= least && value <= greatest && Number.isInteger(value)) {
-      this.lowest(value, size, bits, little, base);
-    } else throw this.noInteger(value, least, greatest, step);
+    const most = greatestOf(bits - 1);
+    const isIn = typeof value === "number" && value >= -most - 1 && value <= most;
+    if (isIn && Number.isInteger(value)) this.lowest(value, size, bits, little, base);
+    else throw this.noInteger(value, -most - 1, most, step);
   }
 
   /** The lowest bits of an integer. */
@@ -325,7 +324,7 @@ export class Writer extends Checks {
     this.ended(at, sevenBit, until, step);
   }
 
-  /** End bytes from a place on, which have to be such that `until` is their end, if they have one. */
+  /** End the bytes from a place on by `until`, if they have an end, and refuse what they can't be. */
   private ended(from: number, sevenBit: boolean, until: number, step: Step): void {
     const bytes = sevenBit || until >= 0 ? this.bytes.subarray(from, this.size) : NO_BYTES;
     if (until >= 0 && bytes.includes(until)) {
@@ -363,7 +362,8 @@ export class Writer extends Checks {
     const text = this.characters(value, step);
     this.count(text.length, least, greatest, "characters", step);
     const at = this.room(text.length);
-    for (let index = 0; index < text.length; index++) this.bytes[at + index] = text.charCodeAt(index);
+    const { bytes } = this;
+    for (let index = 0; index < text.length; index++) bytes[at + index] = text.charCodeAt(index);
     this.ended(at, sevenBit, until, step);
   }
 

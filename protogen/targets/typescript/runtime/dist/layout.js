@@ -159,7 +159,7 @@ export class Layout {
         const absent = this.isEmpty ? place.absent : 0;
         return { offset: this.sender.frame.headSize + place.offset - absent, moves: 1 };
     }
-    // --- steps, each behind those whose bytes it needs -----------------------------------------------
+    // --- steps, each behind those whose bytes it needs ------------------------------------------
     plan(index) {
         const part = this.sender.frame.parts[index];
         if (this.isPlanned[index] || this.isAbsent(part))
@@ -241,7 +241,7 @@ export class Layout {
         const found = this.slot(of);
         return other((content, payload, values) => Number(BigInt(found.value(content, payload, values)) ^ flips));
     }
-    // --- checksums -----------------------------------------------------------------------------------
+    // --- checksums -----------------------------------------------------------------------------
     sum(sum) {
         const { algorithm, covers } = sum;
         const [first] = covers;
