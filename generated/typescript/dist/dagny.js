@@ -148,7 +148,7 @@ function readMotor(r) {
 }
 
 function writeMotor(w, m) {
-  w.u8(w.int(m.s, 0, 255, "s"));
+  w.u8(m.s, "s");
 }
 
 /** Plan of Motor, for `readPayload` and `writePayload` of the runtime. */
@@ -160,7 +160,7 @@ function readSteering(r) {
 }
 
 function writeSteering(w, m) {
-  w.u8(w.int(m.s, 0, 255, "s"));
+  w.u8(m.s, "s");
 }
 
 /** Plan of Steering, for `readPayload` and `writePayload` of the runtime. */
@@ -172,7 +172,7 @@ function readReflex(r) {
 }
 
 function writeReflex(w, m) {
-  w.u8(w.int(m.reflex, 0, 255, "reflex"));
+  w.u8(m.reflex, "reflex");
 }
 
 /** Plan of Reflex, for `readPayload` and `writePayload` of the runtime. */
@@ -184,7 +184,7 @@ function readPowerDown(r) {
 }
 
 function writePowerDown(w, m) {
-  w.u8(w.int(w.constant(m.code, 3, "code"), 0, 255, "code"));
+  w.u8(w.constant(m.code, 3, "code"), "code");
 }
 
 /** Plan of PowerDown, for `readPayload` and `writePayload` of the runtime. */
@@ -196,7 +196,7 @@ function readPower(r) {
 }
 
 function writePower(w, m) {
-  w.u8(w.int(m.code, 0, 255, "code"));
+  w.u8(m.code, "code");
 }
 
 /** Plan of Power, for `readPayload` and `writePayload` of the runtime. */
@@ -216,7 +216,7 @@ function writeLaser(w, m) {
   const items = w.list(m.readings, 0, 512, "readings");
   w.enter("readings");
   for (let i = 0; i < items.length; i++) {
-    w.u8(w.int(items[i], 0, 255, i));
+    w.u8(items[i], i);
   }
   w.leave();
 }

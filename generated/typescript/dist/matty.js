@@ -64,7 +64,7 @@ function readMode(r) {
 }
 
 function writeMode(w, m) {
-  w.u8(w.int(m.mode, 0, 255, "mode"));
+  w.u8(m.mode, "mode");
 }
 
 /** Plan of Mode, for `readPayload` and `writePayload` of the runtime. */
@@ -77,8 +77,8 @@ function readGo(r) {
 }
 
 function writeGo(w, m) {
-  w.u16(w.int(m.speed, -32768, 32767, "speed"));
-  w.u16(w.int(m.steer, -32768, 32767, "steer"));
+  w.i16(m.speed, "speed");
+  w.i16(m.steer, "steer");
 }
 
 /** Plan of Go, for `readPayload` and `writePayload` of the runtime. */
@@ -91,8 +91,8 @@ function readLimits(r) {
 }
 
 function writeLimits(w, m) {
-  w.u16(w.int(m.max_speed, -32768, 32767, "max_speed"));
-  w.u16(w.int(m.max_steer, -32768, 32767, "max_steer"));
+  w.i16(m.max_speed, "max_speed");
+  w.i16(m.max_steer, "max_steer");
 }
 
 /** Plan of Limits, for `readPayload` and `writePayload` of the runtime. */
@@ -105,8 +105,8 @@ function readTiming(r) {
 }
 
 function writeTiming(w, m) {
-  w.u16(w.int(m.period, 0, 65535, "period"));
-  w.u16(w.int(m.timeout, 0, 65535, "timeout"));
+  w.u16(m.period, "period");
+  w.u16(m.timeout, "timeout");
 }
 
 /** Plan of Timing, for `readPayload` and `writePayload` of the runtime. */
@@ -118,7 +118,7 @@ function readGpsMode(r) {
 }
 
 function writeGpsMode(w, m) {
-  w.u8(w.int(m.mode, 0, 255, "mode"));
+  w.u8(m.mode, "mode");
 }
 
 /** Plan of GpsMode, for `readPayload` and `writePayload` of the runtime. */
@@ -169,16 +169,16 @@ function readStatus(r) {
 }
 
 function writeStatus(w, m) {
-  w.u8(w.int(m.status, 0, 255, "status"));
-  w.u8(w.int(m.mode, 0, 255, "mode"));
-  w.u16(w.int(m.voltage, 0, 65535, "voltage"));
-  w.u16(w.int(m.current, 0, 65535, "current"));
-  w.u16(w.int(m.speed, -32768, 32767, "speed"));
-  w.u16(w.int(m.angle, -32768, 32767, "angle"));
-  w.u16(w.int(m.encoder0, 0, 65535, "encoder0"));
-  w.u16(w.int(m.encoder1, 0, 65535, "encoder1"));
-  w.u16(w.int(m.encoder2, 0, 65535, "encoder2"));
-  w.u16(w.int(m.encoder3, 0, 65535, "encoder3"));
+  w.u8(m.status, "status");
+  w.u8(m.mode, "mode");
+  w.u16(m.voltage, "voltage");
+  w.u16(m.current, "current");
+  w.i16(m.speed, "speed");
+  w.i16(m.angle, "angle");
+  w.u16(m.encoder0, "encoder0");
+  w.u16(m.encoder1, "encoder1");
+  w.u16(m.encoder2, "encoder2");
+  w.u16(m.encoder3, "encoder3");
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */

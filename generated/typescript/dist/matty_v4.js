@@ -55,7 +55,7 @@ function readStop(r) {
 }
 
 function writeStop(w, m) {
-  w.u8(w.int(m.mode, 0, 255, "mode"));
+  w.u8(m.mode, "mode");
 }
 
 /** Plan of Stop, for `readPayload` and `writePayload` of the runtime. */
@@ -76,7 +76,7 @@ function readMode(r) {
 }
 
 function writeMode(w, m) {
-  w.u8(w.int(m.mode, 0, 255, "mode"));
+  w.u8(m.mode, "mode");
 }
 
 /** Plan of Mode, for `readPayload` and `writePayload` of the runtime. */
@@ -89,8 +89,8 @@ function readGo(r) {
 }
 
 function writeGo(w, m) {
-  w.u16(w.int(m.speed, -32768, 32767, "speed"));
-  w.u16(w.int(m.steer, -32768, 32767, "steer"));
+  w.i16(m.speed, "speed");
+  w.i16(m.steer, "steer");
 }
 
 /** Plan of Go, for `readPayload` and `writePayload` of the runtime. */
@@ -103,8 +103,8 @@ function readLimits(r) {
 }
 
 function writeLimits(w, m) {
-  w.u16(w.int(m.max_speed, -32768, 32767, "max_speed"));
-  w.u16(w.int(m.max_steer, -32768, 32767, "max_steer"));
+  w.i16(m.max_speed, "max_speed");
+  w.i16(m.max_steer, "max_steer");
 }
 
 /** Plan of Limits, for `readPayload` and `writePayload` of the runtime. */
@@ -117,8 +117,8 @@ function readTiming(r) {
 }
 
 function writeTiming(w, m) {
-  w.u16(w.int(m.period, 0, 65535, "period"));
-  w.u16(w.int(m.timeout, 0, 65535, "timeout"));
+  w.u16(m.period, "period");
+  w.u16(m.timeout, "timeout");
 }
 
 /** Plan of Timing, for `readPayload` and `writePayload` of the runtime. */
@@ -130,7 +130,7 @@ function readGpsMode(r) {
 }
 
 function writeGpsMode(w, m) {
-  w.u8(w.int(m.mode, 0, 255, "mode"));
+  w.u8(m.mode, "mode");
 }
 
 /** Plan of GpsMode, for `readPayload` and `writePayload` of the runtime. */
@@ -152,8 +152,8 @@ function readLed(r) {
 }
 
 function writeLed(w, m) {
-  w.u8(w.int(m.index, 0, 255, "index"));
-  w.uint(w.int(m.rgb, 0, 16777215, "rgb"), 3, 24, true, 256);
+  w.u8(m.index, "index");
+  w.uint(m.rgb, 3, 24, true, 256, "rgb");
 }
 
 /** Plan of Led, for `readPayload` and `writePayload` of the runtime. */
@@ -210,19 +210,19 @@ function readStatus(r) {
 }
 
 function writeStatus(w, m) {
-  w.u8(w.int(m.status, 0, 255, "status"));
-  w.u8(w.int(m.mode, 0, 255, "mode"));
-  w.u16(w.int(m.voltage, 0, 65535, "voltage"));
-  w.u16(w.int(m.current, 0, 65535, "current"));
-  w.u16(w.int(m.speed, -32768, 32767, "speed"));
-  w.u16(w.int(m.angle, -32768, 32767, "angle"));
-  w.u16(w.int(m.encoder0, 0, 65535, "encoder0"));
-  w.u16(w.int(m.encoder1, 0, 65535, "encoder1"));
-  w.u16(w.int(m.encoder2, 0, 65535, "encoder2"));
-  w.u16(w.int(m.encoder3, 0, 65535, "encoder3"));
-  w.u16(w.int(m.roll, -32768, 32767, "roll"));
-  w.u16(w.int(m.pitch, -32768, 32767, "pitch"));
-  w.u16(w.int(m.yaw, -32768, 32767, "yaw"));
+  w.u8(m.status, "status");
+  w.u8(m.mode, "mode");
+  w.u16(m.voltage, "voltage");
+  w.u16(m.current, "current");
+  w.i16(m.speed, "speed");
+  w.i16(m.angle, "angle");
+  w.u16(m.encoder0, "encoder0");
+  w.u16(m.encoder1, "encoder1");
+  w.u16(m.encoder2, "encoder2");
+  w.u16(m.encoder3, "encoder3");
+  w.i16(m.roll, "roll");
+  w.i16(m.pitch, "pitch");
+  w.i16(m.yaw, "yaw");
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */
@@ -247,8 +247,8 @@ function readVersion(r) {
 }
 
 function writeVersion(w, m) {
-  w.u8(w.int(m.serial_number, 0, 255, "serial_number"));
-  w.u8(w.int(m.version, 0, 255, "version"));
+  w.u8(m.serial_number, "serial_number");
+  w.u8(m.version, "version");
 }
 
 /** Plan of Version, for `readPayload` and `writePayload` of the runtime. */

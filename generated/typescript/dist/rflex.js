@@ -78,9 +78,9 @@ function readSystemStatus(r) {
 }
 
 function writeSystemStatus(w, m) {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.battery_voltage, 0, 4294967295, "battery_voltage"));
-  w.u8(w.int(m.brake, 0, 255, "brake"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u32be(m.battery_voltage, "battery_voltage");
+  w.u8(m.brake, "brake");
 }
 
 /** Plan of SystemStatus, for `readPayload` and `writePayload` of the runtime. */
@@ -92,7 +92,7 @@ function readMotor00(r) {
 }
 
 function writeMotor00(w, m) {
-  w.u8(w.int(m.unknown, 0, 255, "unknown"));
+  w.u8(m.unknown, "unknown");
 }
 
 /** Plan of Motor00, for `readPayload` and `writePayload` of the runtime. */
@@ -108,11 +108,11 @@ function readMotorCommand(r) {
 }
 
 function writeMotorCommand(w, m) {
-  w.u8(w.int(m.axis, 0, 255, "axis"));
-  w.u32be(w.int(m.velocity, 0, 4294967295, "velocity"));
-  w.u32be(w.int(m.acceleration, 0, 4294967295, "acceleration"));
-  w.u32be(w.int(m.torque, 0, 4294967295, "torque"));
-  w.u8(w.int(m.direction, 0, 255, "direction"));
+  w.u8(m.axis, "axis");
+  w.u32be(m.velocity, "velocity");
+  w.u32be(m.acceleration, "acceleration");
+  w.u32be(m.torque, "torque");
+  w.u8(m.direction, "direction");
 }
 
 /** Plan of MotorCommand, for `readPayload` and `writePayload` of the runtime. */
@@ -126,9 +126,9 @@ function readConfirmMotorCommand(r) {
 }
 
 function writeConfirmMotorCommand(w, m) {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.axis, 0, 255, "axis"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.axis, "axis");
 }
 
 /** Plan of ConfirmMotorCommand, for `readPayload` and `writePayload` of the runtime. */
@@ -159,8 +159,8 @@ function readMotor0cAnswer(r) {
 }
 
 function writeMotor0cAnswer(w, m) {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of Motor0cAnswer, for `readPayload` and `writePayload` of the runtime. */
@@ -187,13 +187,13 @@ function readReadMotor(r) {
 }
 
 function writeReadMotor(w, m) {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.axis, 0, 255, "axis"));
-  w.u32be(w.int(m.position, -2147483648, 2147483647, "position"));
-  w.u32be(w.int(m.velocity, -2147483648, 2147483647, "velocity"));
-  w.u32be(w.int(m.acceleration, -2147483648, 2147483647, "acceleration"));
-  w.u32be(w.int(m.torque, -2147483648, 2147483647, "torque"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.axis, "axis");
+  w.i32be(m.position, "position");
+  w.i32be(m.velocity, "velocity");
+  w.i32be(m.acceleration, "acceleration");
+  w.i32be(m.torque, "torque");
 }
 
 /** Plan of ReadMotor, for `readPayload` and `writePayload` of the runtime. */
@@ -206,8 +206,8 @@ function readStartStopMotorPackets(r) {
 }
 
 function writeStartStopMotorPackets(w, m) {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.start_stop, 0, 4294967295, "start_stop"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u32be(m.start_stop, "start_stop");
 }
 
 /** Plan of StartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -220,8 +220,8 @@ function readConfirmStartStopMotorPackets(r) {
 }
 
 function writeConfirmStartStopMotorPackets(w, m) {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of ConfirmStartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -245,10 +245,10 @@ function readJoystickData(r) {
 }
 
 function writeJoystickData(w, m) {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.horizontal, -2147483648, 2147483647, "horizontal"));
-  w.u32be(w.int(m.vertical, -2147483648, 2147483647, "vertical"));
-  w.u8(w.int(m.buttons, 0, 255, "buttons"));
+  w.u32be(m.timestamp, "timestamp");
+  w.i32be(m.horizontal, "horizontal");
+  w.i32be(m.vertical, "vertical");
+  w.u8(m.buttons, "buttons");
 }
 
 /** Plan of JoystickData, for `readPayload` and `writePayload` of the runtime. */
@@ -269,10 +269,10 @@ function readStartStopSonarPackets(r) {
 }
 
 function writeStartStopSonarPackets(w, m) {
-  w.u32be(w.int(m.frequency, 0, 4294967295, "frequency"));
-  w.u32be(w.int(m.unknown_1, 0, 4294967295, "unknown_1"));
-  w.u8(w.int(m.unknown_2, 0, 255, "unknown_2"));
-  w.u32be(w.int(m.start_stop, 0, 4294967295, "start_stop"));
+  w.u32be(m.frequency, "frequency");
+  w.u32be(m.unknown_1, "unknown_1");
+  w.u8(m.unknown_2, "unknown_2");
+  w.u32be(m.start_stop, "start_stop");
 }
 
 /** Plan of StartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -285,8 +285,8 @@ function readConfirmStartStopSonarPackets(r) {
 }
 
 function writeConfirmStartStopSonarPackets(w, m) {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of ConfirmStartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -310,15 +310,15 @@ function readSonarData(r) {
 }
 
 function writeSonarData(w, m) {
-  w.u32be(w.int(m.unknown ?? 2, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.unknown ?? 2, "unknown");
+  w.u32be(m.timestamp, "timestamp");
   const items = w.list(m.readings, 0, 82, "readings");
   w.enter("readings");
   for (let i = 0; i < items.length; i++) {
     const item = w.record(items[i], i);
     w.enter(i);
-    w.u8(w.int(item.cluster, 0, 255, "cluster"));
-    w.u16be(w.int(item.distance, 0, 65535, "distance"));
+    w.u8(item.cluster, "cluster");
+    w.u16be(item.distance, "distance");
     w.leave();
   }
   w.leave();
@@ -333,7 +333,7 @@ function readInitializeDigitalIo(r) {
 }
 
 function writeInitializeDigitalIo(w, m) {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
+  w.u32be(m.unknown, "unknown");
 }
 
 /** Plan of InitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
@@ -346,8 +346,8 @@ function readConfirmInitializeDigitalIo(r) {
 }
 
 function writeConfirmInitializeDigitalIo(w, m) {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of ConfirmInitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
@@ -361,9 +361,9 @@ function readChangedBumpers(r) {
 }
 
 function writeChangedBumpers(w, m) {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.position, 0, 255, "position"));
-  w.u16be(w.int(m.value, 0, 65535, "value"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.position, "position");
+  w.u16be(m.value, "value");
 }
 
 /** Plan of ChangedBumpers, for `readPayload` and `writePayload` of the runtime. */
@@ -375,7 +375,7 @@ function readCheckIoChanged(r) {
 }
 
 function writeCheckIoChanged(w, m) {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of CheckIoChanged, for `readPayload` and `writePayload` of the runtime. */
@@ -394,9 +394,9 @@ function readCheckIoChangedAnswer(r) {
 }
 
 function writeCheckIoChangedAnswer(w, m) {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.package_count, 0, 4294967295, "package_count"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
+  w.u32be(m.package_count, "package_count");
 }
 
 /** Plan of CheckIoChangedAnswer, for `readPayload` and `writePayload` of the runtime. */
@@ -410,9 +410,9 @@ function readChangedByte(r) {
 }
 
 function writeChangedByte(w, m) {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.position, 0, 255, "position"));
-  w.u16be(w.int(m.value, 0, 65535, "value"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.position, "position");
+  w.u16be(m.value, "value");
 }
 
 /** Plan of ChangedByte, for `readPayload` and `writePayload` of the runtime. */

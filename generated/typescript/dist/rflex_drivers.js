@@ -79,9 +79,9 @@ function readSystemStatus(r) {
 }
 
 function writeSystemStatus(w, m) {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.battery_voltage, 0, 4294967295, "battery_voltage"));
-  w.u8(w.int(m.brake, 0, 255, "brake"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u32be(m.battery_voltage, "battery_voltage");
+  w.u8(m.brake, "brake");
 }
 
 /** Plan of SystemStatus, for `readPayload` and `writePayload` of the runtime. */
@@ -96,10 +96,10 @@ function readLcdDump(r) {
 }
 
 function writeLcdDump(w, m) {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.row, 0, 255, "row"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.row, "row");
   const byte_count = w.int(m.byte_count ?? rt.counted(m.pixels, 1, 0, 1), 0, 255, "byte_count");
-  w.u8(byte_count);
+  w.u8(byte_count, "byte_count");
   const count = byte_count;
   w.octets(m.pixels, count, count, false, "pixels");
 }
@@ -113,7 +113,7 @@ function readAxisGetSystem(r) {
 }
 
 function writeAxisGetSystem(w, m) {
-  w.u8(w.int(m.axis, 0, 255, "axis"));
+  w.u8(m.axis, "axis");
 }
 
 /** Plan of AxisGetSystem, for `readPayload` and `writePayload` of the runtime. */
@@ -129,11 +129,11 @@ function readMotorCommand(r) {
 }
 
 function writeMotorCommand(w, m) {
-  w.u8(w.int(m.axis, 0, 255, "axis"));
-  w.u32be(w.int(m.velocity, 0, 4294967295, "velocity"));
-  w.u32be(w.int(m.acceleration, 0, 4294967295, "acceleration"));
-  w.u32be(w.int(m.torque, 0, 4294967295, "torque"));
-  w.u8(w.int(m.direction, 0, 255, "direction"));
+  w.u8(m.axis, "axis");
+  w.u32be(m.velocity, "velocity");
+  w.u32be(m.acceleration, "acceleration");
+  w.u32be(m.torque, "torque");
+  w.u8(m.direction, "direction");
 }
 
 /** Plan of MotorCommand, for `readPayload` and `writePayload` of the runtime. */
@@ -147,9 +147,9 @@ function readConfirmMotorCommand(r) {
 }
 
 function writeConfirmMotorCommand(w, m) {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.axis, 0, 255, "axis"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.axis, "axis");
 }
 
 /** Plan of ConfirmMotorCommand, for `readPayload` and `writePayload` of the runtime. */
@@ -189,8 +189,8 @@ function readBrakeReleaseAnswer(r) {
 }
 
 function writeBrakeReleaseAnswer(w, m) {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of BrakeReleaseAnswer, for `readPayload` and `writePayload` of the runtime. */
@@ -217,13 +217,13 @@ function readReadMotor(r) {
 }
 
 function writeReadMotor(w, m) {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.axis, 0, 255, "axis"));
-  w.u32be(w.int(m.position, -2147483648, 2147483647, "position"));
-  w.u32be(w.int(m.velocity, -2147483648, 2147483647, "velocity"));
-  w.u32be(w.int(m.acceleration, -2147483648, 2147483647, "acceleration"));
-  w.u32be(w.int(m.torque, -2147483648, 2147483647, "torque"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.axis, "axis");
+  w.i32be(m.position, "position");
+  w.i32be(m.velocity, "velocity");
+  w.i32be(m.acceleration, "acceleration");
+  w.i32be(m.torque, "torque");
 }
 
 /** Plan of ReadMotor, for `readPayload` and `writePayload` of the runtime. */
@@ -236,8 +236,8 @@ function readStartStopMotorPackets(r) {
 }
 
 function writeStartStopMotorPackets(w, m) {
-  w.u32be(w.int(m.period, 0, 4294967295, "period"));
-  w.u32be(w.int(m.mask, 0, 4294967295, "mask"));
+  w.u32be(m.period, "period");
+  w.u32be(m.mask, "mask");
 }
 
 /** Plan of StartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -250,8 +250,8 @@ function readConfirmStartStopMotorPackets(r) {
 }
 
 function writeConfirmStartStopMotorPackets(w, m) {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of ConfirmStartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -275,10 +275,10 @@ function readJoystickData(r) {
 }
 
 function writeJoystickData(w, m) {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.horizontal, -2147483648, 2147483647, "horizontal"));
-  w.u32be(w.int(m.vertical, -2147483648, 2147483647, "vertical"));
-  w.u8(w.int(m.buttons, 0, 255, "buttons"));
+  w.u32be(m.timestamp, "timestamp");
+  w.i32be(m.horizontal, "horizontal");
+  w.i32be(m.vertical, "vertical");
+  w.u8(m.buttons, "buttons");
 }
 
 /** Plan of JoystickData, for `readPayload` and `writePayload` of the runtime. */
@@ -299,10 +299,10 @@ function readStartStopSonarPackets(r) {
 }
 
 function writeStartStopSonarPackets(w, m) {
-  w.u32be(w.int(m.echo_delay, 0, 4294967295, "echo_delay"));
-  w.u32be(w.int(m.ping_delay, 0, 4294967295, "ping_delay"));
-  w.u32be(w.int(m.set_delay, 0, 4294967295, "set_delay"));
-  w.u8(w.int(m.mode, 0, 255, "mode"));
+  w.u32be(m.echo_delay, "echo_delay");
+  w.u32be(m.ping_delay, "ping_delay");
+  w.u32be(m.set_delay, "set_delay");
+  w.u8(m.mode, "mode");
 }
 
 /** Plan of StartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -315,8 +315,8 @@ function readConfirmStartStopSonarPackets(r) {
 }
 
 function writeConfirmStartStopSonarPackets(w, m) {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of ConfirmStartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -340,15 +340,15 @@ function readSonarData(r) {
 }
 
 function writeSonarData(w, m) {
-  w.u32be(w.int(m.retval ?? 2, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.retval ?? 2, "retval");
+  w.u32be(m.timestamp, "timestamp");
   const items = w.list(m.readings, 0, 82, "readings");
   w.enter("readings");
   for (let i = 0; i < items.length; i++) {
     const item = w.record(items[i], i);
     w.enter(i);
-    w.u8(w.int(item.cluster, 0, 255, "cluster"));
-    w.u16be(w.int(item.distance, 0, 65535, "distance"));
+    w.u8(item.cluster, "cluster");
+    w.u16be(item.distance, "distance");
     w.leave();
   }
   w.leave();
@@ -363,7 +363,7 @@ function readInitializeDigitalIo(r) {
 }
 
 function writeInitializeDigitalIo(w, m) {
-  w.u32be(w.int(m.period, 0, 4294967295, "period"));
+  w.u32be(m.period, "period");
 }
 
 /** Plan of InitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
@@ -376,8 +376,8 @@ function readConfirmInitializeDigitalIo(r) {
 }
 
 function writeConfirmInitializeDigitalIo(w, m) {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of ConfirmInitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
@@ -391,9 +391,9 @@ function readChangedBumpers(r) {
 }
 
 function writeChangedBumpers(w, m) {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.address, 0, 255, "address"));
-  w.u16be(w.int(m.data, 0, 65535, "data"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.address, "address");
+  w.u16be(m.data, "data");
 }
 
 /** Plan of ChangedBumpers, for `readPayload` and `writePayload` of the runtime. */
@@ -405,7 +405,7 @@ function readCheckIoChanged(r) {
 }
 
 function writeCheckIoChanged(w, m) {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of CheckIoChanged, for `readPayload` and `writePayload` of the runtime. */
@@ -419,9 +419,9 @@ function readCheckIoChangedAnswer(r) {
 }
 
 function writeCheckIoChangedAnswer(w, m) {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.package_count, 0, 4294967295, "package_count"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
+  w.u32be(m.package_count, "package_count");
 }
 
 /** Plan of CheckIoChangedAnswer, for `readPayload` and `writePayload` of the runtime. */
@@ -435,9 +435,9 @@ function readChangedByte(r) {
 }
 
 function writeChangedByte(w, m) {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.address, 0, 255, "address"));
-  w.u16be(w.int(m.data, 0, 65535, "data"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.address, "address");
+  w.u16be(m.data, "data");
 }
 
 /** Plan of ChangedByte, for `readPayload` and `writePayload` of the runtime. */
@@ -462,12 +462,12 @@ function readIrRun(r) {
 }
 
 function writeIrRun(w, m) {
-  w.u32be(w.int(m.unknown_1, 0, 4294967295, "unknown_1"));
-  w.u32be(w.int(m.unknown_2, 0, 4294967295, "unknown_2"));
-  w.u32be(w.int(m.unknown_3, 0, 4294967295, "unknown_3"));
-  w.u32be(w.int(m.unknown_4, 0, 4294967295, "unknown_4"));
-  w.u32be(w.int(m.unknown_5, 0, 4294967295, "unknown_5"));
-  w.u8(w.int(m.mode, 0, 255, "mode"));
+  w.u32be(m.unknown_1, "unknown_1");
+  w.u32be(m.unknown_2, "unknown_2");
+  w.u32be(m.unknown_3, "unknown_3");
+  w.u32be(m.unknown_4, "unknown_4");
+  w.u32be(m.unknown_5, "unknown_5");
+  w.u8(m.mode, "mode");
 }
 
 /** Plan of IrRun, for `readPayload` and `writePayload` of the runtime. */

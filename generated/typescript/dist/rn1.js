@@ -69,8 +69,8 @@ function readMoveManual(r) {
 }
 
 function writeMoveManual(w, m) {
-  w.uint(w.int(m.speed, -64, 63, "speed"), 1, 7, true, 128);
-  w.uint(w.int(m.arc, -64, 63, "arc"), 1, 7, true, 128);
+  w.sint(m.speed, 1, 7, true, 128, "speed");
+  w.sint(m.arc, 1, 7, true, 128, "arc");
 }
 
 /** Plan of MoveManual, for `readPayload` and `writePayload` of the runtime. */
@@ -83,8 +83,8 @@ function readMoveRelativeTwostep(r) {
 }
 
 function writeMoveRelativeTwostep(w, m) {
-  w.uint(w.int(m.angle, -8192, 8191, "angle"), 2, 14, true, 128);
-  w.uint(w.int(m.forward, -8192, 8191, "forward"), 2, 14, true, 128);
+  w.sint(m.angle, 2, 14, true, 128, "angle");
+  w.sint(m.forward, 2, 14, true, 128, "forward");
 }
 
 /** Plan of MoveRelativeTwostep, for `readPayload` and `writePayload` of the runtime. */
@@ -97,8 +97,8 @@ function readMoveRelativeArc(r) {
 }
 
 function writeMoveRelativeArc(w, m) {
-  w.uint(w.int(m.angle, -8192, 8191, "angle"), 2, 14, true, 128);
-  w.uint(w.int(m.forward, -8192, 8191, "forward"), 2, 14, true, 128);
+  w.sint(m.angle, 2, 14, true, 128, "angle");
+  w.sint(m.forward, 2, 14, true, 128, "forward");
 }
 
 /** Plan of MoveRelativeArc, for `readPayload` and `writePayload` of the runtime. */
@@ -145,17 +145,17 @@ function writeMaintenance(w, m) {
   const items = w.list(w.constant(m.magic, [66, 17, 122], "magic"), 3, 3, "magic");
   w.enter("magic");
   for (let i = 0; i < items.length; i++) {
-    w.uint(w.int(items[i], 0, 127, i), 1, 7, true, 128);
+    w.uint(items[i], 1, 7, true, 128, i);
   }
   w.leave();
   const operation = w.int(m.operation, 0, 127, "operation");
-  w.uint(operation, 1, 7, true, 128);
+  w.uint(operation, 1, 7, true, 128, "operation");
   const argument = m.argument;
   const selector = operation;
   if (selector === 65) {
     const reconfig_uart = w.record(argument, "argument");
     w.enter("argument");
-    w.uint(w.int(reconfig_uart.baud_rate_register, 0, 65535, "baud_rate_register"), 3, 16, true, 128);
+    w.uint(reconfig_uart.baud_rate_register, 3, 16, true, 128, "baud_rate_register");
     w.leave();
   }
   else if (selector === 81) {
@@ -167,7 +167,7 @@ function writeMaintenance(w, m) {
   else if (selector === 83) {
     const run_motor_controller_flasher = w.record(argument, "argument");
     w.enter("argument");
-    w.uint(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), 1, 7, true, 128);
+    w.uint(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), 1, 7, true, 128, "motor_controller");
     w.leave();
   }
   else {
@@ -187,10 +187,10 @@ function readGyro(r) {
 }
 
 function writeGyro(w, m) {
-  w.uint(w.int(m.status, 0, 127, "status"), 1, 7, true, 128);
-  w.uint(w.int(m.int_x, -8192, 8191, "int_x"), 2, 14, true, 128);
-  w.uint(w.int(m.int_y, -8192, 8191, "int_y"), 2, 14, true, 128);
-  w.uint(w.int(m.int_z, -8192, 8191, "int_z"), 2, 14, true, 128);
+  w.uint(m.status, 1, 7, true, 128, "status");
+  w.sint(m.int_x, 2, 14, true, 128, "int_x");
+  w.sint(m.int_y, 2, 14, true, 128, "int_y");
+  w.sint(m.int_z, 2, 14, true, 128, "int_z");
 }
 
 /** Plan of Gyro, for `readPayload` and `writePayload` of the runtime. */
@@ -205,10 +205,10 @@ function readXcel(r) {
 }
 
 function writeXcel(w, m) {
-  w.uint(w.int(m.status, 0, 127, "status"), 1, 7, true, 128);
-  w.uint(w.int(m.int_x, -8192, 8191, "int_x"), 2, 14, true, 128);
-  w.uint(w.int(m.int_y, -8192, 8191, "int_y"), 2, 14, true, 128);
-  w.uint(w.int(m.int_z, -8192, 8191, "int_z"), 2, 14, true, 128);
+  w.uint(m.status, 1, 7, true, 128, "status");
+  w.sint(m.int_x, 2, 14, true, 128, "int_x");
+  w.sint(m.int_y, 2, 14, true, 128, "int_y");
+  w.sint(m.int_z, 2, 14, true, 128, "int_z");
 }
 
 /** Plan of Xcel, for `readPayload` and `writePayload` of the runtime. */
@@ -223,10 +223,10 @@ function readCompass(r) {
 }
 
 function writeCompass(w, m) {
-  w.uint(w.int(m.status, 0, 127, "status"), 1, 7, true, 128);
-  w.uint(w.int(m.avg_x, -8192, 8191, "avg_x"), 2, 14, true, 128);
-  w.uint(w.int(m.avg_y, -8192, 8191, "avg_y"), 2, 14, true, 128);
-  w.uint(w.int(m.avg_z, -8192, 8191, "avg_z"), 2, 14, true, 128);
+  w.uint(m.status, 1, 7, true, 128, "status");
+  w.sint(m.avg_x, 2, 14, true, 128, "avg_x");
+  w.sint(m.avg_y, 2, 14, true, 128, "avg_y");
+  w.sint(m.avg_z, 2, 14, true, 128, "avg_z");
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
@@ -241,10 +241,10 @@ function readOptflow(r) {
 }
 
 function writeOptflow(w, m) {
-  w.uint(w.int(m.status, 0, 127, "status"), 1, 7, true, 128);
-  w.uint(w.int(m.dx, -8192, 8191, "dx"), 2, 14, true, 128);
-  w.uint(w.int(m.dy, -8192, 8191, "dy"), 2, 14, true, 128);
-  w.uint(w.int(m.q, 0, 127, "q"), 1, 7, true, 128);
+  w.uint(m.status, 1, 7, true, 128, "status");
+  w.sint(m.dx, 2, 14, true, 128, "dx");
+  w.sint(m.dy, 2, 14, true, 128, "dy");
+  w.uint(m.q, 1, 7, true, 128, "q");
 }
 
 /** Plan of Optflow, for `readPayload` and `writePayload` of the runtime. */
@@ -262,11 +262,11 @@ function readLidar(r) {
 }
 
 function writeLidar(w, m) {
-  w.uint(w.int(m.status, 0, 127, "status"), 1, 7, true, 128);
+  w.uint(m.status, 1, 7, true, 128, "status");
   const items = w.list(m.distances, 360, 360, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.uint(w.int(items[i], 0, 16383, i), 2, 14, true, 128);
+    w.uint(items[i], 2, 14, true, 128, i);
   }
   w.leave();
 }
@@ -286,11 +286,11 @@ function readSonar(r) {
 }
 
 function writeSonar(w, m) {
-  w.uint(w.int(m.status, 0, 127, "status"), 1, 7, true, 128);
+  w.uint(m.status, 1, 7, true, 128, "status");
   const items = w.list(m.distances, 7, 7, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.uint(w.int(items[i], 0, 16383, i), 2, 14, true, 128);
+    w.uint(items[i], 2, 14, true, 128, i);
   }
   w.leave();
 }
@@ -306,9 +306,9 @@ function readFacing(r) {
 }
 
 function writeFacing(w, m) {
-  w.uint(w.int(m.status, 0, 127, "status"), 1, 7, true, 128);
-  w.uint(w.int(m.heading, 0, 16383, "heading"), 2, 14, true, 128);
-  w.uint(w.int(m.speed, -8192, 8191, "speed"), 2, 14, true, 128);
+  w.uint(m.status, 1, 7, true, 128, "status");
+  w.uint(m.heading, 2, 14, true, 128, "heading");
+  w.sint(m.speed, 2, 14, true, 128, "speed");
 }
 
 /** Plan of Facing, for `readPayload` and `writePayload` of the runtime. */

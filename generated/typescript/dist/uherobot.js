@@ -40,15 +40,15 @@ function readMotorsServosLeds(r) {
 }
 
 function writeMotorsServosLeds(w, m) {
-  w.u16be(w.int(m.motor_1, -32768, 32767, "motor_1"));
-  w.u16be(w.int(m.motor_2, -32768, 32767, "motor_2"));
+  w.i16be(m.motor_1, "motor_1");
+  w.i16be(m.motor_2, "motor_2");
   const items = w.list(m.servos, 8, 8, "servos");
   w.enter("servos");
   for (let i = 0; i < items.length; i++) {
-    w.u16be(w.int(items[i], 0, 65535, i));
+    w.u16be(items[i], i);
   }
   w.leave();
-  w.u8(w.int(m.leds, 0, 255, "leds"));
+  w.u8(m.leds, "leds");
 }
 
 /** Plan of MotorsServosLeds, for `readPayload` and `writePayload` of the runtime. */
@@ -67,12 +67,12 @@ function readMotorsTwoServos(r) {
 }
 
 function writeMotorsTwoServos(w, m) {
-  w.u16be(w.int(m.motor_1, -32768, 32767, "motor_1"));
-  w.u16be(w.int(m.motor_2, -32768, 32767, "motor_2"));
+  w.i16be(m.motor_1, "motor_1");
+  w.i16be(m.motor_2, "motor_2");
   const items = w.list(m.servos, 2, 2, "servos");
   w.enter("servos");
   for (let i = 0; i < items.length; i++) {
-    w.u16be(w.int(items[i], 0, 65535, i));
+    w.u16be(items[i], i);
   }
   w.leave();
 }
@@ -87,8 +87,8 @@ function readMotorTest(r) {
 }
 
 function writeMotorTest(w, m) {
-  w.u16be(w.int(m.motor_1, -32768, 32767, "motor_1"));
-  w.u16be(w.int(m.motor_2, -32768, 32767, "motor_2"));
+  w.i16be(m.motor_1, "motor_1");
+  w.i16be(m.motor_2, "motor_2");
 }
 
 /** Plan of MotorTest, for `readPayload` and `writePayload` of the runtime. */
@@ -102,9 +102,9 @@ function readStatus(r) {
 }
 
 function writeStatus(w, m) {
-  w.u16be(w.int(m.voltage, -32768, 32767, "voltage"));
-  w.u16be(w.int(m.current, -32768, 32767, "current"));
-  w.u16be(w.int(m.temperature, -32768, 32767, "temperature"));
+  w.i16be(m.voltage, "voltage");
+  w.i16be(m.current, "current");
+  w.i16be(m.temperature, "temperature");
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */

@@ -350,7 +350,7 @@ function readMotor(r: rt.Reader): Motor {
 }
 
 function writeMotor(w: rt.Writer, m: Motor): void {
-  w.u8(w.int(m.s, 0, 255, "s"));
+  w.u8(m.s, "s");
 }
 
 /** Plan of Motor, for `readPayload` and `writePayload` of the runtime. */
@@ -362,7 +362,7 @@ function readSteering(r: rt.Reader): Steering {
 }
 
 function writeSteering(w: rt.Writer, m: Steering): void {
-  w.u8(w.int(m.s, 0, 255, "s"));
+  w.u8(m.s, "s");
 }
 
 /** Plan of Steering, for `readPayload` and `writePayload` of the runtime. */
@@ -374,7 +374,7 @@ function readReflex(r: rt.Reader): Reflex {
 }
 
 function writeReflex(w: rt.Writer, m: Reflex): void {
-  w.u8(w.int(m.reflex, 0, 255, "reflex"));
+  w.u8(m.reflex, "reflex");
 }
 
 /** Plan of Reflex, for `readPayload` and `writePayload` of the runtime. */
@@ -386,7 +386,7 @@ function readPowerDown(r: rt.Reader): PowerDown {
 }
 
 function writePowerDown(w: rt.Writer, m: PowerDownInput): void {
-  w.u8(w.int(w.constant(m.code, 3, "code"), 0, 255, "code"));
+  w.u8(w.constant(m.code, 3, "code"), "code");
 }
 
 /** Plan of PowerDown, for `readPayload` and `writePayload` of the runtime. */
@@ -398,7 +398,7 @@ function readPower(r: rt.Reader): Power {
 }
 
 function writePower(w: rt.Writer, m: Power): void {
-  w.u8(w.int(m.code, 0, 255, "code"));
+  w.u8(m.code, "code");
 }
 
 /** Plan of Power, for `readPayload` and `writePayload` of the runtime. */
@@ -418,7 +418,7 @@ function writeLaser(w: rt.Writer, m: Laser): void {
   const items = w.list(m.readings, 0, 512, "readings");
   w.enter("readings");
   for (let i = 0; i < items.length; i++) {
-    w.u8(w.int(items[i], 0, 255, i));
+    w.u8(items[i], i);
   }
   w.leave();
 }

@@ -315,7 +315,7 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
   const items = w.list(m.distances, 5, 5, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.u8(w.int(items[i], 0, 255, i));
+    w.u8(items[i], i);
   }
   w.leave();
 }
@@ -356,13 +356,13 @@ function readOdometry(r: rt.Reader): Odometry {
 }
 
 function writeOdometry(w: rt.Writer, m: Odometry): void {
-  w.u16(w.int(m.right_count, 0, 65535, "right_count"));
-  w.u16(w.int(m.left_count, 0, 65535, "left_count"));
-  w.u16(w.int(m.quad_count, 0, 65535, "quad_count"));
-  w.u16(w.int(m.right_speed, -32768, 32767, "right_speed"));
-  w.u16(w.int(m.left_speed, -32768, 32767, "left_speed"));
-  w.u16(w.int(m.quad_speed, -32768, 32767, "quad_speed"));
-  w.u8(w.int(m.steer, -128, 127, "steer"));
+  w.u16(m.right_count, "right_count");
+  w.u16(m.left_count, "left_count");
+  w.u16(m.quad_count, "quad_count");
+  w.i16(m.right_speed, "right_speed");
+  w.i16(m.left_speed, "left_speed");
+  w.i16(m.quad_speed, "quad_speed");
+  w.i8(m.steer, "steer");
 }
 
 /** Plan of Odometry, for `readPayload` and `writePayload` of the runtime. */
@@ -376,9 +376,9 @@ function readBattery(r: rt.Reader): Battery {
 }
 
 function writeBattery(w: rt.Writer, m: Battery): void {
-  w.u8(w.int(m.main_battery, 0, 255, "main_battery"));
-  w.u8(w.int(m.motor_battery, 0, 255, "motor_battery"));
-  w.u32(w.int(m.idle, -2147483648, 2147483647, "idle"));
+  w.u8(m.main_battery, "main_battery");
+  w.u8(m.motor_battery, "motor_battery");
+  w.i32(m.idle, "idle");
 }
 
 /** Plan of Battery, for `readPayload` and `writePayload` of the runtime. */
@@ -391,8 +391,8 @@ function readCompass(r: rt.Reader): Compass {
 }
 
 function writeCompass(w: rt.Writer, m: Compass): void {
-  w.u16(w.int(m.x, -32768, 32767, "x"));
-  w.u16(w.int(m.y, -32768, 32767, "y"));
+  w.i16(m.x, "x");
+  w.i16(m.y, "y");
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
@@ -404,7 +404,7 @@ function readMotor(r: rt.Reader): Motor {
 }
 
 function writeMotor(w: rt.Writer, m: Motor): void {
-  w.u8(w.int(m.speed, -128, 127, "speed"));
+  w.i8(m.speed, "speed");
 }
 
 /** Plan of Motor, for `readPayload` and `writePayload` of the runtime. */
@@ -417,8 +417,8 @@ function readDrive(r: rt.Reader): Drive {
 }
 
 function writeDrive(w: rt.Writer, m: Drive): void {
-  w.u8(w.int(m.speed, -128, 127, "speed"));
-  w.u8(w.int(m.steer, 0, 255, "steer"));
+  w.i8(m.speed, "speed");
+  w.u8(m.steer, "steer");
 }
 
 /** Plan of Drive, for `readPayload` and `writePayload` of the runtime. */
@@ -430,7 +430,7 @@ function readSteering(r: rt.Reader): Steering {
 }
 
 function writeSteering(w: rt.Writer, m: Steering): void {
-  w.u8(w.int(m.position, 0, 255, "position"));
+  w.u8(m.position, "position");
 }
 
 /** Plan of Steering, for `readPayload` and `writePayload` of the runtime. */
@@ -442,7 +442,7 @@ function readPower(r: rt.Reader): Power {
 }
 
 function writePower(w: rt.Writer, m: Power): void {
-  w.u8(w.int(m.code, 0, 255, "code"));
+  w.u8(m.code, "code");
 }
 
 /** Plan of Power, for `readPayload` and `writePayload` of the runtime. */
@@ -455,8 +455,8 @@ function readGpsPosition(r: rt.Reader): GpsPosition {
 }
 
 function writeGpsPosition(w: rt.Writer, m: GpsPosition): void {
-  w.u32(w.int(m.latitude, -2147483648, 2147483647, "latitude"));
-  w.u32(w.int(m.longitude, -2147483648, 2147483647, "longitude"));
+  w.i32(m.latitude, "latitude");
+  w.i32(m.longitude, "longitude");
 }
 
 /** Plan of GpsPosition, for `readPayload` and `writePayload` of the runtime. */
@@ -476,7 +476,7 @@ function writeLaser(w: rt.Writer, m: Laser): void {
   const items = w.list(m.readings, 0, 512, "readings");
   w.enter("readings");
   for (let i = 0; i < items.length; i++) {
-    w.u8(w.int(items[i], 0, 255, i));
+    w.u8(items[i], i);
   }
   w.leave();
 }

@@ -435,9 +435,9 @@ function readSystemStatus(r: rt.Reader): SystemStatus {
 }
 
 function writeSystemStatus(w: rt.Writer, m: SystemStatus): void {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.battery_voltage, 0, 4294967295, "battery_voltage"));
-  w.u8(w.int(m.brake, 0, 255, "brake"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u32be(m.battery_voltage, "battery_voltage");
+  w.u8(m.brake, "brake");
 }
 
 /** Plan of SystemStatus, for `readPayload` and `writePayload` of the runtime. */
@@ -449,7 +449,7 @@ function readMotor00(r: rt.Reader): Motor00 {
 }
 
 function writeMotor00(w: rt.Writer, m: Motor00): void {
-  w.u8(w.int(m.unknown, 0, 255, "unknown"));
+  w.u8(m.unknown, "unknown");
 }
 
 /** Plan of Motor00, for `readPayload` and `writePayload` of the runtime. */
@@ -465,11 +465,11 @@ function readMotorCommand(r: rt.Reader): MotorCommand {
 }
 
 function writeMotorCommand(w: rt.Writer, m: MotorCommand): void {
-  w.u8(w.int(m.axis, 0, 255, "axis"));
-  w.u32be(w.int(m.velocity, 0, 4294967295, "velocity"));
-  w.u32be(w.int(m.acceleration, 0, 4294967295, "acceleration"));
-  w.u32be(w.int(m.torque, 0, 4294967295, "torque"));
-  w.u8(w.int(m.direction, 0, 255, "direction"));
+  w.u8(m.axis, "axis");
+  w.u32be(m.velocity, "velocity");
+  w.u32be(m.acceleration, "acceleration");
+  w.u32be(m.torque, "torque");
+  w.u8(m.direction, "direction");
 }
 
 /** Plan of MotorCommand, for `readPayload` and `writePayload` of the runtime. */
@@ -483,9 +483,9 @@ function readConfirmMotorCommand(r: rt.Reader): ConfirmMotorCommand {
 }
 
 function writeConfirmMotorCommand(w: rt.Writer, m: ConfirmMotorCommand): void {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.axis, 0, 255, "axis"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.axis, "axis");
 }
 
 /** Plan of ConfirmMotorCommand, for `readPayload` and `writePayload` of the runtime. */
@@ -516,8 +516,8 @@ function readMotor0cAnswer(r: rt.Reader): Motor0cAnswer {
 }
 
 function writeMotor0cAnswer(w: rt.Writer, m: Motor0cAnswer): void {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of Motor0cAnswer, for `readPayload` and `writePayload` of the runtime. */
@@ -544,13 +544,13 @@ function readReadMotor(r: rt.Reader): ReadMotor {
 }
 
 function writeReadMotor(w: rt.Writer, m: ReadMotor): void {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.axis, 0, 255, "axis"));
-  w.u32be(w.int(m.position, -2147483648, 2147483647, "position"));
-  w.u32be(w.int(m.velocity, -2147483648, 2147483647, "velocity"));
-  w.u32be(w.int(m.acceleration, -2147483648, 2147483647, "acceleration"));
-  w.u32be(w.int(m.torque, -2147483648, 2147483647, "torque"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.axis, "axis");
+  w.i32be(m.position, "position");
+  w.i32be(m.velocity, "velocity");
+  w.i32be(m.acceleration, "acceleration");
+  w.i32be(m.torque, "torque");
 }
 
 /** Plan of ReadMotor, for `readPayload` and `writePayload` of the runtime. */
@@ -563,8 +563,8 @@ function readStartStopMotorPackets(r: rt.Reader): StartStopMotorPackets {
 }
 
 function writeStartStopMotorPackets(w: rt.Writer, m: StartStopMotorPackets): void {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.start_stop, 0, 4294967295, "start_stop"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u32be(m.start_stop, "start_stop");
 }
 
 /** Plan of StartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -577,8 +577,8 @@ function readConfirmStartStopMotorPackets(r: rt.Reader): ConfirmStartStopMotorPa
 }
 
 function writeConfirmStartStopMotorPackets(w: rt.Writer, m: ConfirmStartStopMotorPackets): void {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of ConfirmStartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -602,10 +602,10 @@ function readJoystickData(r: rt.Reader): JoystickData {
 }
 
 function writeJoystickData(w: rt.Writer, m: JoystickData): void {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.horizontal, -2147483648, 2147483647, "horizontal"));
-  w.u32be(w.int(m.vertical, -2147483648, 2147483647, "vertical"));
-  w.u8(w.int(m.buttons, 0, 255, "buttons"));
+  w.u32be(m.timestamp, "timestamp");
+  w.i32be(m.horizontal, "horizontal");
+  w.i32be(m.vertical, "vertical");
+  w.u8(m.buttons, "buttons");
 }
 
 /** Plan of JoystickData, for `readPayload` and `writePayload` of the runtime. */
@@ -626,10 +626,10 @@ function readStartStopSonarPackets(r: rt.Reader): StartStopSonarPackets {
 }
 
 function writeStartStopSonarPackets(w: rt.Writer, m: StartStopSonarPackets): void {
-  w.u32be(w.int(m.frequency, 0, 4294967295, "frequency"));
-  w.u32be(w.int(m.unknown_1, 0, 4294967295, "unknown_1"));
-  w.u8(w.int(m.unknown_2, 0, 255, "unknown_2"));
-  w.u32be(w.int(m.start_stop, 0, 4294967295, "start_stop"));
+  w.u32be(m.frequency, "frequency");
+  w.u32be(m.unknown_1, "unknown_1");
+  w.u8(m.unknown_2, "unknown_2");
+  w.u32be(m.start_stop, "start_stop");
 }
 
 /** Plan of StartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -642,8 +642,8 @@ function readConfirmStartStopSonarPackets(r: rt.Reader): ConfirmStartStopSonarPa
 }
 
 function writeConfirmStartStopSonarPackets(w: rt.Writer, m: ConfirmStartStopSonarPackets): void {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of ConfirmStartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -667,15 +667,15 @@ function readSonarData(r: rt.Reader): SonarData {
 }
 
 function writeSonarData(w: rt.Writer, m: SonarDataInput): void {
-  w.u32be(w.int(m.unknown ?? 2, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.unknown ?? 2, "unknown");
+  w.u32be(m.timestamp, "timestamp");
   const items = w.list(m.readings, 0, 82, "readings");
   w.enter("readings");
   for (let i = 0; i < items.length; i++) {
     const item = w.record(items[i], i);
     w.enter(i);
-    w.u8(w.int(item.cluster, 0, 255, "cluster"));
-    w.u16be(w.int(item.distance, 0, 65535, "distance"));
+    w.u8(item.cluster, "cluster");
+    w.u16be(item.distance, "distance");
     w.leave();
   }
   w.leave();
@@ -690,7 +690,7 @@ function readInitializeDigitalIo(r: rt.Reader): InitializeDigitalIo {
 }
 
 function writeInitializeDigitalIo(w: rt.Writer, m: InitializeDigitalIo): void {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
+  w.u32be(m.unknown, "unknown");
 }
 
 /** Plan of InitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
@@ -703,8 +703,8 @@ function readConfirmInitializeDigitalIo(r: rt.Reader): ConfirmInitializeDigitalI
 }
 
 function writeConfirmInitializeDigitalIo(w: rt.Writer, m: ConfirmInitializeDigitalIo): void {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of ConfirmInitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
@@ -718,9 +718,9 @@ function readChangedBumpers(r: rt.Reader): ChangedBumpers {
 }
 
 function writeChangedBumpers(w: rt.Writer, m: ChangedBumpers): void {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.position, 0, 255, "position"));
-  w.u16be(w.int(m.value, 0, 65535, "value"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.position, "position");
+  w.u16be(m.value, "value");
 }
 
 /** Plan of ChangedBumpers, for `readPayload` and `writePayload` of the runtime. */
@@ -732,7 +732,7 @@ function readCheckIoChanged(r: rt.Reader): CheckIoChanged {
 }
 
 function writeCheckIoChanged(w: rt.Writer, m: CheckIoChanged): void {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of CheckIoChanged, for `readPayload` and `writePayload` of the runtime. */
@@ -751,9 +751,9 @@ function readCheckIoChangedAnswer(r: rt.Reader): CheckIoChangedAnswer {
 }
 
 function writeCheckIoChangedAnswer(w: rt.Writer, m: CheckIoChangedAnswer): void {
-  w.u32be(w.int(m.unknown, 0, 4294967295, "unknown"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.package_count, 0, 4294967295, "package_count"));
+  w.u32be(m.unknown, "unknown");
+  w.u32be(m.timestamp, "timestamp");
+  w.u32be(m.package_count, "package_count");
 }
 
 /** Plan of CheckIoChangedAnswer, for `readPayload` and `writePayload` of the runtime. */
@@ -767,9 +767,9 @@ function readChangedByte(r: rt.Reader): ChangedByte {
 }
 
 function writeChangedByte(w: rt.Writer, m: ChangedByte): void {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.position, 0, 255, "position"));
-  w.u16be(w.int(m.value, 0, 65535, "value"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.position, "position");
+  w.u16be(m.value, "value");
 }
 
 /** Plan of ChangedByte, for `readPayload` and `writePayload` of the runtime. */

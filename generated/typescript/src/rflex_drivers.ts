@@ -536,9 +536,9 @@ function readSystemStatus(r: rt.Reader): SystemStatus {
 }
 
 function writeSystemStatus(w: rt.Writer, m: SystemStatus): void {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.battery_voltage, 0, 4294967295, "battery_voltage"));
-  w.u8(w.int(m.brake, 0, 255, "brake"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u32be(m.battery_voltage, "battery_voltage");
+  w.u8(m.brake, "brake");
 }
 
 /** Plan of SystemStatus, for `readPayload` and `writePayload` of the runtime. */
@@ -553,10 +553,10 @@ function readLcdDump(r: rt.Reader): LcdDump {
 }
 
 function writeLcdDump(w: rt.Writer, m: LcdDumpInput): void {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.row, 0, 255, "row"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.row, "row");
   const byte_count = w.int(m.byte_count ?? rt.counted(m.pixels, 1, 0, 1), 0, 255, "byte_count");
-  w.u8(byte_count);
+  w.u8(byte_count, "byte_count");
   const count = byte_count;
   w.octets(m.pixels, count, count, false, "pixels");
 }
@@ -570,7 +570,7 @@ function readAxisGetSystem(r: rt.Reader): AxisGetSystem {
 }
 
 function writeAxisGetSystem(w: rt.Writer, m: AxisGetSystem): void {
-  w.u8(w.int(m.axis, 0, 255, "axis"));
+  w.u8(m.axis, "axis");
 }
 
 /** Plan of AxisGetSystem, for `readPayload` and `writePayload` of the runtime. */
@@ -586,11 +586,11 @@ function readMotorCommand(r: rt.Reader): MotorCommand {
 }
 
 function writeMotorCommand(w: rt.Writer, m: MotorCommand): void {
-  w.u8(w.int(m.axis, 0, 255, "axis"));
-  w.u32be(w.int(m.velocity, 0, 4294967295, "velocity"));
-  w.u32be(w.int(m.acceleration, 0, 4294967295, "acceleration"));
-  w.u32be(w.int(m.torque, 0, 4294967295, "torque"));
-  w.u8(w.int(m.direction, 0, 255, "direction"));
+  w.u8(m.axis, "axis");
+  w.u32be(m.velocity, "velocity");
+  w.u32be(m.acceleration, "acceleration");
+  w.u32be(m.torque, "torque");
+  w.u8(m.direction, "direction");
 }
 
 /** Plan of MotorCommand, for `readPayload` and `writePayload` of the runtime. */
@@ -604,9 +604,9 @@ function readConfirmMotorCommand(r: rt.Reader): ConfirmMotorCommand {
 }
 
 function writeConfirmMotorCommand(w: rt.Writer, m: ConfirmMotorCommand): void {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.axis, 0, 255, "axis"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.axis, "axis");
 }
 
 /** Plan of ConfirmMotorCommand, for `readPayload` and `writePayload` of the runtime. */
@@ -646,8 +646,8 @@ function readBrakeReleaseAnswer(r: rt.Reader): BrakeReleaseAnswer {
 }
 
 function writeBrakeReleaseAnswer(w: rt.Writer, m: BrakeReleaseAnswer): void {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of BrakeReleaseAnswer, for `readPayload` and `writePayload` of the runtime. */
@@ -674,13 +674,13 @@ function readReadMotor(r: rt.Reader): ReadMotor {
 }
 
 function writeReadMotor(w: rt.Writer, m: ReadMotor): void {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.axis, 0, 255, "axis"));
-  w.u32be(w.int(m.position, -2147483648, 2147483647, "position"));
-  w.u32be(w.int(m.velocity, -2147483648, 2147483647, "velocity"));
-  w.u32be(w.int(m.acceleration, -2147483648, 2147483647, "acceleration"));
-  w.u32be(w.int(m.torque, -2147483648, 2147483647, "torque"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.axis, "axis");
+  w.i32be(m.position, "position");
+  w.i32be(m.velocity, "velocity");
+  w.i32be(m.acceleration, "acceleration");
+  w.i32be(m.torque, "torque");
 }
 
 /** Plan of ReadMotor, for `readPayload` and `writePayload` of the runtime. */
@@ -693,8 +693,8 @@ function readStartStopMotorPackets(r: rt.Reader): StartStopMotorPackets {
 }
 
 function writeStartStopMotorPackets(w: rt.Writer, m: StartStopMotorPackets): void {
-  w.u32be(w.int(m.period, 0, 4294967295, "period"));
-  w.u32be(w.int(m.mask, 0, 4294967295, "mask"));
+  w.u32be(m.period, "period");
+  w.u32be(m.mask, "mask");
 }
 
 /** Plan of StartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -707,8 +707,8 @@ function readConfirmStartStopMotorPackets(r: rt.Reader): ConfirmStartStopMotorPa
 }
 
 function writeConfirmStartStopMotorPackets(w: rt.Writer, m: ConfirmStartStopMotorPackets): void {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of ConfirmStartStopMotorPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -732,10 +732,10 @@ function readJoystickData(r: rt.Reader): JoystickData {
 }
 
 function writeJoystickData(w: rt.Writer, m: JoystickData): void {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.horizontal, -2147483648, 2147483647, "horizontal"));
-  w.u32be(w.int(m.vertical, -2147483648, 2147483647, "vertical"));
-  w.u8(w.int(m.buttons, 0, 255, "buttons"));
+  w.u32be(m.timestamp, "timestamp");
+  w.i32be(m.horizontal, "horizontal");
+  w.i32be(m.vertical, "vertical");
+  w.u8(m.buttons, "buttons");
 }
 
 /** Plan of JoystickData, for `readPayload` and `writePayload` of the runtime. */
@@ -756,10 +756,10 @@ function readStartStopSonarPackets(r: rt.Reader): StartStopSonarPackets {
 }
 
 function writeStartStopSonarPackets(w: rt.Writer, m: StartStopSonarPackets): void {
-  w.u32be(w.int(m.echo_delay, 0, 4294967295, "echo_delay"));
-  w.u32be(w.int(m.ping_delay, 0, 4294967295, "ping_delay"));
-  w.u32be(w.int(m.set_delay, 0, 4294967295, "set_delay"));
-  w.u8(w.int(m.mode, 0, 255, "mode"));
+  w.u32be(m.echo_delay, "echo_delay");
+  w.u32be(m.ping_delay, "ping_delay");
+  w.u32be(m.set_delay, "set_delay");
+  w.u8(m.mode, "mode");
 }
 
 /** Plan of StartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -772,8 +772,8 @@ function readConfirmStartStopSonarPackets(r: rt.Reader): ConfirmStartStopSonarPa
 }
 
 function writeConfirmStartStopSonarPackets(w: rt.Writer, m: ConfirmStartStopSonarPackets): void {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of ConfirmStartStopSonarPackets, for `readPayload` and `writePayload` of the runtime. */
@@ -797,15 +797,15 @@ function readSonarData(r: rt.Reader): SonarData {
 }
 
 function writeSonarData(w: rt.Writer, m: SonarDataInput): void {
-  w.u32be(w.int(m.retval ?? 2, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.retval ?? 2, "retval");
+  w.u32be(m.timestamp, "timestamp");
   const items = w.list(m.readings, 0, 82, "readings");
   w.enter("readings");
   for (let i = 0; i < items.length; i++) {
     const item = w.record(items[i], i);
     w.enter(i);
-    w.u8(w.int(item.cluster, 0, 255, "cluster"));
-    w.u16be(w.int(item.distance, 0, 65535, "distance"));
+    w.u8(item.cluster, "cluster");
+    w.u16be(item.distance, "distance");
     w.leave();
   }
   w.leave();
@@ -820,7 +820,7 @@ function readInitializeDigitalIo(r: rt.Reader): InitializeDigitalIo {
 }
 
 function writeInitializeDigitalIo(w: rt.Writer, m: InitializeDigitalIo): void {
-  w.u32be(w.int(m.period, 0, 4294967295, "period"));
+  w.u32be(m.period, "period");
 }
 
 /** Plan of InitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
@@ -833,8 +833,8 @@ function readConfirmInitializeDigitalIo(r: rt.Reader): ConfirmInitializeDigitalI
 }
 
 function writeConfirmInitializeDigitalIo(w: rt.Writer, m: ConfirmInitializeDigitalIo): void {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of ConfirmInitializeDigitalIo, for `readPayload` and `writePayload` of the runtime. */
@@ -848,9 +848,9 @@ function readChangedBumpers(r: rt.Reader): ChangedBumpers {
 }
 
 function writeChangedBumpers(w: rt.Writer, m: ChangedBumpers): void {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.address, 0, 255, "address"));
-  w.u16be(w.int(m.data, 0, 65535, "data"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.address, "address");
+  w.u16be(m.data, "data");
 }
 
 /** Plan of ChangedBumpers, for `readPayload` and `writePayload` of the runtime. */
@@ -862,7 +862,7 @@ function readCheckIoChanged(r: rt.Reader): CheckIoChanged {
 }
 
 function writeCheckIoChanged(w: rt.Writer, m: CheckIoChanged): void {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
+  w.u32be(m.timestamp, "timestamp");
 }
 
 /** Plan of CheckIoChanged, for `readPayload` and `writePayload` of the runtime. */
@@ -876,9 +876,9 @@ function readCheckIoChangedAnswer(r: rt.Reader): CheckIoChangedAnswer {
 }
 
 function writeCheckIoChangedAnswer(w: rt.Writer, m: CheckIoChangedAnswer): void {
-  w.u32be(w.int(m.retval, 0, 4294967295, "retval"));
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u32be(w.int(m.package_count, 0, 4294967295, "package_count"));
+  w.u32be(m.retval, "retval");
+  w.u32be(m.timestamp, "timestamp");
+  w.u32be(m.package_count, "package_count");
 }
 
 /** Plan of CheckIoChangedAnswer, for `readPayload` and `writePayload` of the runtime. */
@@ -892,9 +892,9 @@ function readChangedByte(r: rt.Reader): ChangedByte {
 }
 
 function writeChangedByte(w: rt.Writer, m: ChangedByte): void {
-  w.u32be(w.int(m.timestamp, 0, 4294967295, "timestamp"));
-  w.u8(w.int(m.address, 0, 255, "address"));
-  w.u16be(w.int(m.data, 0, 65535, "data"));
+  w.u32be(m.timestamp, "timestamp");
+  w.u8(m.address, "address");
+  w.u16be(m.data, "data");
 }
 
 /** Plan of ChangedByte, for `readPayload` and `writePayload` of the runtime. */
@@ -919,12 +919,12 @@ function readIrRun(r: rt.Reader): IrRun {
 }
 
 function writeIrRun(w: rt.Writer, m: IrRun): void {
-  w.u32be(w.int(m.unknown_1, 0, 4294967295, "unknown_1"));
-  w.u32be(w.int(m.unknown_2, 0, 4294967295, "unknown_2"));
-  w.u32be(w.int(m.unknown_3, 0, 4294967295, "unknown_3"));
-  w.u32be(w.int(m.unknown_4, 0, 4294967295, "unknown_4"));
-  w.u32be(w.int(m.unknown_5, 0, 4294967295, "unknown_5"));
-  w.u8(w.int(m.mode, 0, 255, "mode"));
+  w.u32be(m.unknown_1, "unknown_1");
+  w.u32be(m.unknown_2, "unknown_2");
+  w.u32be(m.unknown_3, "unknown_3");
+  w.u32be(m.unknown_4, "unknown_4");
+  w.u32be(m.unknown_5, "unknown_5");
+  w.u8(m.mode, "mode");
 }
 
 /** Plan of IrRun, for `readPayload` and `writePayload` of the runtime. */

@@ -404,8 +404,8 @@ function readMoveManual(r: rt.Reader): MoveManual {
 }
 
 function writeMoveManual(w: rt.Writer, m: MoveManual): void {
-  w.uint(w.int(m.speed, -64, 63, "speed"), 1, 7, true, 128);
-  w.uint(w.int(m.arc, -64, 63, "arc"), 1, 7, true, 128);
+  w.sint(m.speed, 1, 7, true, 128, "speed");
+  w.sint(m.arc, 1, 7, true, 128, "arc");
 }
 
 /** Plan of MoveManual, for `readPayload` and `writePayload` of the runtime. */
@@ -418,8 +418,8 @@ function readMoveRelativeTwostep(r: rt.Reader): MoveRelativeTwostep {
 }
 
 function writeMoveRelativeTwostep(w: rt.Writer, m: MoveRelativeTwostep): void {
-  w.uint(w.int(m.angle, -8192, 8191, "angle"), 2, 14, false, 128);
-  w.uint(w.int(m.forward, -8192, 8191, "forward"), 2, 14, false, 128);
+  w.sint(m.angle, 2, 14, false, 128, "angle");
+  w.sint(m.forward, 2, 14, false, 128, "forward");
 }
 
 /** Plan of MoveRelativeTwostep, for `readPayload` and `writePayload` of the runtime. */
@@ -431,7 +431,7 @@ function readDecreasePhaseAngle(r: rt.Reader): DecreasePhaseAngle {
 }
 
 function writeDecreasePhaseAngle(w: rt.Writer, m: DecreasePhaseAngleInput): void {
-  w.uint(w.int(m.ignored ?? 0, 0, 127, "ignored"), 1, 7, true, 128);
+  w.uint(m.ignored ?? 0, 1, 7, true, 128, "ignored");
 }
 
 /** Plan of DecreasePhaseAngle, for `readPayload` and `writePayload` of the runtime. */
@@ -443,7 +443,7 @@ function readIncreasePhaseAngle(r: rt.Reader): IncreasePhaseAngle {
 }
 
 function writeIncreasePhaseAngle(w: rt.Writer, m: IncreasePhaseAngleInput): void {
-  w.uint(w.int(m.ignored ?? 0, 0, 127, "ignored"), 1, 7, true, 128);
+  w.uint(m.ignored ?? 0, 1, 7, true, 128, "ignored");
 }
 
 /** Plan of IncreasePhaseAngle, for `readPayload` and `writePayload` of the runtime. */
@@ -480,11 +480,11 @@ function writeMaintenance(w: rt.Writer, m: MaintenanceInput): void {
   const items = w.list(w.constant(m.magic, [66, 17, 122], "magic"), 3, 3, "magic");
   w.enter("magic");
   for (let i = 0; i < items.length; i++) {
-    w.uint(w.int(items[i], 0, 127, i), 1, 7, true, 128);
+    w.uint(items[i], 1, 7, true, 128, i);
   }
   w.leave();
   const operation = w.int(m.operation, 0, 127, "operation");
-  w.uint(operation, 1, 7, true, 128);
+  w.uint(operation, 1, 7, true, 128, "operation");
   const argument = m.argument;
   const selector = operation;
   if (selector === 82) {
@@ -493,7 +493,7 @@ function writeMaintenance(w: rt.Writer, m: MaintenanceInput): void {
   else if (selector === 83) {
     const run_motor_controller_flasher = w.record(argument, "argument");
     w.enter("argument");
-    w.uint(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), 1, 7, true, 128);
+    w.uint(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), 1, 7, true, 128, "motor_controller");
     w.leave();
   }
   else {
@@ -513,10 +513,10 @@ function readGyro(r: rt.Reader): Gyro {
 }
 
 function writeGyro(w: rt.Writer, m: Gyro): void {
-  w.uint(w.int(m.status, 0, 127, "status"), 1, 7, true, 128);
-  w.uint(w.int(m.int_x, -8192, 8191, "int_x"), 2, 14, true, 128);
-  w.uint(w.int(m.int_y, -8192, 8191, "int_y"), 2, 14, true, 128);
-  w.uint(w.int(m.int_z, -8192, 8191, "int_z"), 2, 14, true, 128);
+  w.uint(m.status, 1, 7, true, 128, "status");
+  w.sint(m.int_x, 2, 14, true, 128, "int_x");
+  w.sint(m.int_y, 2, 14, true, 128, "int_y");
+  w.sint(m.int_z, 2, 14, true, 128, "int_z");
 }
 
 /** Plan of Gyro, for `readPayload` and `writePayload` of the runtime. */
@@ -531,10 +531,10 @@ function readXcel(r: rt.Reader): Xcel {
 }
 
 function writeXcel(w: rt.Writer, m: Xcel): void {
-  w.uint(w.int(m.status, 0, 127, "status"), 1, 7, true, 128);
-  w.uint(w.int(m.int_x, -8192, 8191, "int_x"), 2, 14, true, 128);
-  w.uint(w.int(m.int_y, -8192, 8191, "int_y"), 2, 14, true, 128);
-  w.uint(w.int(m.int_z, -8192, 8191, "int_z"), 2, 14, true, 128);
+  w.uint(m.status, 1, 7, true, 128, "status");
+  w.sint(m.int_x, 2, 14, true, 128, "int_x");
+  w.sint(m.int_y, 2, 14, true, 128, "int_y");
+  w.sint(m.int_z, 2, 14, true, 128, "int_z");
 }
 
 /** Plan of Xcel, for `readPayload` and `writePayload` of the runtime. */
@@ -549,10 +549,10 @@ function readCompass(r: rt.Reader): Compass {
 }
 
 function writeCompass(w: rt.Writer, m: Compass): void {
-  w.uint(w.int(m.status, 0, 127, "status"), 1, 7, true, 128);
-  w.uint(w.int(m.avg_x, -8192, 8191, "avg_x"), 2, 14, true, 128);
-  w.uint(w.int(m.avg_y, -8192, 8191, "avg_y"), 2, 14, true, 128);
-  w.uint(w.int(m.avg_z, -8192, 8191, "avg_z"), 2, 14, true, 128);
+  w.uint(m.status, 1, 7, true, 128, "status");
+  w.sint(m.avg_x, 2, 14, true, 128, "avg_x");
+  w.sint(m.avg_y, 2, 14, true, 128, "avg_y");
+  w.sint(m.avg_z, 2, 14, true, 128, "avg_z");
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
@@ -570,11 +570,11 @@ function readLidar(r: rt.Reader): Lidar {
 }
 
 function writeLidar(w: rt.Writer, m: Lidar): void {
-  w.uint(w.int(m.status, 0, 127, "status"), 1, 7, true, 128);
+  w.uint(m.status, 1, 7, true, 128, "status");
   const items = w.list(m.distances, 360, 360, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.uint(w.int(items[i], 0, 16383, i), 2, 14, true, 128);
+    w.uint(items[i], 2, 14, true, 128, i);
   }
   w.leave();
 }
@@ -594,11 +594,11 @@ function readSonar(r: rt.Reader): Sonar {
 }
 
 function writeSonar(w: rt.Writer, m: Sonar): void {
-  w.uint(w.int(m.status, 0, 127, "status"), 1, 7, true, 128);
+  w.uint(m.status, 1, 7, true, 128, "status");
   const items = w.list(m.distances, 3, 3, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.uint(w.int(items[i], 0, 16383, i), 2, 14, true, 128);
+    w.uint(items[i], 2, 14, true, 128, i);
   }
   w.leave();
 }
@@ -614,9 +614,9 @@ function readFacing(r: rt.Reader): Facing {
 }
 
 function writeFacing(w: rt.Writer, m: FacingInput): void {
-  w.uint(w.int(m.status ?? 1, 0, 127, "status"), 1, 7, true, 128);
-  w.uint(w.int(m.heading, -8192, 8191, "heading"), 2, 14, true, 128);
-  w.uint(w.int(m.speed ?? 0, -8192, 8191, "speed"), 2, 14, true, 128);
+  w.uint(m.status ?? 1, 1, 7, true, 128, "status");
+  w.sint(m.heading, 2, 14, true, 128, "heading");
+  w.sint(m.speed ?? 0, 2, 14, true, 128, "speed");
 }
 
 /** Plan of Facing, for `readPayload` and `writePayload` of the runtime. */
@@ -630,9 +630,9 @@ function readOptflowIntegral(r: rt.Reader): OptflowIntegral {
 }
 
 function writeOptflowIntegral(w: rt.Writer, m: OptflowIntegralInput): void {
-  w.uint(w.int(m.status ?? 1, 0, 127, "status"), 1, 7, true, 128);
-  w.uint(w.int(m.int_x, -8192, 8191, "int_x"), 2, 14, false, 128);
-  w.uint(w.int(m.int_y, -8192, 8191, "int_y"), 2, 14, false, 128);
+  w.uint(m.status ?? 1, 1, 7, true, 128, "status");
+  w.sint(m.int_x, 2, 14, false, 128, "int_x");
+  w.sint(m.int_y, 2, 14, false, 128, "int_y");
 }
 
 /** Plan of OptflowIntegral, for `readPayload` and `writePayload` of the runtime. */
@@ -644,7 +644,7 @@ function readMotorControllerMessage(r: rt.Reader): MotorControllerMessage {
 }
 
 function writeMotorControllerMessage(w: rt.Writer, m: MotorControllerMessage): void {
-  w.uint(w.int(m.last_msg, 0, 16383, "last_msg"), 2, 14, false, 128);
+  w.uint(m.last_msg, 2, 14, false, 128, "last_msg");
 }
 
 /** Plan of MotorControllerMessage, for `readPayload` and `writePayload` of the runtime. */
@@ -659,10 +659,10 @@ function readDebugNumbers(r: rt.Reader): DebugNumbers {
 }
 
 function writeDebugNumbers(w: rt.Writer, m: DebugNumbers): void {
-  w.uint(w.ranged(w.int(m.dbg1, -17179869184, 17179869183, "dbg1"), -2147483648, 2147483647, [], "dbg1"), 5, 35, false, 128);
-  w.uint(w.ranged(w.int(m.dbg2, -17179869184, 17179869183, "dbg2"), -2147483648, 2147483647, [], "dbg2"), 5, 35, false, 128);
-  w.uint(w.ranged(w.int(m.dbg3, -17179869184, 17179869183, "dbg3"), -2147483648, 2147483647, [], "dbg3"), 5, 35, false, 128);
-  w.uint(w.ranged(w.int(m.dbg4, -17179869184, 17179869183, "dbg4"), -2147483648, 2147483647, [], "dbg4"), 5, 35, false, 128);
+  w.sint(w.ranged(w.int(m.dbg1, -17179869184, 17179869183, "dbg1"), -2147483648, 2147483647, [], "dbg1"), 5, 35, false, 128, "dbg1");
+  w.sint(w.ranged(w.int(m.dbg2, -17179869184, 17179869183, "dbg2"), -2147483648, 2147483647, [], "dbg2"), 5, 35, false, 128, "dbg2");
+  w.sint(w.ranged(w.int(m.dbg3, -17179869184, 17179869183, "dbg3"), -2147483648, 2147483647, [], "dbg3"), 5, 35, false, 128, "dbg3");
+  w.sint(w.ranged(w.int(m.dbg4, -17179869184, 17179869183, "dbg4"), -2147483648, 2147483647, [], "dbg4"), 5, 35, false, 128, "dbg4");
 }
 
 /** Plan of DebugNumbers, for `readPayload` and `writePayload` of the runtime. */

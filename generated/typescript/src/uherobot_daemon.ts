@@ -131,15 +131,15 @@ function readMotorsServosLeds(r: rt.Reader): MotorsServosLeds {
 }
 
 function writeMotorsServosLeds(w: rt.Writer, m: MotorsServosLeds): void {
-  w.u16be(w.ranged(w.int(m.right_motor, -32768, 32767, "right_motor"), -3200, 3200, [], "right_motor"));
-  w.u16be(w.ranged(w.int(m.left_motor, -32768, 32767, "left_motor"), -3200, 3200, [], "left_motor"));
+  w.i16be(w.ranged(w.int(m.right_motor, -32768, 32767, "right_motor"), -3200, 3200, [], "right_motor"), "right_motor");
+  w.i16be(w.ranged(w.int(m.left_motor, -32768, 32767, "left_motor"), -3200, 3200, [], "left_motor"), "left_motor");
   const items = w.list(m.servos, 8, 8, "servos");
   w.enter("servos");
   for (let i = 0; i < items.length; i++) {
-    w.u16be(w.ranged(w.int(items[i], 0, 65535, i), 0, 250, [], i));
+    w.u16be(w.ranged(w.int(items[i], 0, 65535, i), 0, 250, [], i), i);
   }
   w.leave();
-  w.u8(w.int(m.leds, 0, 255, "leds"));
+  w.u8(m.leds, "leds");
 }
 
 /** Plan of MotorsServosLeds, for `readPayload` and `writePayload` of the runtime. */
@@ -164,12 +164,12 @@ function readStatus(r: rt.Reader): Status {
 }
 
 function writeStatus(w: rt.Writer, m: StatusInput): void {
-  w.u16be(w.int(m.reserved ?? 0, -32768, 32767, "reserved"));
-  w.u16be(w.int(m.pcb_temperature, -32768, 32767, "pcb_temperature"));
-  w.u16be(w.int(m.cpu_current, 0, 65535, "cpu_current"));
-  w.u16be(w.int(m.cpu_voltage, 0, 65535, "cpu_voltage"));
-  w.u16be(w.int(m.motor_current, 0, 65535, "motor_current"));
-  w.u16be(w.int(m.motor_voltage, 0, 65535, "motor_voltage"));
+  w.i16be(m.reserved ?? 0, "reserved");
+  w.i16be(m.pcb_temperature, "pcb_temperature");
+  w.u16be(m.cpu_current, "cpu_current");
+  w.u16be(m.cpu_voltage, "cpu_voltage");
+  w.u16be(m.motor_current, "motor_current");
+  w.u16be(m.motor_voltage, "motor_voltage");
 }
 
 /** Plan of Status, for `readPayload` and `writePayload` of the runtime. */

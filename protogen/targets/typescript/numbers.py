@@ -55,7 +55,7 @@ def spelled(type_: Type, value: Constant | None) -> Data:
     return bool(value) if is_bool else integer(int(value), big=is_bigint(type_))
 
 
-def _sized(type_: Integer | Float) -> tuple[Data, ...]:
+def _sized(type_: Integer) -> tuple[Data, ...]:
     return type_.size, type_.bits, is_little(type_), 128 if is_seven(type_) else 256
 
 
@@ -105,44 +105,57 @@ def read_number(step: IntegerStep | FloatStep, at: Code, scope: Scope) -> Code:
     """The expression that reads a number."""
     type_ = step.type
     if isinstance(type_, Float):
-        if is_seven(type_):
-            return call("r.float7", type_.bits, is_little(type_), at)
-        return call(f"r.f{type_.bits}", is_little(type_), at)
+        return _call("r", type_, at)
     if isinstance(step, PartStep):
         found = call("r.bigPart" if is_bigint(type_) else "r.part", step.part, at)
         found = Code(f"{found} !== 0") if type_.role == "bool" else found
+    elif type_.text is not None:
+        kind, form = _text(type_, scope)
+        found = call(f"rt.read{'Big' if is_bigint(type_) else ''}{kind}", Code("r"), form, at)
     else:
-        found = _read(type_, at, scope)
+        found = _call("r", type_, at)
     return closed("r", type_, found, at, scope)
 
 
-def _read(type_: Integer, at: Code, scope: Scope) -> Code:
-    if type_.role == "bool":
-        return call("r.bool", at)
-    if type_.text is not None:
-        kind, form = _text(type_, scope)
-        return call(f"rt.read{'Big' if is_bigint(type_) else ''}{kind}", Code("r"), form, at)
-    if plain := _plain(type_):
-        return call(f"r.{'i' if type_.signed else 'u'}{plain}", at)
-    kind = f"{'s' if type_.signed else 'u'}{'big' if is_bigint(type_) else 'int'}"
-    return call(f"r.{kind}", *_sized(type_), at)
-
-
 def write_number(step: IntegerStep | FloatStep, value: Code, at: Code, scope: Scope) -> Code:
-    """The expression that writes a checked value."""
+    """The expression that writes a value; it has to be checked unless `is_checked`."""
     type_ = step.type
     if isinstance(step, PartStep):
         return call("w.part", step.part, value)
-    if isinstance(type_, Float):
-        return call("w.float", value, *_sized(type_)[1:])
-    if type_.role == "bool":
-        return call("w.u8", value)
-    if type_.text is not None:
+    if isinstance(type_, Integer) and type_.text is not None:
         kind, form = _text(type_, scope)
         return call(f"rt.write{kind}", Code("w"), value, form, at)
-    if (plain := _plain(type_)) and not is_bigint(type_):
-        return call(f"w.u{plain}", value)
-    return call("w.ubig" if is_bigint(type_) else "w.uint", value, *_sized(type_))
+    if isinstance(type_, Integer) and is_bigint(type_):
+        return call("w.ubig", value, *_sized(type_))
+    return _call("w", type_, value, at)
+
+
+def _call(by: str, type_: Integer | Float, *around: Code) -> Code:
+    """What reads or writes whole bytes; it is given a value, if it writes one, and the path."""
+    *value, at = around
+    how: list[Data] = []
+    if isinstance(type_, Float):
+        name, how = f"f{type_.bits}", [is_little(type_)]
+        if is_seven(type_):
+            name, how = "float7", [type_.bits, *how]
+    elif type_.role == "bool":
+        name = "bool"
+    elif plain := _plain(type_):
+        name = f"{'i' if type_.signed else 'u'}{plain}"
+    else:
+        name = f"{'s' if type_.signed else 'u'}{'big' if is_bigint(type_) else 'int'}"
+        how = [*_sized(type_)]
+    return call(f"{by}.{name}", *value, *how, at)
+
+
+def is_checked(step: IntegerStep | FloatStep) -> bool:
+    """True if what writes a value checks all of it."""
+    type_ = step.type
+    if isinstance(type_, Integer) and type_.role != "bool":
+        is_closed = type_.enum is not None and type_.enum.closed
+        if type_.text is not None or is_bigint(type_) or is_closed:
+            return False
+    return not step.field.ranged and not isinstance(step, PartStep)
 
 
 def check_number(step: IntegerStep | FloatStep, value: str, at: Code, scope: Scope) -> Code:

@@ -46,6 +46,7 @@ from protogen.targets.typescript.numbers import (
     check_number,
     closed,
     is_bigint,
+    is_checked,
     is_seven,
     read_number,
     spelled,
@@ -180,7 +181,8 @@ class PayloadFunction:
         scope = self._scope
         if self._reads:
             return read_number(step, at, scope)
-        value = check_number(step, value, at, scope)
+        if not is_checked(step):
+            value = check_number(step, value, at, scope)
         scope.add(f"{write_number(step, value, at, scope)};")
         return _NOTHING
 

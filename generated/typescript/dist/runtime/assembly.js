@@ -1,59 +1,11 @@
-/** Frames from their parts. */
-import { concatenated, equal, hasHighBit } from "./bytes.js";
-import { Cut, dueOf, verdictOn } from "./candidate.js";
+/** Frames from their parts: what is always the same, and what each frame has anew. */
+import { equal, hasHighBit } from "./bytes.js";
+import { Cut, verdictOn } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { EncodeError } from "./errors.js";
-import { areAmong, at, ownOf } from "./plan.js";
-import { numbersOf, payloadOf, writerOf } from "./sender.js";
-/** The frame of a message. Throws an EncodeError. */
-export function frameOf(sender, message, value, given, strict) {
-    const { headSize } = sender.frame;
-    const made = payloadOf(message, value, strict, headSize);
-    const size = sender.trimmed(made.bytes, headSize, made.size - headSize);
-    const parts = message.held.length ? withHeld(given, made.held) : given;
-    const values = new Array(sender.frame.slots);
-    identityOf(sender, message, parts, values);
-    return encodeFrame(sender, made, size, parts, values, strict);
-}
-/** The parts that callers give, and those that are fields. Throws an EncodeError if they differ. */
-function withHeld(given, held) {
-    for (const [name, value] of Object.entries(held)) {
-        const own = ownOf(given, name) ?? null;
-        // A number may be given for a bigint, and a bigint for a number.
-        const isSame = (typeof own === "number" || typeof own === "bigint") && own == value;
-        if (own !== null && !isSame) {
-            throw new EncodeError(name, `is ${value}, as the message says, and not ${String(own)}`);
-        }
-    }
-    return { ...given, ...held };
-}
-/** Set the identity of a message: what callers give, or the first one. */
-function identityOf(sender, message, given, values) {
-    for (let index = 0; index < sender.identityParts.length; index++) {
-        const { name, slot, number } = sender.identityParts[index];
-        const runs = message.identities[index];
-        const own = ownOf(given, name);
-        values[slot] = runs[0][0];
-        if (own === undefined || own === null)
-            continue;
-        const chosen = givenTo(number, own, name);
-        if (!areAmong([runs], [chosen])) {
-            throw new EncodeError(name, `${chosen} is not an identity of ${message.name}`);
-        }
-        values[slot] = chosen;
-    }
-}
-/** The frame of an unknown message, whose identity is given. Throws an EncodeError. */
-export function unknownFrameOf(sender, payload, given) {
-    const values = new Array(sender.frame.slots);
-    for (const { name, slot, number } of sender.identityParts) {
-        values[slot] = givenTo(number, ownOf(given, name), name);
-    }
-    const writer = writerOf(false, sender.frame.headSize);
-    const place = writer.room(payload.length);
-    writer.bytes.set(payload, place);
-    return encodeFrame(sender, writer, payload.length, given, values, false);
-}
+import { inside, Layout, put } from "./layout.js";
+import { areAmong, ownOf } from "./plan.js";
+import { writeMessage, writerOf } from "./sender.js";
 function givenTo(number, value, name) {
     if (!number) {
         if (typeof value === "number" && Number.isInteger(value))
@@ -67,225 +19,250 @@ function givenTo(number, value, name) {
         throw inside(error, name);
     }
 }
-function inside(error, name) {
-    return error instanceof EncodeError ? new EncodeError(name, error.problem) : error;
-}
-function encodeFrame(sender, writer, size, given, values, strict) {
-    const { valueParts } = sender;
-    for (const name of Object.keys(given)) {
-        if (!sender.given.has(name) && given[name] !== undefined && given[name] !== null) {
-            throw new EncodeError(name, "there is no such part");
+/** A part whose value callers may give, or have to. */
+class GivenPart {
+    constructor(part) {
+        this.part = part;
+        /** Bounds of the numbers that need no other check; there are none where it is no number. */
+        this.least = Infinity;
+        this.greatest = -Infinity;
+        const { least, greatest, values, between } = part;
+        this.name = part.name;
+        this.slot = part.slot;
+        this.isInherited = this.name in Object.prototype;
+        if (typeof least !== "number" || typeof greatest !== "number")
+            return;
+        if (values === undefined && between === undefined) {
+            this.least = least;
+            this.greatest = greatest;
         }
     }
-    for (const part of valueParts)
-        values[part.slot] = valueOf(part, ownOf(given, part.name), strict);
-    const wire = new Assembly(sender, values, writer, size).wire();
-    const { frame } = sender;
-    if (frame.isBounded && wire.length > frame.greatest) {
-        const problem = `makes a frame of ${wire.length} bytes, at most ${frame.greatest} are allowed`;
-        throw new EncodeError("payload", problem);
+    /** What a caller gives for it. */
+    own(given) {
+        return this.isInherited ? ownOf(given, this.name) : given[this.name];
     }
-    if (frame.cutAmbiguous || !sender.group(values)) {
-        const payload = writer.bytes.slice(frame.headSize, frame.headSize + size);
-        checkCut(sender, wire, payload, values);
-    }
-    return wire;
-}
-function valueOf(part, given, strict) {
-    const isGiven = given !== undefined && given !== null;
-    if (!isGiven && part.default === null) {
-        const advice = part.isCounter ? ", or use an Encoder, which counts" : "";
-        throw new EncodeError(part.name, `the value is missing; give it as a part${advice}`);
-    }
-    const value = isGiven ? givenTo(part.number, given, part.name) : part.default;
-    if (!strict && !part.isHeld)
+    /** The value of what a caller gives. Throws an EncodeError. */
+    given(own, strict) {
+        if (typeof own === "number" && own >= this.least && own <= this.greatest) {
+            if (Number.isInteger(own))
+                return own;
+        }
+        const { part } = this;
+        const value = givenTo(part.number, own, part.name);
+        if (!strict && !part.isHeld) {
+            // A layout takes bytes as they are, so what does not fit them is refused here.
+            put(part.number, value, new Uint8Array(part.number.size), 0, part.name);
+            return value;
+        }
+        if (strict && typeof own === "string" && /[^\0-\x7f]/.test(own)) {
+            throw new EncodeError(part.name, `"${own}" has a character that is not ASCII`);
+        }
+        if (!mayBe(part, value))
+            throw new EncodeError(part.name, `it can't be ${value}`);
         return value;
-    if (strict && typeof given === "string" && /[^\0-\x7f]/.test(given)) {
-        throw new EncodeError(part.name, `"${given}" has a character that is not ASCII`);
     }
-    if (!mayBe(part, value))
-        throw new EncodeError(part.name, `it can't be ${value}`);
-    return value;
+    /** The value where a caller gives none; null where there has to be one. */
+    usual(counts) {
+        const { name, isCounter, default: usual } = this.part;
+        return (isCounter ? counts?.get(name) : null) ?? usual;
+    }
+    /** The error where there is no value. */
+    error() {
+        const advice = this.part.isCounter ? ", or use an Encoder, which counts" : "";
+        return new EncodeError(this.name, `the value is missing; give it as a part${advice}`);
+    }
+    /** Go on counting, where the callers gave no value. */
+    count(given, counts) {
+        const { name, isCounter, least, greatest } = this.part;
+        if (!isCounter || (this.own(given) ?? null) !== null)
+            return;
+        const value = counts.get(name);
+        counts.set(name, value >= greatest ? least : Number(value) + 1);
+    }
 }
-/** Throw an EncodeError unless a decoder takes exactly these bytes for the frame. */
-function checkCut(sender, wire, payload, values) {
-    const told = [...values];
-    sender.tellSize(told, payload.length);
-    const [verdict] = verdictOn(sender, wire, told);
-    if (verdict.size < wire.length) {
-        const problem = `a decoder would end the frame behind ${verdict.size} of its bytes`;
-        throw new EncodeError("payload", problem);
-    }
-    if (!(verdict instanceof Cut) || !equal(verdict.payload, payload)) {
-        throw new EncodeError("payload", "a decoder would not find it in the frame");
-    }
-}
-/** The bytes of one frame's parts. A checksum or a length is worked out when it is needed. */
+/** What makes the frames of a sender, one after another. */
 class Assembly {
-    constructor(sender, values, writer, payload) {
+    constructor(sender) {
         this.sender = sender;
-        this.values = values;
-        this.payload = payload;
-        const { offsets, offsetsEmpty, frame } = sender;
-        this.offsets = payload ? offsets : offsetsEmpty;
-        this.isMade = new Array(frame.parts.length);
-        writer.room(frame.tailSize);
-        this.content = writer.bytes;
+        this.makers = new Map();
+        this.full = new Layout(sender, false);
+        this.empty = new Layout(sender, true);
+        this.values = new Array(sender.frame.slots).fill(undefined);
+        this.parts = sender.valueParts.map((part) => new GivenPart(part));
     }
-    /** Where a part begins; the part behind the last one, where the content ends. */
-    place(index) {
-        const isBehind = index > this.sender.frame.payloadIndex;
-        return this.offsets[index] + (isBehind ? this.payload : 0);
+    maker(message) {
+        let found = this.makers.get(message);
+        if (!found)
+            this.makers.set(message, (found = new FrameMaker(this, message)));
+        return found;
     }
-    wire() {
-        const { frame } = this.sender;
-        const isHeld = this.sender.length !== null || frame.isBounded;
-        if (isHeld && this.payload > frame.greatestPayload) {
-            const problem = `has ${this.payload} bytes, at most ${frame.greatestPayload} fit`;
-            throw new EncodeError("payload", problem);
+    /**
+     * Set the values of a frame to what callers give, and to what is usual where they give nothing.
+     *
+     * True if they give an identity. Throws an EncodeError.
+     */
+    take(identity, given, strict, counts) {
+        const { values, parts } = this;
+        const { identityParts } = this.sender;
+        for (let index = 0; index < identityParts.length; index++) {
+            values[identityParts[index].slot] = identity[index];
         }
-        const { headSize, end } = frame;
-        if (frame.sevenBit && hasHighBit(this.content, headSize, headSize + this.payload)) {
-            throw new EncodeError("payload", "a byte has its most significant bit set");
-        }
-        if (this.sender.toldLength)
-            this.length(this.sender.toldLength);
-        const size = this.place(frame.parts.length);
-        this.complete(0, size);
-        const region = this.region();
-        return region
-            ? frame.transparency.put(this.content, size, ...region, end)
-            : concatenated([this.content.slice(0, size), end]);
-    }
-    /** Bounds of what is stuffed; null where nothing is. */
-    region() {
-        const { parts, firstStuffed, lastStuffed, transparency } = this.sender.frame;
-        if (!transparency)
-            return null;
-        const stuffed = this.payload ? [] : parts.slice(firstStuffed, lastStuffed + 1);
-        if (!this.payload && stuffed.every((part) => part.isOptional === true))
-            return null;
-        return [this.place(firstStuffed), this.place(lastStuffed + 1)];
-    }
-    /** Make all parts of some content. */
-    complete(from, to) {
-        const { parts } = this.sender.frame;
+        let left = 0;
+        for (const _name in given)
+            left++;
+        let missing = null;
         for (let index = 0; index < parts.length; index++) {
-            if (this.isMade[index])
-                continue;
-            const start = this.place(index);
-            if (start >= to || this.place(index + 1) <= from)
-                continue;
-            this.isMade[index] = true;
-            this.make(parts[index], start);
-        }
-    }
-    /** Content, all of whose parts are made. */
-    bytes(from, to) {
-        this.complete(from, to);
-        return this.content.slice(from, to);
-    }
-    make(part, place) {
-        if (part.kind === "literal") {
-            for (let index = 0; index < part.size; index++)
-                this.content[place + index] = part.bytes[index];
-        }
-        else if (part.kind === "bits")
-            this.makeBits(part, place);
-        else if (part.kind === "sum") {
-            const { number, name } = this.sender.frame.sums[part.sum];
-            this.put(number, this.sum(part.sum), place, name);
-        }
-        else if (part.kind === "number") {
-            const { part: item } = part;
-            const value = item.kind === "length" ? this.length(item) : this.values[item.slot];
-            this.put(item.number, value, place, item.name);
-        }
-    }
-    put(number, value, place, name) {
-        try {
-            number.encode(value, this.content, place);
-        }
-        catch (error) {
-            throw inside(error, name);
-        }
-    }
-    makeBits(part, place) {
-        let joined = part.fixed;
-        const scratch = new Uint8Array(part.size);
-        const add = (number, value, name) => {
-            try {
-                number.encode(value, scratch, 0);
+            const part = parts[index];
+            const own = part.own(given);
+            if (own !== undefined && own !== null) {
+                values[part.slot] = part.given(own, strict);
+                left--;
             }
-            catch (error) {
-                throw inside(error, name);
+            else {
+                const usual = part.usual(counts);
+                values[part.slot] = usual ?? undefined;
+                if (usual === null)
+                    missing ?? (missing = part);
             }
-            joined |= BigInt(part.number.decode(scratch, 0));
-        };
-        for (const item of part.members) {
-            add(item.number, this.numberAt(item.slot), item.name);
         }
-        for (const index of part.sums) {
-            const item = this.sender.frame.sums[index];
-            add(item.number, this.sum(index), item.name);
-        }
-        for (const item of part.mirrors) {
-            const flipped = BigInt(this.numberAt(item.of)) ^ item.flips;
-            add(item.number, Number(flipped), item.name);
-        }
-        this.put(part.number, joined, place, part.name);
+        const isOther = left !== 0 && this.takeIdentity(given);
+        if (missing)
+            throw missing.error();
+        return isOther;
     }
-    /** The number of a slot: one that is given, or a length. */
-    numberAt(slot) {
-        const found = this.values[slot];
-        if (found !== undefined)
-            return found;
-        const lengths = numbersOf(this.sender.frame.parts).filter((item) => item.kind === "length");
-        return this.length(lengths.find((item) => item.slot === slot));
-    }
-    length(part) {
-        const size = this.payload;
-        let value = part.base + (size ? size + part.optional : 0);
-        const region = part.overWire ? this.region() : null;
-        if (region) {
-            const plain = this.bytes(...region);
-            value += this.sender.frame.transparency.encode(plain).length - plain.length;
+    /** The same of what callers give of the identity; nothing else is left. */
+    takeIdentity(given) {
+        let isGiven = false;
+        for (const [name, own] of Object.entries(given)) {
+            if (own === undefined || own === null)
+                continue;
+            if (this.parts.some((part) => part.name === name))
+                continue;
+            const part = this.sender.identityParts.find((item) => item.name === name);
+            if (!part)
+                throw new EncodeError(name, "there is no such part");
+            this.values[part.slot] = givenTo(part.number, own, name);
+            isGiven = true;
         }
-        if (value < part.least || value > part.greatest) {
-            const problem = `makes ${part.name} ${value}, not in ${part.least}..${part.greatest}`;
+        return isGiven;
+    }
+    /** The frame around a payload of so many bytes, which was written. Throws an EncodeError. */
+    wire(writer, size) {
+        const { frame } = this.sender;
+        const wire = (size ? this.full : this.empty).wire(writer, size, this.values);
+        if (frame.isBounded && wire.length > frame.greatest) {
+            const { greatest } = frame;
+            const problem = `makes a frame of ${wire.length} bytes, at most ${greatest} are allowed`;
             throw new EncodeError("payload", problem);
         }
-        return value;
+        return wire;
     }
-    sum(index) {
-        const sum = this.sender.frame.sums[index];
-        const [first] = sum.covers;
-        if (sum.covers.length === 1 && first && "from" in first && !first.stuffed) {
-            const { headSize } = this.sender.frame;
-            const from = at(first.from, headSize, this.payload);
-            const to = at(first.to, headSize, this.payload);
-            this.complete(from, to);
-            return dueOf(sum, sum.algorithm.compute(this.content, from, to));
+    /** Throw an EncodeError unless a decoder takes exactly these bytes for the frame. */
+    check(wire, payload) {
+        const told = [...this.values];
+        this.sender.tellSize(told, payload.length);
+        const [verdict] = verdictOn(this.sender, wire, told);
+        if (verdict.size < wire.length) {
+            const problem = `a decoder would end the frame behind ${verdict.size} of its bytes`;
+            throw new EncodeError("payload", problem);
         }
-        const pieces = sum.covers.map((covered) => this.covered(covered, sum.name));
-        const joined = concatenated(pieces);
-        return dueOf(sum, sum.algorithm.compute(joined, 0, joined.length));
-    }
-    covered(covered, name) {
-        if ("bytes" in covered)
-            return covered.bytes;
-        if ("virtual" in covered) {
-            const bytes = this.sender.virtual(covered.virtual, this.values);
-            if (bytes)
-                return bytes;
-            const part = this.sender.frame.virtual[covered.virtual];
-            const problem = `has no value for an unknown identity, and ${name} covers it`;
-            throw new EncodeError(part.name, problem);
+        if (!(verdict instanceof Cut) || !equal(verdict.payload, payload)) {
+            throw new EncodeError("payload", "a decoder would not find it in the frame");
         }
-        const { headSize } = this.sender.frame;
-        const size = this.payload;
-        const from = at(covered.from, headSize, size);
-        const plain = this.bytes(from, at(covered.to, headSize, size));
-        return covered.stuffed ? this.sender.frame.transparency.encode(plain) : plain;
     }
+}
+/** Makes the frames of a message. */
+export class FrameMaker {
+    constructor(assembly, message) {
+        this.assembly = assembly;
+        this.message = message;
+        const { sender, values } = assembly;
+        const { least, greatest } = message.sizes;
+        const { transparency, kept, cutAmbiguous } = sender.frame;
+        this.identity = message.identities.map((runs) => runs[0][0]);
+        sender.identityParts.forEach(({ slot }, index) => (values[slot] = this.identity[index]));
+        this.isDoubtful = cutAmbiguous || !sender.group(values);
+        const isFixed = least === greatest && !transparency && kept === null;
+        this.size = isFixed ? least + (least ? assembly.full : assembly.empty).size : 0;
+    }
+    get sender() {
+        return this.assembly.sender;
+    }
+    /**
+     * The frame of a message with the values of parts that callers give.
+     *
+     * Counters that they do not give are those of `counts`, which go on. Throws an EncodeError.
+     */
+    make(value, given, strict, counts = null) {
+        const { assembly, message, sender } = this;
+        const { headSize } = sender.frame;
+        const writer = writerOf(strict, headSize, this.size);
+        writeMessage(message, writer, value);
+        const size = sender.trimmed(writer.bytes, headSize, writer.size - headSize);
+        const parts = message.held.length ? withHeld(given, writer.held) : given;
+        let isDoubtful = this.isDoubtful;
+        if (assembly.take(this.identity, parts, strict, counts))
+            isDoubtful = this.checkIdentity();
+        const wire = assembly.wire(writer, size);
+        if (isDoubtful)
+            assembly.check(wire, writer.bytes.slice(headSize, headSize + size));
+        if (counts)
+            for (const part of assembly.parts)
+                part.count(given, counts);
+        return wire;
+    }
+    /** True if a decoder could take a frame of a given identity for another one. */
+    checkIdentity() {
+        const { sender, values } = this.assembly;
+        sender.identityParts.forEach(({ name, slot }, index) => {
+            const value = values[slot];
+            if (areAmong([this.message.identities[index]], [value]))
+                return;
+            throw new EncodeError(name, `${value} is not an identity of ${this.message.name}`);
+        });
+        return sender.frame.cutAmbiguous || !sender.group(values);
+    }
+}
+/** The parts that callers give, and those that are fields. Throws an EncodeError if they differ. */
+function withHeld(given, held) {
+    for (const [name, value] of Object.entries(held)) {
+        const own = ownOf(given, name) ?? null;
+        // A number may be given for a bigint, and a bigint for a number.
+        const isSame = (typeof own === "number" || typeof own === "bigint") && own == value;
+        if (own !== null && !isSame) {
+            throw new EncodeError(name, `is ${value}, as the message says, and not ${String(own)}`);
+        }
+    }
+    return { ...given, ...held };
+}
+const ASSEMBLIES = /* @__PURE__ */ new WeakMap();
+function assemblyOf(sender) {
+    let found = ASSEMBLIES.get(sender);
+    if (!found)
+        ASSEMBLIES.set(sender, (found = new Assembly(sender)));
+    return found;
+}
+/** What makes the frames of a message that the sender sends. */
+export function makerOf(sender, message) {
+    return assemblyOf(sender).maker(message);
+}
+/** The frame of an unknown message, whose identity is given. Throws an EncodeError. */
+export function unknownFrameOf(sender, payload, given) {
+    const assembly = assemblyOf(sender);
+    const { headSize } = sender.frame;
+    assembly.take([], given, false, null);
+    for (const { name, slot, number } of sender.identityParts) {
+        if (assembly.values[slot] === undefined)
+            givenTo(number, undefined, name);
+    }
+    if (sender.frame.sevenBit && hasHighBit(payload, 0, payload.length)) {
+        throw new EncodeError("payload", "a byte has its most significant bit set");
+    }
+    const writer = writerOf(false, headSize);
+    const place = writer.room(payload.length);
+    writer.bytes.set(payload, place);
+    const wire = assembly.wire(writer, payload.length);
+    if (sender.frame.cutAmbiguous || !sender.group(assembly.values))
+        assembly.check(wire, payload);
+    return wire;
 }

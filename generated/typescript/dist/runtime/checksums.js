@@ -4,7 +4,8 @@ function folded(width, folding, isSum) {
     const size = folding.words === undefined ? 1 : width / 8;
     const little = folding.words === "little";
     const { init = 0, xorout = 0, mask: kept = mask, add = 0, negated = false } = folding;
-    const hasWords = size > 1;
+    // As an integer of 32 bits: its negative bits are those above, too.
+    const bits = mask | 0;
     function wordOf(bytes, at, to) {
         let word = 0;
         for (let index = 0; index < size; index++) {
@@ -13,30 +14,40 @@ function folded(width, folding, isSum) {
         }
         return word;
     }
-    function compute(bytes, from, to) {
-        let register = init;
-        if (hasWords) {
-            for (let at = from; at < to; at += size) {
-                const word = wordOf(bytes, at, to);
-                register = isSum ? (register + word) % (mask + 1) : (register ^ word) >>> 0;
-            }
-        }
-        else if (isSum) {
-            for (let at = from; at < to; at++)
-                register += bytes[at];
-            register %= mask + 1;
-        }
-        else {
+    function result(register) {
+        const folded = (negated ? -register : register) & bits;
+        return ((((folded ^ xorout) & kept) + add) & bits) >>> 0;
+    }
+    if (size > 1) {
+        return {
+            compute(bytes, from, to) {
+                let register = init;
+                for (let at = from; at < to; at += size) {
+                    const word = wordOf(bytes, at, to);
+                    register = (isSum ? register + word : register ^ word) >>> 0;
+                }
+                return result(register);
+            },
+        };
+    }
+    if (isSum) {
+        return {
+            compute(bytes, from, to) {
+                let register = init;
+                for (let at = from; at < to; at++)
+                    register = (register + bytes[at]) | 0;
+                return result(register);
+            },
+        };
+    }
+    return {
+        compute(bytes, from, to) {
+            let register = init;
             for (let at = from; at < to; at++)
                 register ^= bytes[at];
-            register >>>= 0;
-        }
-        if (negated)
-            register = (mask + 1 - register) % (mask + 1);
-        const result = ((((register ^ xorout) >>> 0) & kept) >>> 0) + add;
-        return result % (mask + 1);
-    }
-    return { compute };
+            return result(register);
+        },
+    };
 }
 /** The exclusive or of all bytes or words. */
 export function xor(width = 8, folding = {}) {

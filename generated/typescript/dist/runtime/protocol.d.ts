@@ -1,7 +1,7 @@
 /** The codec of a protocol: encode, decode, and an encoder that counts. */
 import { type GivenParts } from "./assembly.js";
 import { type Framed } from "./events.js";
-import { type Frame } from "./plan.js";
+import type { Frame } from "./plan.js";
 import { Sender } from "./sender.js";
 import { type Telling } from "./told.js";
 /** Choices of an encoder. */
@@ -49,14 +49,16 @@ export declare class Protocol {
     decode(frame: Uint8Array, options?: DecodeOptions): any;
     /** The frame of a message. Throws an EncodeError. */
     encode(message: NamedMessage, options?: EncodeOptions<object>): Uint8Array;
-    /** An endpoint that sends the message, in the forms that carry it. */
-    private sendersOf;
+    /** What makes the frames of a message: an endpoint that sends it, in the forms that carry it. */
+    private makers;
     private choose;
 }
 /** Makes the frames of one endpoint, one after another, and advances their counters. */
 export declare class Encoder<Message extends NamedMessage = NamedMessage, Parts = GivenParts> {
     private readonly senders;
-    private readonly next;
+    private readonly counts;
+    /** By the names of messages. */
+    private readonly known;
     constructor(protocol: Protocol, sender: string);
     /**
      * The frame of a message, with the next value of each counter that `parts` does not give.
@@ -64,4 +66,5 @@ export declare class Encoder<Message extends NamedMessage = NamedMessage, Parts 
      * A given value is used once and does not change the count, nor does an EncodeError.
      */
     encode(message: Message, options?: Omit<EncodeOptions<Parts>, "sender">): Uint8Array;
+    private makers;
 }

@@ -16,8 +16,8 @@ export interface Transparency {
     readonly isStrict: boolean;
     /** The region on the wire that stands for the bytes. */
     encode(bytes: Uint8Array): Uint8Array;
-    /** The first `size` bytes with a region of them on the wire, and an end behind them. */
-    put(bytes: Uint8Array, size: number, from: number, to: number, end: Uint8Array): Uint8Array;
+    /** The first `size` bytes, with a region of them as it is on the wire. */
+    put(bytes: Uint8Array, size: number, from: number, to: number): Uint8Array;
     /** What takes a region off, from its first byte on. */
     decoder(): Unstuffer;
 }

@@ -1,209 +1,250 @@
 /** Writes the values of a payload, one after another. Generated functions call it. */
-import { EncodeError, joined, spelled } from "./errors.js";
-import { same, shown } from "./reader.js";
-const WORD = new DataView(new ArrayBuffer(8));
-const GREATEST_FLOAT32 = (2 - 2 ** -23) * 2 ** 127;
+import { NO_BYTES } from "./bytes.js";
+import { Checks } from "./checks.js";
+import { spelled } from "./errors.js";
+import { NO_PARTS } from "./plan.js";
+import { shown } from "./reader.js";
+const WORD_BYTES = new Uint8Array(8);
+const WORD = new DataView(WORD_BYTES.buffer);
+/** The greatest unsigned integer of so many bits. */
+function greatestOf(bits) {
+    return bits < 31 ? (1 << bits) - 1 : 2 ** bits - 1;
+}
 /**
  * Bytes of a payload so far. Each method appends a value, or throws an EncodeError.
  *
  * There may be room in front of the payload, for the parts of the frame that stand there.
  */
-export class Writer {
-    /** With `strict`, values that the schema forbids are refused, even where they fit the wire. */
-    constructor(strict) {
-        this.strict = strict;
-        this.bytes = new Uint8Array(256);
+export class Writer extends Checks {
+    constructor() {
+        super(...arguments);
+        /** What is written into where nobody knows how much it will be. */
+        this.scratch = new Uint8Array(256);
+        this.bytes = this.scratch;
         /** Bytes so far, those in front of the payload among them. */
         this.size = 0;
         /** Values of the fields that are parts of the frame, by the names of the parts. */
-        this.held = {};
-        this.path = [];
+        this.held = NO_PARTS;
     }
-    /** Begin another payload, in the place of the one before, behind so many bytes. */
-    restart(strict, from) {
+    /**
+     * Begin another payload behind so many bytes.
+     *
+     * With a size, all that will be written has so many bytes.
+     */
+    restart(strict, from, size) {
         this.strict = strict;
+        this.bytes = size ? new Uint8Array(size) : this.scratch;
         this.size = 0;
         this.room(from);
-        this.held = {};
+        this.held = NO_PARTS;
         if (this.path.length)
             this.path.length = 0;
         return this;
     }
-    /** The error of a field. */
-    error(step, problem) {
-        return new EncodeError(joined([...this.path, step]), problem);
-    }
-    enter(step) {
-        this.path.push(step);
-    }
-    leave() {
-        this.path.pop();
+    /** All that was written. */
+    taken() {
+        return this.bytes === this.scratch ? this.bytes.slice(0, this.size) : this.bytes;
     }
     /** The place of so many more bytes. */
     room(size) {
         const at = this.size;
-        if (at + size > this.bytes.length) {
-            const larger = new Uint8Array(Math.max(2 * this.bytes.length, at + size));
-            larger.set(this.bytes);
-            this.bytes = larger;
-        }
         this.size = at + size;
+        if (this.size > this.bytes.length)
+            this.grow();
         return at;
+    }
+    grow() {
+        const larger = new Uint8Array(Math.max(2 * this.bytes.length, this.size));
+        larger.set(this.bytes);
+        this.bytes = this.scratch = larger;
     }
     /** Leave a number to the frame, whose part it is. */
     part(name, value) {
-        this.held[name] = value;
-    }
-    // --- checks --------------------------------------------------------------------------------
-    /** An integer that the wire can hold. */
-    int(value, low, high, step) {
-        if (typeof value !== "number" || !Number.isInteger(value)) {
-            throw this.error(step, `must be an integer, not ${shown(value)}`);
-        }
-        if (value < low || value > high)
-            throw this.error(step, `${value} is not in ${low}..${high}`);
-        return value;
-    }
-    /** An integer of more than 53 bits that the wire can hold. */
-    big(value, low, high, step) {
-        if (typeof value !== "bigint") {
-            throw this.error(step, `must be a bigint, not ${shown(value)}`);
-        }
-        if (value < low || value > high)
-            throw this.error(step, `${value} is not in ${low}..${high}`);
-        return value;
-    }
-    /** A value in the range of the schema, or a special one. */
-    ranged(value, least, greatest, special, step) {
-        if (!this.strict || special.includes(value))
-            return value;
-        // Not-a-number is in no range that has a bound.
-        const isIn = (least === null || value >= least) && (greatest === null || value <= greatest);
-        if (!isIn)
-            throw this.error(step, `${value} is not in ${least ?? ""}..${greatest ?? ""}`);
-        return value;
-    }
-    /** A value out of a closed enum. */
-    one(value, values, step) {
-        if (!values.includes(value)) {
-            throw this.error(step, `${value} has no name; there are ${values.join(", ")}`);
-        }
-        return value;
-    }
-    /** A truth value; 0 and 1 are taken as well. */
-    truth(value, step) {
-        if (value === true || value === 1)
-            return 1;
-        if (value === false || value === 0)
-            return 0;
-        throw this.error(step, `must be false or true, not ${shown(value)}`);
-    }
-    /** A float that its bits can hold. */
-    real(value, bits, step) {
-        if (typeof value !== "number")
-            throw this.error(step, `must be a number, not ${shown(value)}`);
-        if (bits === 32 && Number.isFinite(value) && Math.abs(value) > GREATEST_FLOAT32) {
-            throw this.error(step, `${value} is too large for 32 bits`);
-        }
-        return value;
-    }
-    /** A constant, which needs not be given. */
-    constant(value, due, step) {
-        if (value !== undefined && value !== null && !same(value, due)) {
-            throw this.error(step, `must be ${shown(due)}, not ${shown(value)}`);
-        }
-        return due;
-    }
-    /** A struct. */
-    // Any: its members are checked one by one.
-    record(value, step) {
-        if (typeof value !== "object" || value === null) {
-            throw this.error(step, `must be an object, not ${shown(value)}`);
-        }
-        return value;
-    }
-    /** A list of `least` to `greatest` elements. */
-    // Any: they are checked one by one.
-    list(value, least, greatest, step) {
-        if (!Array.isArray(value) && !ArrayBuffer.isView(value)) {
-            throw this.error(step, `must be a list, not ${shown(value)}`);
-        }
-        const items = value;
-        this.count(items.length, least, greatest, "elements", step);
-        return items;
-    }
-    /** A number of elements or bytes. */
-    count(count, least, greatest, what, step) {
-        if (count >= least && count <= greatest)
-            return;
-        const due = least === greatest ? `exactly ${least}` : `${least} to ${greatest}`;
-        throw this.error(step, `needs ${due} ${what}, not ${count}`);
-    }
-    /** Nothing: the value of what is not there, or has no bytes. */
-    nothing(value, step) {
-        if (value !== null && value !== undefined) {
-            throw this.error(step, `must be null, not ${shown(value)}`);
-        }
-    }
-    /** Refuse a value behind one that is left out. */
-    behind(front, name, step) {
-        if (front === null || front === undefined) {
-            throw this.error(step, `must be null, as ${name} in front of it is left out`);
-        }
-    }
-    /** Refuse an element that says that it is the last where it is not, or the reverse. */
-    last(isLast, items, index, by) {
-        if (isLast !== (index === items.length - 1)) {
-            throw this.error(index, `the last element, and no other, is the last by ${by}`);
-        }
-    }
-    /** The error of a selector without a case. */
-    noCase(value, by, step) {
-        return this.error(step, `there is no case for ${by} = ${value}`);
+        this.held = { ...this.held, [name]: value };
     }
     // --- integers ------------------------------------------------------------------------------
-    u8(value) {
+    // An encoder spends most of its time here, so each of them calls no other.
+    u8(value, step) {
+        if (typeof value !== "number" || value !== (value & 0xff)) {
+            throw this.noInteger(value, 0, 0xff, step);
+        }
+        const at = this.size;
+        this.size = at + 1;
+        if (this.size > this.bytes.length)
+            this.grow();
+        const { bytes } = this;
+        bytes[at] = value;
+    }
+    i8(value, step) {
+        if (typeof value !== "number" || value !== (value << 24) >> 24) {
+            throw this.noInteger(value, -0x80, 0x7f, step);
+        }
+        const at = this.size;
+        this.size = at + 1;
+        if (this.size > this.bytes.length)
+            this.grow();
+        const { bytes } = this;
+        bytes[at] = value;
+    }
+    u16(value, step) {
+        if (typeof value !== "number" || value !== (value & 0xffff)) {
+            throw this.noInteger(value, 0, 0xffff, step);
+        }
+        const at = this.size;
+        this.size = at + 2;
+        if (this.size > this.bytes.length)
+            this.grow();
+        const { bytes } = this;
+        bytes[at] = value;
+        bytes[at + 1] = value >> 8;
+    }
+    i16(value, step) {
+        if (typeof value !== "number" || value !== (value << 16) >> 16) {
+            throw this.noInteger(value, -0x8000, 0x7fff, step);
+        }
+        const at = this.size;
+        this.size = at + 2;
+        if (this.size > this.bytes.length)
+            this.grow();
+        const { bytes } = this;
+        bytes[at] = value;
+        bytes[at + 1] = value >> 8;
+    }
+    u16be(value, step) {
+        if (typeof value !== "number" || value !== (value & 0xffff)) {
+            throw this.noInteger(value, 0, 0xffff, step);
+        }
+        const at = this.size;
+        this.size = at + 2;
+        if (this.size > this.bytes.length)
+            this.grow();
+        const { bytes } = this;
+        bytes[at] = value >> 8;
+        bytes[at + 1] = value;
+    }
+    i16be(value, step) {
+        if (typeof value !== "number" || value !== (value << 16) >> 16) {
+            throw this.noInteger(value, -0x8000, 0x7fff, step);
+        }
+        const at = this.size;
+        this.size = at + 2;
+        if (this.size > this.bytes.length)
+            this.grow();
+        const { bytes } = this;
+        bytes[at] = value >> 8;
+        bytes[at + 1] = value;
+    }
+    u32(value, step) {
+        if (typeof value !== "number" || value !== value >>> 0) {
+            throw this.noInteger(value, 0, 0xffffffff, step);
+        }
+        const at = this.size;
+        this.size = at + 4;
+        if (this.size > this.bytes.length)
+            this.grow();
+        const { bytes } = this;
+        bytes[at] = value;
+        bytes[at + 1] = value >> 8;
+        bytes[at + 2] = value >> 16;
+        bytes[at + 3] = value >> 24;
+    }
+    i32(value, step) {
+        if (typeof value !== "number" || value !== (value | 0)) {
+            throw this.noInteger(value, -0x80000000, 0x7fffffff, step);
+        }
+        const at = this.size;
+        this.size = at + 4;
+        if (this.size > this.bytes.length)
+            this.grow();
+        const { bytes } = this;
+        bytes[at] = value;
+        bytes[at + 1] = value >> 8;
+        bytes[at + 2] = value >> 16;
+        bytes[at + 3] = value >> 24;
+    }
+    u32be(value, step) {
+        if (typeof value !== "number" || value !== value >>> 0) {
+            throw this.noInteger(value, 0, 0xffffffff, step);
+        }
+        const at = this.size;
+        this.size = at + 4;
+        if (this.size > this.bytes.length)
+            this.grow();
+        const { bytes } = this;
+        bytes[at] = value >> 24;
+        bytes[at + 1] = value >> 16;
+        bytes[at + 2] = value >> 8;
+        bytes[at + 3] = value;
+    }
+    i32be(value, step) {
+        if (typeof value !== "number" || value !== (value | 0)) {
+            throw this.noInteger(value, -0x80000000, 0x7fffffff, step);
+        }
+        const at = this.size;
+        this.size = at + 4;
+        if (this.size > this.bytes.length)
+            this.grow();
+        const { bytes } = this;
+        bytes[at] = value >> 24;
+        bytes[at + 1] = value >> 16;
+        bytes[at + 2] = value >> 8;
+        bytes[at + 3] = value;
+    }
+    /** The lowest eight bits. */
+    byte(value) {
         const at = this.room(1);
         this.bytes[at] = value;
     }
-    u16(value) {
-        const at = this.room(2);
-        this.bytes[at] = value;
-        this.bytes[at + 1] = value >> 8;
+    /** A truth value as a byte. */
+    bool(value, step) {
+        this.byte(this.truth(value, step));
     }
-    u16be(value) {
-        const at = this.room(2);
-        this.bytes[at] = value >> 8;
-        this.bytes[at + 1] = value;
+    /** An unsigned integer in bytes of 8 bits or, if `base` is 128, of 7. */
+    uint(value, size, bits, little, base, step) {
+        const most = greatestOf(bits);
+        const isIn = typeof value === "number" && value >= 0 && value <= most;
+        if (isIn && Number.isInteger(value))
+            this.lowest(value, size, bits, little, base);
+        else
+            throw this.noInteger(value, 0, most, step);
     }
-    u32(value) {
-        const at = this.room(4);
-        this.bytes[at] = value;
-        this.bytes[at + 1] = value >> 8;
-        this.bytes[at + 2] = value >> 16;
-        this.bytes[at + 3] = value >> 24;
+    /** The same of a signed one. */
+    sint(value, size, bits, little, base, step) {
+        const most = greatestOf(bits - 1);
+        const isIn = typeof value === "number" && value >= -most - 1 && value <= most;
+        if (isIn && Number.isInteger(value))
+            this.lowest(value, size, bits, little, base);
+        else
+            throw this.noInteger(value, -most - 1, most, step);
     }
-    u32be(value) {
-        const at = this.room(4);
-        this.bytes[at] = value >> 24;
-        this.bytes[at + 1] = value >> 16;
-        this.bytes[at + 2] = value >> 8;
-        this.bytes[at + 3] = value;
-    }
-    /** The lowest bits of an integer in bytes of 8 bits or, if `base` is 128, of 7. */
-    uint(value, size, bits, little, base) {
-        const at = this.room(size);
+    /** The lowest bits of an integer. */
+    lowest(value, size, bits, little, base) {
+        const first = this.size;
+        this.size = first + size;
+        if (this.size > this.bytes.length)
+            this.grow();
+        const { bytes } = this;
+        if (size <= 2 && bits < 32) {
+            const lowest = value & greatestOf(bits);
+            bytes[little ? first : first + size - 1] = lowest & (base - 1);
+            if (size === 2)
+                bytes[little ? first + 1 : first] = base === 128 ? lowest >> 7 : lowest >> 8;
+            return;
+        }
+        const next = little ? 1 : -1;
+        let at = little ? first : first + size - 1;
         if (bits < 32) {
             const shift = base === 128 ? 7 : 8;
-            for (let index = 0, left = value & (2 ** bits - 1); index < size; index++) {
-                this.bytes[little ? at + index : at + size - 1 - index] = left & (base - 1);
-                left >>= shift;
+            let left = value & greatestOf(bits);
+            for (let count = 0; count < size; count++, at += next) {
+                bytes[at] = left & (base - 1);
+                left >>>= shift;
             }
             return;
         }
         let rest = value < 0 ? value + 2 ** bits : value;
-        for (let index = 0; index < size; index++) {
-            this.bytes[little ? at + index : at + size - 1 - index] = rest % base;
+        for (let count = 0; count < size; count++, at += next) {
+            bytes[at] = rest % base;
             rest = Math.floor(rest / base);
         }
     }
@@ -218,17 +259,41 @@ export class Writer {
             rest >>= shift;
         }
     }
-    /** A float; `base` is 256, or 128 in bytes of 7 bits. A NaN is written in one way. */
-    float(value, bits, little, base) {
+    f32(value, little, step) {
+        this.real32(value, little, step);
+        const at = this.room(4);
+        for (let index = 0; index < 4; index++)
+            this.bytes[at + index] = WORD_BYTES[index];
+    }
+    f64(value, little, step) {
+        this.real64(value, little, step);
+        const at = this.room(8);
+        for (let index = 0; index < 8; index++)
+            this.bytes[at + index] = WORD_BYTES[index];
+    }
+    /** A float in bytes of 7 bits. */
+    float7(value, bits, little, step) {
         if (bits === 32)
-            WORD.setFloat32(0, value);
+            this.real32(value, false, step);
         else
-            WORD.setFloat64(0, value);
-        const isNan = value !== value;
+            this.real64(value, false, step);
         const plain = bits === 32 ? BigInt(WORD.getUint32(0)) : WORD.getBigUint64(0);
-        const nan = bits === 32 ? 0x7fc00000n : 0x7ff8000000000000n;
-        const size = Math.ceil(bits / (base === 128 ? 7 : 8));
-        this.ubig(isNan ? nan : plain, size, bits, little, base);
+        this.ubig(plain, Math.ceil(bits / 7), bits, little, 128);
+    }
+    // A NaN is written in one way.
+    real32(value, little, step) {
+        const real = this.real(value, 32, step);
+        if (real === real)
+            WORD.setFloat32(0, real, little);
+        else
+            WORD.setUint32(0, 0x7fc00000, little);
+    }
+    real64(value, little, step) {
+        const real = this.real(value, 64, step);
+        if (real === real)
+            WORD.setFloat64(0, real, little);
+        else
+            WORD.setBigUint64(0, 0x7ff8000000000000n, little);
     }
     // --- bytes and texts -----------------------------------------------------------------------
     /** `least` to `greatest` bytes. */
@@ -237,17 +302,22 @@ export class Writer {
             throw this.error(step, `must be a Uint8Array, not ${shown(value)}`);
         }
         this.count(value.length, least, greatest, "bytes", step);
-        if (until >= 0 && value.includes(until)) {
+        const at = this.room(value.length);
+        this.bytes.set(value, at);
+        this.ended(at, sevenBit, until, step);
+    }
+    /** End the bytes from a place on by `until`, if they have an end, and refuse what they can't be. */
+    ended(from, sevenBit, until, step) {
+        const bytes = sevenBit || until >= 0 ? this.bytes.subarray(from, this.size) : NO_BYTES;
+        if (until >= 0 && bytes.includes(until)) {
             throw this.error(step, `has ${spelled([until])}, which would end it`);
         }
-        const high = sevenBit ? value.find((byte) => byte > 0x7f) : undefined;
+        const high = sevenBit ? bytes.find((byte) => byte > 0x7f) : undefined;
         if (high !== undefined) {
             throw this.error(step, `${spelled([high])} has its most significant bit set`);
         }
-        const at = this.room(value.length);
-        this.bytes.set(value, at);
         if (until >= 0)
-            this.u8(until);
+            this.byte(until);
     }
     /** The characters of a text, which are bytes. */
     characters(value, step) {
@@ -266,10 +336,11 @@ export class Writer {
     latin1(value, least, greatest, sevenBit, step, until = -1) {
         const text = this.characters(value, step);
         this.count(text.length, least, greatest, "characters", step);
-        const data = new Uint8Array(text.length);
-        for (let index = 0; index < data.length; index++)
-            data[index] = text.charCodeAt(index);
-        this.octets(data, 0, data.length, sevenBit, step, until);
+        const at = this.room(text.length);
+        const { bytes } = this;
+        for (let index = 0; index < text.length; index++)
+            bytes[at + index] = text.charCodeAt(index);
+        this.ended(at, sevenBit, until, step);
     }
     /** A text among separators. */
     between(value, separator, leads, allowed, least, greatest, step) {
@@ -280,9 +351,9 @@ export class Writer {
             throw this.error(step, `has "${wrong}", which can't stand between separators here`);
         }
         if (leads)
-            this.u8(separator);
+            this.byte(separator);
         for (let index = 0; index < text.length; index++)
-            this.u8(text.charCodeAt(index));
+            this.byte(text.charCodeAt(index));
     }
     /** A text of a fixed size, which its padding fills up. */
     text(value, size, form, sevenBit, step) {
@@ -303,7 +374,7 @@ export class Writer {
             if (sevenBit && byte > 0x7f) {
                 throw this.error(step, `${spelled([byte])} has its most significant bit set`);
             }
-            this.u8(byte);
+            this.byte(byte);
         }
     }
     /** Begin a region of so many bytes; what ends it is given to `close`. */

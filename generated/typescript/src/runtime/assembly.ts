@@ -1,36 +1,262 @@
-/** Frames from their parts. */
+/** Frames from their parts: what is always the same, and what each frame has anew. */
 
-import { concatenated, equal, hasHighBit } from "./bytes.js";
-import { Cut, dueOf, verdictOn } from "./candidate.js";
+import { equal, hasHighBit } from "./bytes.js";
+import { Cut, verdictOn } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { EncodeError } from "./errors.js";
+import { inside, Layout, put, type Values } from "./layout.js";
 import type { PartNumber, Value } from "./numbers.js";
-import { areAmong, at, ownOf } from "./plan.js";
-import type { Bits, Covered, HeldParts, LengthNumber, MessagePlan } from "./plan.js";
-import type { Part, ValueNumber } from "./plan.js";
-import { numbersOf, payloadOf, writerOf, type Sender } from "./sender.js";
+import { areAmong, ownOf } from "./plan.js";
+import type { HeldParts, MessagePlan, ValueNumber } from "./plan.js";
+import { writeMessage, writerOf, type Sender } from "./sender.js";
 import type { Writer } from "./writer.js";
 
 /** Values of parts by their names, as callers give them. */
 export type GivenParts = Readonly<Record<string, unknown>>;
 
-type Values = (Value | undefined)[];
+/** The next values of counters, by their names. */
+export type Counts = Map<string, Value>;
 
-/** The frame of a message. Throws an EncodeError. */
-export function frameOf(
-  sender: Sender,
-  message: MessagePlan,
-  value: unknown,
-  given: GivenParts,
-  strict: boolean,
-): Uint8Array {
-  const { headSize } = sender.frame;
-  const made = payloadOf(message, value, strict, headSize);
-  const size = sender.trimmed(made.bytes, headSize, made.size - headSize);
-  const parts = message.held.length ? withHeld(given, made.held) : given;
-  const values: Values = new Array<Value | undefined>(sender.frame.slots);
-  identityOf(sender, message, parts, values);
-  return encodeFrame(sender, made, size, parts, values, strict);
+function givenTo(number: PartNumber | null, value: unknown, name: string): Value {
+  if (!number) {
+    if (typeof value === "number" && Number.isInteger(value)) return value;
+    throw new EncodeError(name, `must be an integer, not ${String(value)}`);
+  }
+  try {
+    return number.given(value);
+  } catch (error) {
+    throw inside(error, name);
+  }
+}
+
+/** A part whose value callers may give, or have to. */
+class GivenPart {
+  readonly name: string;
+  readonly slot: number;
+  /** True if every object has something by its name. */
+  private readonly isInherited: boolean;
+  /** Bounds of the numbers that need no other check; there are none where it is no number. */
+  private readonly least: number = Infinity;
+  private readonly greatest: number = -Infinity;
+
+  constructor(private readonly part: ValueNumber) {
+    const { least, greatest, values, between } = part;
+    this.name = part.name;
+    this.slot = part.slot;
+    this.isInherited = this.name in Object.prototype;
+    if (typeof least !== "number" || typeof greatest !== "number") return;
+    if (values === undefined && between === undefined) {
+      this.least = least;
+      this.greatest = greatest;
+    }
+  }
+
+  /** What a caller gives for it. */
+  own(given: GivenParts): unknown {
+    return this.isInherited ? ownOf(given, this.name) : given[this.name];
+  }
+
+  /** The value of what a caller gives. Throws an EncodeError. */
+  given(own: unknown, strict: boolean): Value {
+    if (typeof own === "number" && own >= this.least && own <= this.greatest) {
+      if (Number.isInteger(own)) return own;
+    }
+    const { part } = this;
+    const value = givenTo(part.number, own, part.name);
+    if (!strict && !part.isHeld) {
+      // A layout takes bytes as they are, so what does not fit them is refused here.
+      put(part.number, value, new Uint8Array(part.number.size), 0, part.name);
+      return value;
+    }
+    if (strict && typeof own === "string" && /[^\0-\x7f]/.test(own)) {
+      throw new EncodeError(part.name, `"${own}" has a character that is not ASCII`);
+    }
+    if (!mayBe(part, value)) throw new EncodeError(part.name, `it can't be ${value}`);
+    return value;
+  }
+
+  /** The value where a caller gives none; null where there has to be one. */
+  usual(counts: Counts | null): Value | null {
+    const { name, isCounter, default: usual } = this.part;
+    return (isCounter ? counts?.get(name) : null) ?? usual;
+  }
+
+  /** The error where there is no value. */
+  error(): EncodeError {
+    const advice = this.part.isCounter ? ", or use an Encoder, which counts" : "";
+    return new EncodeError(this.name, `the value is missing; give it as a part${advice}`);
+  }
+
+  /** Go on counting, where the callers gave no value. */
+  count(given: GivenParts, counts: Counts): void {
+    const { name, isCounter, least, greatest } = this.part;
+    if (!isCounter || (this.own(given) ?? null) !== null) return;
+    const value = counts.get(name)!;
+    counts.set(name, value >= greatest ? least : Number(value) + 1);
+  }
+}
+
+/** What makes the frames of a sender, one after another. */
+class Assembly {
+  readonly full: Layout;
+  readonly empty: Layout;
+  /** Values of the parts of the frame that is made. */
+  readonly values: Values;
+  readonly parts: readonly GivenPart[];
+  private readonly makers = new Map<MessagePlan, FrameMaker>();
+
+  constructor(readonly sender: Sender) {
+    this.full = new Layout(sender, false);
+    this.empty = new Layout(sender, true);
+    this.values = new Array<Value | undefined>(sender.frame.slots).fill(undefined);
+    this.parts = sender.valueParts.map((part) => new GivenPart(part));
+  }
+
+  maker(message: MessagePlan): FrameMaker {
+    let found = this.makers.get(message);
+    if (!found) this.makers.set(message, (found = new FrameMaker(this, message)));
+    return found;
+  }
+
+  /**
+   * Set the values of a frame to what callers give, and to what is usual where they give nothing.
+   *
+   * True if they give an identity. Throws an EncodeError.
+   */
+  take(
+    identity: readonly Value[],
+    given: GivenParts,
+    strict: boolean,
+    counts: Counts | null,
+  ): boolean {
+    const { values, parts } = this;
+    const { identityParts } = this.sender;
+    for (let index = 0; index < identityParts.length; index++) {
+      values[identityParts[index]!.slot] = identity[index];
+    }
+    let left = 0;
+    for (const _name in given) left++;
+    let missing: GivenPart | null = null;
+    for (let index = 0; index < parts.length; index++) {
+      const part = parts[index]!;
+      const own = part.own(given);
+      if (own !== undefined && own !== null) {
+        values[part.slot] = part.given(own, strict);
+        left--;
+      } else {
+        const usual = part.usual(counts);
+        values[part.slot] = usual ?? undefined;
+        if (usual === null) missing ??= part;
+      }
+    }
+    const isOther = left !== 0 && this.takeIdentity(given);
+    if (missing) throw missing.error();
+    return isOther;
+  }
+
+  /** The same of what callers give of the identity; nothing else is left. */
+  private takeIdentity(given: GivenParts): boolean {
+    let isGiven = false;
+    for (const [name, own] of Object.entries(given)) {
+      if (own === undefined || own === null) continue;
+      if (this.parts.some((part) => part.name === name)) continue;
+      const part = this.sender.identityParts.find((item) => item.name === name);
+      if (!part) throw new EncodeError(name, "there is no such part");
+      this.values[part.slot] = givenTo(part.number, own, name);
+      isGiven = true;
+    }
+    return isGiven;
+  }
+
+  /** The frame around a payload of so many bytes, which was written. Throws an EncodeError. */
+  wire(writer: Writer, size: number): Uint8Array {
+    const { frame } = this.sender;
+    const wire = (size ? this.full : this.empty).wire(writer, size, this.values);
+    if (frame.isBounded && wire.length > frame.greatest) {
+      const { greatest } = frame;
+      const problem = `makes a frame of ${wire.length} bytes, at most ${greatest} are allowed`;
+      throw new EncodeError("payload", problem);
+    }
+    return wire;
+  }
+
+  /** Throw an EncodeError unless a decoder takes exactly these bytes for the frame. */
+  check(wire: Uint8Array, payload: Uint8Array): void {
+    const told = [...this.values];
+    this.sender.tellSize(told, payload.length);
+    const [verdict] = verdictOn(this.sender, wire, told);
+    if (verdict.size < wire.length) {
+      const problem = `a decoder would end the frame behind ${verdict.size} of its bytes`;
+      throw new EncodeError("payload", problem);
+    }
+    if (!(verdict instanceof Cut) || !equal(verdict.payload, payload)) {
+      throw new EncodeError("payload", "a decoder would not find it in the frame");
+    }
+  }
+}
+
+/** Makes the frames of a message. */
+export class FrameMaker {
+  /** The first identity of the message. */
+  private readonly identity: readonly Value[];
+  /** True if a decoder could take a frame for another one. */
+  private readonly isDoubtful: boolean;
+  /** Bytes of every frame, where all have as many and none are stuffed; else 0. */
+  private readonly size: number;
+
+  constructor(
+    private readonly assembly: Assembly,
+    private readonly message: MessagePlan,
+  ) {
+    const { sender, values } = assembly;
+    const { least, greatest } = message.sizes;
+    const { transparency, kept, cutAmbiguous } = sender.frame;
+    this.identity = message.identities.map((runs) => runs[0]![0]);
+    sender.identityParts.forEach(({ slot }, index) => (values[slot] = this.identity[index]));
+    this.isDoubtful = cutAmbiguous || !sender.group(values);
+    const isFixed = least === greatest && !transparency && kept === null;
+    this.size = isFixed ? least + (least ? assembly.full : assembly.empty).size : 0;
+  }
+
+  get sender(): Sender {
+    return this.assembly.sender;
+  }
+
+  /**
+   * The frame of a message with the values of parts that callers give.
+   *
+   * Counters that they do not give are those of `counts`, which go on. Throws an EncodeError.
+   */
+  make(
+    value: unknown,
+    given: GivenParts,
+    strict: boolean,
+    counts: Counts | null = null,
+  ): Uint8Array {
+    const { assembly, message, sender } = this;
+    const { headSize } = sender.frame;
+    const writer = writerOf(strict, headSize, this.size);
+    writeMessage(message, writer, value);
+    const size = sender.trimmed(writer.bytes, headSize, writer.size - headSize);
+    const parts = message.held.length ? withHeld(given, writer.held) : given;
+    let isDoubtful = this.isDoubtful;
+    if (assembly.take(this.identity, parts, strict, counts)) isDoubtful = this.checkIdentity();
+    const wire = assembly.wire(writer, size);
+    if (isDoubtful) assembly.check(wire, writer.bytes.slice(headSize, headSize + size));
+    if (counts) for (const part of assembly.parts) part.count(given, counts);
+    return wire;
+  }
+
+  /** True if a decoder could take a frame of a given identity for another one. */
+  private checkIdentity(): boolean {
+    const { sender, values } = this.assembly;
+    sender.identityParts.forEach(({ name, slot }, index) => {
+      const value = values[slot]!;
+      if (areAmong([this.message.identities[index]!], [value])) return;
+      throw new EncodeError(name, `${value} is not an identity of ${this.message.name}`);
+    });
+    return sender.frame.cutAmbiguous || !sender.group(values);
+  }
 }
 
 /** The parts that callers give, and those that are fields. Throws an EncodeError if they differ. */
@@ -46,25 +272,17 @@ function withHeld(given: GivenParts, held: HeldParts): GivenParts {
   return { ...given, ...held };
 }
 
-/** Set the identity of a message: what callers give, or the first one. */
-function identityOf(
-  sender: Sender,
-  message: MessagePlan,
-  given: GivenParts,
-  values: Values,
-): void {
-  for (let index = 0; index < sender.identityParts.length; index++) {
-    const { name, slot, number } = sender.identityParts[index]!;
-    const runs = message.identities[index]!;
-    const own = ownOf(given, name);
-    values[slot] = runs[0]![0];
-    if (own === undefined || own === null) continue;
-    const chosen = givenTo(number, own, name);
-    if (!areAmong([runs], [chosen])) {
-      throw new EncodeError(name, `${chosen} is not an identity of ${message.name}`);
-    }
-    values[slot] = chosen;
-  }
+const ASSEMBLIES = /* @__PURE__ */ new WeakMap<Sender, Assembly>();
+
+function assemblyOf(sender: Sender): Assembly {
+  let found = ASSEMBLIES.get(sender);
+  if (!found) ASSEMBLIES.set(sender, (found = new Assembly(sender)));
+  return found;
+}
+
+/** What makes the frames of a message that the sender sends. */
+export function makerOf(sender: Sender, message: MessagePlan): FrameMaker {
+  return assemblyOf(sender).maker(message);
 }
 
 /** The frame of an unknown message, whose identity is given. Throws an EncodeError. */
@@ -73,261 +291,19 @@ export function unknownFrameOf(
   payload: Uint8Array,
   given: GivenParts,
 ): Uint8Array {
-  const values: Values = new Array<Value | undefined>(sender.frame.slots);
+  const assembly = assemblyOf(sender);
+  const { headSize } = sender.frame;
+  assembly.take([], given, false, null);
   for (const { name, slot, number } of sender.identityParts) {
-    values[slot] = givenTo(number, ownOf(given, name), name);
+    if (assembly.values[slot] === undefined) givenTo(number, undefined, name);
   }
-  const writer = writerOf(false, sender.frame.headSize);
+  if (sender.frame.sevenBit && hasHighBit(payload, 0, payload.length)) {
+    throw new EncodeError("payload", "a byte has its most significant bit set");
+  }
+  const writer = writerOf(false, headSize);
   const place = writer.room(payload.length);
   writer.bytes.set(payload, place);
-  return encodeFrame(sender, writer, payload.length, given, values, false);
-}
-
-function givenTo(number: PartNumber | null, value: unknown, name: string): Value {
-  if (!number) {
-    if (typeof value === "number" && Number.isInteger(value)) return value;
-    throw new EncodeError(name, `must be an integer, not ${String(value)}`);
-  }
-  try {
-    return number.given(value);
-  } catch (error) {
-    throw inside(error, name);
-  }
-}
-
-function inside(error: unknown, name: string): unknown {
-  return error instanceof EncodeError ? new EncodeError(name, error.problem) : error;
-}
-
-function encodeFrame(
-  sender: Sender,
-  writer: Writer,
-  size: number,
-  given: GivenParts,
-  values: Values,
-  strict: boolean,
-): Uint8Array {
-  const { valueParts } = sender;
-  for (const name of Object.keys(given)) {
-    if (!sender.given.has(name) && given[name] !== undefined && given[name] !== null) {
-      throw new EncodeError(name, "there is no such part");
-    }
-  }
-  for (const part of valueParts) values[part.slot] = valueOf(part, ownOf(given, part.name), strict);
-  const wire = new Assembly(sender, values, writer, size).wire();
-  const { frame } = sender;
-  if (frame.isBounded && wire.length > frame.greatest) {
-    const problem = `makes a frame of ${wire.length} bytes, at most ${frame.greatest} are allowed`;
-    throw new EncodeError("payload", problem);
-  }
-  if (frame.cutAmbiguous || !sender.group(values)) {
-    const payload = writer.bytes.slice(frame.headSize, frame.headSize + size);
-    checkCut(sender, wire, payload, values);
-  }
+  const wire = assembly.wire(writer, payload.length);
+  if (sender.frame.cutAmbiguous || !sender.group(assembly.values)) assembly.check(wire, payload);
   return wire;
-}
-
-function valueOf(part: ValueNumber, given: unknown, strict: boolean): Value {
-  const isGiven = given !== undefined && given !== null;
-  if (!isGiven && part.default === null) {
-    const advice = part.isCounter ? ", or use an Encoder, which counts" : "";
-    throw new EncodeError(part.name, `the value is missing; give it as a part${advice}`);
-  }
-  const value = isGiven ? givenTo(part.number, given, part.name) : part.default!;
-  if (!strict && !part.isHeld) return value;
-  if (strict && typeof given === "string" && /[^\0-\x7f]/.test(given)) {
-    throw new EncodeError(part.name, `"${given}" has a character that is not ASCII`);
-  }
-  if (!mayBe(part, value)) throw new EncodeError(part.name, `it can't be ${value}`);
-  return value;
-}
-
-/** Throw an EncodeError unless a decoder takes exactly these bytes for the frame. */
-function checkCut(sender: Sender, wire: Uint8Array, payload: Uint8Array, values: Values): void {
-  const told = [...values];
-  sender.tellSize(told, payload.length);
-  const [verdict] = verdictOn(sender, wire, told);
-  if (verdict.size < wire.length) {
-    const problem = `a decoder would end the frame behind ${verdict.size} of its bytes`;
-    throw new EncodeError("payload", problem);
-  }
-  if (!(verdict instanceof Cut) || !equal(verdict.payload, payload)) {
-    throw new EncodeError("payload", "a decoder would not find it in the frame");
-  }
-}
-
-/** The bytes of one frame's parts. A checksum or a length is worked out when it is needed. */
-class Assembly {
-  /** The payload, with room around it. */
-  private readonly content: Uint8Array;
-  /** Where each part begins in front of the payload, and with an empty payload behind it. */
-  private readonly offsets: readonly number[];
-  private readonly isMade: boolean[];
-
-  constructor(
-    private readonly sender: Sender,
-    private readonly values: Values,
-    writer: Writer,
-    private readonly payload: number,
-  ) {
-    const { offsets, offsetsEmpty, frame } = sender;
-    this.offsets = payload ? offsets : offsetsEmpty;
-    this.isMade = new Array<boolean>(frame.parts.length);
-    writer.room(frame.tailSize);
-    this.content = writer.bytes;
-  }
-
-  /** Where a part begins; the part behind the last one, where the content ends. */
-  private place(index: number): number {
-    const isBehind = index > this.sender.frame.payloadIndex;
-    return this.offsets[index]! + (isBehind ? this.payload : 0);
-  }
-
-  wire(): Uint8Array {
-    const { frame } = this.sender;
-    const isHeld = this.sender.length !== null || frame.isBounded;
-    if (isHeld && this.payload > frame.greatestPayload) {
-      const problem = `has ${this.payload} bytes, at most ${frame.greatestPayload} fit`;
-      throw new EncodeError("payload", problem);
-    }
-    const { headSize, end } = frame;
-    if (frame.sevenBit && hasHighBit(this.content, headSize, headSize + this.payload)) {
-      throw new EncodeError("payload", "a byte has its most significant bit set");
-    }
-    if (this.sender.toldLength) this.length(this.sender.toldLength);
-    const size = this.place(frame.parts.length);
-    this.complete(0, size);
-    const region = this.region();
-    return region
-      ? frame.transparency!.put(this.content, size, ...region, end)
-      : concatenated([this.content.slice(0, size), end]);
-  }
-
-  /** Bounds of what is stuffed; null where nothing is. */
-  private region(): readonly [number, number] | null {
-    const { parts, firstStuffed, lastStuffed, transparency } = this.sender.frame;
-    if (!transparency) return null;
-    const stuffed = this.payload ? [] : parts.slice(firstStuffed, lastStuffed + 1);
-    if (!this.payload && stuffed.every((part) => part.isOptional === true)) return null;
-    return [this.place(firstStuffed), this.place(lastStuffed + 1)];
-  }
-
-  /** Make all parts of some content. */
-  private complete(from: number, to: number): void {
-    const { parts } = this.sender.frame;
-    for (let index = 0; index < parts.length; index++) {
-      if (this.isMade[index]) continue;
-      const start = this.place(index);
-      if (start >= to || this.place(index + 1) <= from) continue;
-      this.isMade[index] = true;
-      this.make(parts[index]!, start);
-    }
-  }
-
-  /** Content, all of whose parts are made. */
-  private bytes(from: number, to: number): Uint8Array {
-    this.complete(from, to);
-    return this.content.slice(from, to);
-  }
-
-  private make(part: Part, place: number): void {
-    if (part.kind === "literal") {
-      for (let index = 0; index < part.size; index++) this.content[place + index] = part.bytes[index]!;
-    } else if (part.kind === "bits") this.makeBits(part, place);
-    else if (part.kind === "sum") {
-      const { number, name } = this.sender.frame.sums[part.sum]!;
-      this.put(number, this.sum(part.sum), place, name);
-    } else if (part.kind === "number") {
-      const { part: item } = part;
-      const value = item.kind === "length" ? this.length(item) : this.values[item.slot]!;
-      this.put(item.number, value, place, item.name);
-    }
-  }
-
-  private put(number: PartNumber, value: Value, place: number, name: string): void {
-    try {
-      number.encode(value, this.content, place);
-    } catch (error) {
-      throw inside(error, name);
-    }
-  }
-
-  private makeBits(part: Bits, place: number): void {
-    let joined = part.fixed;
-    const scratch = new Uint8Array(part.size);
-    const add = (number: PartNumber, value: Value, name: string): void => {
-      try {
-        number.encode(value, scratch, 0);
-      } catch (error) {
-        throw inside(error, name);
-      }
-      joined |= BigInt(part.number.decode(scratch, 0));
-    };
-    for (const item of part.members) {
-      add(item.number, this.numberAt(item.slot), item.name);
-    }
-    for (const index of part.sums) {
-      const item = this.sender.frame.sums[index]!;
-      add(item.number, this.sum(index), item.name);
-    }
-    for (const item of part.mirrors) {
-      const flipped = BigInt(this.numberAt(item.of)) ^ item.flips;
-      add(item.number, Number(flipped), item.name);
-    }
-    this.put(part.number, joined, place, part.name);
-  }
-
-  /** The number of a slot: one that is given, or a length. */
-  private numberAt(slot: number): Value {
-    const found = this.values[slot];
-    if (found !== undefined) return found;
-    const lengths = numbersOf(this.sender.frame.parts).filter((item) => item.kind === "length");
-    return this.length(lengths.find((item) => item.slot === slot) as LengthNumber);
-  }
-
-  private length(part: LengthNumber): number {
-    const size = this.payload;
-    let value = part.base + (size ? size + part.optional : 0);
-    const region = part.overWire ? this.region() : null;
-    if (region) {
-      const plain = this.bytes(...region);
-      value += this.sender.frame.transparency!.encode(plain).length - plain.length;
-    }
-    if (value < part.least || value > part.greatest) {
-      const problem = `makes ${part.name} ${value}, not in ${part.least}..${part.greatest}`;
-      throw new EncodeError("payload", problem);
-    }
-    return value;
-  }
-
-  private sum(index: number): Value {
-    const sum = this.sender.frame.sums[index]!;
-    const [first] = sum.covers;
-    if (sum.covers.length === 1 && first && "from" in first && !first.stuffed) {
-      const { headSize } = this.sender.frame;
-      const from = at(first.from, headSize, this.payload);
-      const to = at(first.to, headSize, this.payload);
-      this.complete(from, to);
-      return dueOf(sum, sum.algorithm.compute(this.content, from, to));
-    }
-    const pieces = sum.covers.map((covered) => this.covered(covered, sum.name));
-    const joined = concatenated(pieces);
-    return dueOf(sum, sum.algorithm.compute(joined, 0, joined.length));
-  }
-
-  private covered(covered: Covered, name: string): Uint8Array {
-    if ("bytes" in covered) return covered.bytes;
-    if ("virtual" in covered) {
-      const bytes = this.sender.virtual(covered.virtual, this.values);
-      if (bytes) return bytes;
-      const part = this.sender.frame.virtual[covered.virtual]!;
-      const problem = `has no value for an unknown identity, and ${name} covers it`;
-      throw new EncodeError(part.name, problem);
-    }
-    const { headSize } = this.sender.frame;
-    const size = this.payload;
-    const from = at(covered.from, headSize, size);
-    const plain = this.bytes(from, at(covered.to, headSize, size));
-    return covered.stuffed ? this.sender.frame.transparency!.encode(plain) : plain;
-  }
 }

@@ -133,14 +133,14 @@ export function writeNumeral(
   form: Numeral,
   step: Step,
 ): void {
-  if (form.separator !== undefined && form.leads) writer.u8(form.separator);
+  if (form.separator !== undefined && form.leads) writer.byte(form.separator);
   if (form.separator !== undefined && form.empty && value === form.absent) return;
   const least = form.signed ? -BigInt(form.greatest) : 0n;
   if (BigInt(value) < least || value > form.greatest) {
     throw writer.error(step, `${value} is not in ${least}..${form.greatest}`);
   }
   if (form.base === 256) {
-    writer.u8(Number(value));
+    writer.byte(Number(value));
     return;
   }
   const plain = BigInt(value) < 0n ? -BigInt(value) : BigInt(value);
@@ -151,5 +151,5 @@ export function writeNumeral(
     digits = `${digits.slice(0, -form.fraction)}.${digits.slice(-form.fraction)}`;
   }
   if (BigInt(value) < 0n) digits = `-${digits}`;
-  for (let index = 0; index < digits.length; index++) writer.u8(digits.charCodeAt(index));
+  for (let index = 0; index < digits.length; index++) writer.byte(digits.charCodeAt(index));
 }

@@ -29,16 +29,20 @@ export interface Transparency {
   readonly isStrict: boolean;
   /** The region on the wire that stands for the bytes. */
   encode(bytes: Uint8Array): Uint8Array;
-  /** The first `size` bytes with a region of them on the wire, and an end behind them. */
-  put(bytes: Uint8Array, size: number, from: number, to: number, end: Uint8Array): Uint8Array;
+  /** The first `size` bytes, with a region of them as it is on the wire. */
+  put(bytes: Uint8Array, size: number, from: number, to: number): Uint8Array;
   /** What takes a region off, from its first byte on. */
   decoder(): Unstuffer;
 }
 
 function putBy(encode: Transparency["encode"]): Transparency["put"] {
-  return (bytes, size, from, to, end) => {
+  return (bytes, size, from, to) => {
     const region = encode(bytes.slice(from, to));
-    return concatenated([bytes.slice(0, from), region, bytes.slice(to, size), end]);
+    const wire = new Uint8Array(size - (to - from) + region.length);
+    wire.set(bytes.subarray(0, from));
+    wire.set(region, from);
+    wire.set(bytes.subarray(to, size), from + region.length);
+    return wire;
   };
 }
 
@@ -191,13 +195,15 @@ export function substitution(
 ): Transparency {
   let sequences: Sequences | undefined;
   let words: Words | undefined;
-  const put: Transparency["put"] = (bytes, size, from, to, end) => {
+  const put: Transparency["put"] = (bytes, size, from, to) => {
     words ??= wordsOf(codes);
-    return replaced(bytes, size, from, to, end, words);
+    const more = added(words.more, bytes, from, to);
+    if (!more) return bytes.slice(0, size);
+    return replaced(bytes, from, to, words.words, new Uint8Array(size + more));
   };
   return {
     isStrict: !lenient,
-    encode: (bytes) => put(bytes, bytes.length, 0, bytes.length, NO_BYTES),
+    encode: (bytes) => put(bytes, bytes.length, 0, bytes.length),
     put,
     decoder() {
       sequences ??= sequencesOf(codes);
@@ -206,37 +212,41 @@ export function substitution(
   };
 }
 
-/** What each byte is replaced by. */
-type Words = readonly (Uint8Array | null)[];
+/** What each byte is replaced by, and how many bytes more that is. */
+interface Words {
+  readonly more: Uint8Array;
+  readonly words: readonly (Uint8Array | null)[];
+}
 
 function wordsOf(codes: readonly (readonly [number, Uint8Array])[]): Words {
   const words: (Uint8Array | null)[] = BYTES.map(() => null);
   for (const [byte, word] of codes) words[byte] = word;
-  return words;
+  return { more: Uint8Array.from(words, (word) => (word ? word.length - 1 : 0)), words };
 }
 
+/** Bytes that are replaced in a run of some. */
+function added(more: Uint8Array, bytes: Uint8Array, from: number, to: number): number {
+  let count = 0;
+  for (let index = from; index < to; index++) count += more[bytes[index]!]!;
+  return count;
+}
+
+/** Some bytes, of which those in a run are replaced. */
 function replaced(
   bytes: Uint8Array,
-  size: number,
   from: number,
   to: number,
-  end: Uint8Array,
-  words: Words,
+  words: readonly (Uint8Array | null)[],
+  out: Uint8Array,
 ): Uint8Array {
-  let more = end.length;
+  let at = 0;
+  for (; at < from; at++) out[at] = bytes[at]!;
   for (let index = from; index < to; index++) {
     const word = words[bytes[index]!]!;
-    if (word) more += word.length - 1;
-  }
-  const out = new Uint8Array(size + more);
-  let at = 0;
-  for (let index = 0; index < size; index++) {
-    const byte = bytes[index]!;
-    const word = index >= from && index < to ? words[byte]! : null;
-    if (!word) out[at++] = byte;
+    if (!word) out[at++] = bytes[index]!;
     else for (let place = 0; place < word.length; place++) out[at++] = word[place]!;
   }
-  for (let index = 0; index < end.length; index++) out[at++] = end[index]!;
+  for (let index = to; at < out.length; index++) out[at++] = bytes[index]!;
   return out;
 }
 

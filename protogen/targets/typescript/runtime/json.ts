@@ -1,6 +1,6 @@
 /** Events as lines of JSON, equal to those of `protogen decode --format jsonl`. */
 
-import { frameOf, unknownFrameOf } from "./assembly.js";
+import { makerOf, unknownFrameOf } from "./assembly.js";
 import { equal, toHex } from "./bytes.js";
 import { EncodeError } from "./errors.js";
 import { Framed, type AnyEvent, type Event } from "./events.js";
@@ -71,7 +71,7 @@ function givesBack(event: Framed): boolean {
   );
   try {
     const wire = event.plan
-      ? frameOf(event.codec, event.plan, event.message, parts, false)
+      ? makerOf(event.codec, event.plan).make(event.message, parts, false)
       : unknownFrameOf(event.codec, event.payload, parts);
     return equal(wire, event.raw);
   } catch (error) {

@@ -96,9 +96,9 @@ class Unsigned implements PartNumber {
 
   encode(value: Value, out: Uint8Array, at: number): void {
     if (this.isPlain && typeof value === "number" && value >= 0 && value <= this.most) {
-      for (let index = 0, rest = value; index < this.size; index++) {
-        out[this.little ? at + index : at + this.size - 1 - index] = rest;
-        rest = Math.floor(rest / 256);
+      const { size, little } = this;
+      for (let index = 0, rest = value; index < size; index++, rest >>>= 8) {
+        out[little ? at + index : at + size - 1 - index] = rest;
       }
       return;
     }

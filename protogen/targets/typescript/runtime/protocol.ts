@@ -1,12 +1,12 @@
 /** The codec of a protocol: encode, decode, and an encoder that counts. */
 
-import { frameOf, type GivenParts } from "./assembly.js";
+import { makerOf, type Counts, type FrameMaker, type GivenParts } from "./assembly.js";
 import { standsAt } from "./bytes.js";
 import { Candidate, Failure, verdictOn, type ToldValues } from "./candidate.js";
 import { DecodeError, EncodeError, Fault } from "./errors.js";
 import { framed, type Framed } from "./events.js";
 import type { Value } from "./numbers.js";
-import { ownOf, type Frame } from "./plan.js";
+import type { Frame } from "./plan.js";
 import { Sender } from "./sender.js";
 import { Told, type Telling } from "./told.js";
 
@@ -35,12 +35,15 @@ export interface NamedMessage {
   readonly message: string;
 }
 
-/** Senders of a message, for what was asked for. */
+/** What makes the frames of a message, for what was asked for. */
 interface Choice {
   readonly sender: string | undefined;
   readonly form: string | undefined;
-  readonly senders: readonly Sender[];
+  readonly makers: readonly FrameMaker[];
 }
+
+const NO_OPTIONS = {};
+const NO_PARTS: GivenParts = {};
 
 /** The senders of a protocol. */
 export class Protocol {
@@ -96,24 +99,24 @@ export class Protocol {
   }
 
   /** The frame of a message. Throws an EncodeError. */
-  encode(message: NamedMessage, options: EncodeOptions<object> = {}): Uint8Array {
-    const parts = (options.parts ?? {}) as GivenParts;
-    const strict = options.strict ?? true;
-    return firstThatFits(this.sendersOf(message, options), (sender) =>
-      frameOf(sender, sender.named(message.message)!, message, parts, strict),
-    );
+  encode(message: NamedMessage, options: EncodeOptions<object> = NO_OPTIONS): Uint8Array {
+    const { parts = NO_PARTS, strict = true } = options;
+    return firstThatFits(this.makers(message, options), message, parts as GivenParts, strict);
   }
 
-  /** An endpoint that sends the message, in the forms that carry it. */
-  private sendersOf(message: NamedMessage, options: EncodeOptions<object>): readonly Sender[] {
+  /** What makes the frames of a message: an endpoint that sends it, in the forms that carry it. */
+  private makers(message: NamedMessage, options: EncodeOptions<object>): readonly FrameMaker[] {
     const { sender, form } = options;
     const { message: name } = message;
     let known = this.chosen.get(name);
     if (!known) this.chosen.set(name, (known = []));
-    for (const item of known) if (item.sender === sender && item.form === form) return item.senders;
-    const senders = this.choose(message, options);
-    known.push({ sender, form, senders });
-    return senders;
+    for (let index = 0; index < known.length; index++) {
+      const item = known[index]!;
+      if (item.sender === sender && item.form === form) return item.makers;
+    }
+    const makers = makersOf(this.choose(message, options), name);
+    known.push({ sender, form, makers });
+    return makers;
   }
 
   private choose(message: NamedMessage, options: EncodeOptions<object>): readonly Sender[] {
@@ -141,20 +144,28 @@ export class Protocol {
   }
 }
 
+/** What makes the frames of a message that all of these send. */
+function makersOf(senders: readonly Sender[], name: string): readonly FrameMaker[] {
+  return senders.map((sender) => makerOf(sender, sender.named(name)!));
+}
+
 /** The frame in the first form that can be made. Throws the EncodeError of the last. */
 function firstThatFits(
-  senders: readonly Sender[],
-  encode: (sender: Sender) => Uint8Array,
+  makers: readonly FrameMaker[],
+  message: NamedMessage,
+  parts: GivenParts,
+  strict: boolean,
+  counts?: Counts,
 ): Uint8Array {
-  const last = senders.length - 1;
+  const last = makers.length - 1;
   for (let index = 0; index < last; index++) {
     try {
-      return encode(senders[index]!);
+      return makers[index]!.make(message, parts, strict, counts);
     } catch (error) {
       if (!(error instanceof EncodeError)) throw error;
     }
   }
-  return encode(senders[last]!);
+  return makers[last]!.make(message, parts, strict, counts);
 }
 
 function readAs(sender: Sender, data: Uint8Array, told: ToldValues): Framed {
@@ -193,12 +204,14 @@ function wireOffset(sender: Sender, data: Uint8Array, told: ToldValues, offset: 
 /** Makes the frames of one endpoint, one after another, and advances their counters. */
 export class Encoder<Message extends NamedMessage = NamedMessage, Parts = GivenParts> {
   private readonly senders: readonly Sender[];
-  private readonly next = new Map<string, Value>();
+  private readonly counts = new Map<string, Value>();
+  /** By the names of messages. */
+  private readonly known = new Map<string, readonly FrameMaker[]>();
 
   constructor(protocol: Protocol, sender: string) {
     this.senders = protocol.senders(sender);
     for (const part of this.senders.flatMap((sender) => sender.valueParts)) {
-      if (part.isCounter) this.next.set(part.name, part.default ?? part.least);
+      if (part.isCounter) this.counts.set(part.name, part.default ?? part.least);
     }
   }
 
@@ -207,27 +220,23 @@ export class Encoder<Message extends NamedMessage = NamedMessage, Parts = GivenP
    *
    * A given value is used once and does not change the count, nor does an EncodeError.
    */
-  encode(message: Message, options: Omit<EncodeOptions<Parts>, "sender"> = {}): Uint8Array {
-    const given = (options.parts ?? {}) as GivenParts;
-    const { form } = options;
+  encode(message: Message, options: Omit<EncodeOptions<Parts>, "sender"> = NO_OPTIONS): Uint8Array {
+    const { form, strict = true } = options;
+    const { message: name } = message;
+    let makers = form === undefined ? this.known.get(name) : undefined;
+    if (!makers) {
+      makers = this.makers(name, form);
+      if (form === undefined) this.known.set(name, makers);
+    }
+    const parts = (options.parts ?? NO_PARTS) as GivenParts;
+    return firstThatFits(makers, message, parts, strict, this.counts);
+  }
+
+  private makers(name: string, form: string | undefined): readonly FrameMaker[] {
     const senders = this.senders.filter(
-      (sender) =>
-        sender.named(message.message) && (form === undefined || sender.frame.form === form),
+      (sender) => sender.named(name) && (form === undefined || sender.frame.form === form),
     );
-    if (!senders.length) throw new EncodeError("message", `${message.message} is not sent`);
-    return firstThatFits(senders, (sender) => {
-      const counters = sender.valueParts.filter(
-        (part) => part.isCounter && (ownOf(given, part.name) ?? null) === null,
-      );
-      const counted = counters.map((part) => [part.name, this.next.get(part.name)] as const);
-      const parts = { ...given, ...Object.fromEntries(counted) };
-      const plan = sender.named(message.message)!;
-      const wire = frameOf(sender, plan, message, parts, options.strict ?? true);
-      for (const part of counters) {
-        const value = this.next.get(part.name)!;
-        this.next.set(part.name, value >= part.greatest ? part.least : Number(value) + 1);
-      }
-      return wire;
-    });
+    if (!senders.length) throw new EncodeError("message", `${name} is not sent`);
+    return makersOf(senders, name);
   }
 }

@@ -51,8 +51,6 @@ export class Sender {
   readonly identityParts: readonly IdentityPart[];
   /** Values that callers give. */
   readonly valueParts: readonly ValueNumber[];
-  /** Names of parts that callers may give. */
-  readonly given: ReadonlySet<string>;
   /** Where each part begins without the bytes of the payload, and where the last one ends. */
   readonly offsets: readonly number[];
   /** The same where the payload is empty. */
@@ -87,7 +85,6 @@ export class Sender {
     this.offsets = offsetsOf(frame.parts, false);
     this.offsetsEmpty = offsetsOf(frame.parts, true);
     this.valueParts = numbers.filter((part): part is ValueNumber => part.kind === "value");
-    this.given = new Set([...this.identityParts, ...this.valueParts].map((part) => part.name));
     this.startSize = frame.startWords[0]?.length ?? 0;
     const own = frame.sharesDelimiter ? [] : frame.startWords;
     for (const word of own) this.completesStart[word[word.length - 1]!] = 1;
@@ -247,36 +244,31 @@ export function readPayload(
 
 /** The payload of a message. Throws an EncodeError. */
 export function writePayload(message: MessagePlan, value: unknown, strict: boolean): Uint8Array {
-  const { bytes, size } = payloadOf(message, value, strict, 0);
-  return bytes.slice(0, size);
+  const writer = writerOf(strict, 0);
+  writeMessage(message, writer, value);
+  return writer.taken();
 }
 
-const WRITER = /* @__PURE__ */ new Writer(true);
-
-/** Room for a payload behind so many bytes. It is that of all frames, one after another. */
-export function writerOf(strict: boolean, from: number): Writer {
-  return WRITER.restart(strict, from);
-}
+const WRITER = /* @__PURE__ */ new Writer();
 
 /**
- * The payload of a message behind so many bytes, and its fields that are parts.
+ * What writes a payload behind so many bytes. It is that of all frames, one after another.
  *
- * It stays until the next call. Throws an EncodeError.
+ * With a size, it writes into an array of so many bytes, which are all that it has to write.
  */
-export function payloadOf(
-  message: MessagePlan,
-  value: unknown,
-  strict: boolean,
-  from: number,
-): Writer {
-  const writer = writerOf(strict, from);
+export function writerOf(strict: boolean, from: number, size = 0): Writer {
+  return WRITER.restart(strict, from, size);
+}
+
+/** Write the payload of a message. Throws an EncodeError. */
+export function writeMessage(message: MessagePlan, writer: Writer, value: unknown): void {
+  const from = writer.size;
   message.write(writer, value as never);
   const size = writer.size - from;
   if (!holds(message.sizes, size)) {
     const problem = `makes ${size} bytes of payload, which ${message.name} can't have`;
     throw new EncodeError("", problem);
   }
-  return writer;
 }
 
 /** Bytes at the start of `data` that the message takes. Throws a Fault. */

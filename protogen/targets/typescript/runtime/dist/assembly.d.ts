@@ -1,9 +1,83 @@
-/** Frames from their parts. */
-import type { MessagePlan } from "./plan.js";
+/** Frames from their parts: what is always the same, and what each frame has anew. */
+import { EncodeError } from "./errors.js";
+import { Layout, type Values } from "./layout.js";
+import type { Value } from "./numbers.js";
+import type { MessagePlan, ValueNumber } from "./plan.js";
 import { type Sender } from "./sender.js";
+import type { Writer } from "./writer.js";
 /** Values of parts by their names, as callers give them. */
 export type GivenParts = Readonly<Record<string, unknown>>;
-/** The frame of a message. Throws an EncodeError. */
-export declare function frameOf(sender: Sender, message: MessagePlan, value: unknown, given: GivenParts, strict: boolean): Uint8Array;
+/** The next values of counters, by their names. */
+export type Counts = Map<string, Value>;
+/** A part whose value callers may give, or have to. */
+declare class GivenPart {
+    private readonly part;
+    readonly name: string;
+    readonly slot: number;
+    /** True if every object has something by its name. */
+    private readonly isInherited;
+    /** Bounds of the numbers that need no other check; there are none where it is no number. */
+    private readonly least;
+    private readonly greatest;
+    constructor(part: ValueNumber);
+    /** What a caller gives for it. */
+    own(given: GivenParts): unknown;
+    /** The value of what a caller gives. Throws an EncodeError. */
+    given(own: unknown, strict: boolean): Value;
+    /** The value where a caller gives none; null where there has to be one. */
+    usual(counts: Counts | null): Value | null;
+    /** The error where there is no value. */
+    error(): EncodeError;
+    /** Go on counting, where the callers gave no value. */
+    count(given: GivenParts, counts: Counts): void;
+}
+/** What makes the frames of a sender, one after another. */
+declare class Assembly {
+    readonly sender: Sender;
+    readonly full: Layout;
+    readonly empty: Layout;
+    /** Values of the parts of the frame that is made. */
+    readonly values: Values;
+    readonly parts: readonly GivenPart[];
+    private readonly makers;
+    constructor(sender: Sender);
+    maker(message: MessagePlan): FrameMaker;
+    /**
+     * Set the values of a frame to what callers give, and to what is usual where they give nothing.
+     *
+     * True if they give an identity. Throws an EncodeError.
+     */
+    take(identity: readonly Value[], given: GivenParts, strict: boolean, counts: Counts | null): boolean;
+    /** The same of what callers give of the identity; nothing else is left. */
+    private takeIdentity;
+    /** The frame around a payload of so many bytes, which was written. Throws an EncodeError. */
+    wire(writer: Writer, size: number): Uint8Array;
+    /** Throw an EncodeError unless a decoder takes exactly these bytes for the frame. */
+    check(wire: Uint8Array, payload: Uint8Array): void;
+}
+/** Makes the frames of a message. */
+export declare class FrameMaker {
+    private readonly assembly;
+    private readonly message;
+    /** The first identity of the message. */
+    private readonly identity;
+    /** True if a decoder could take a frame for another one. */
+    private readonly isDoubtful;
+    /** Bytes of every frame, where all have as many and none are stuffed; else 0. */
+    private readonly size;
+    constructor(assembly: Assembly, message: MessagePlan);
+    get sender(): Sender;
+    /**
+     * The frame of a message with the values of parts that callers give.
+     *
+     * Counters that they do not give are those of `counts`, which go on. Throws an EncodeError.
+     */
+    make(value: unknown, given: GivenParts, strict: boolean, counts?: Counts | null): Uint8Array;
+    /** True if a decoder could take a frame of a given identity for another one. */
+    private checkIdentity;
+}
+/** What makes the frames of a message that the sender sends. */
+export declare function makerOf(sender: Sender, message: MessagePlan): FrameMaker;
 /** The frame of an unknown message, whose identity is given. Throws an EncodeError. */
 export declare function unknownFrameOf(sender: Sender, payload: Uint8Array, given: GivenParts): Uint8Array;
+export {};

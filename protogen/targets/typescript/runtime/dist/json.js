@@ -1,5 +1,5 @@
 /** Events as lines of JSON, equal to those of `protogen decode --format jsonl`. */
-import { frameOf, unknownFrameOf } from "./assembly.js";
+import { makerOf, unknownFrameOf } from "./assembly.js";
 import { equal, toHex } from "./bytes.js";
 import { EncodeError } from "./errors.js";
 import { Framed } from "./events.js";
@@ -75,7 +75,7 @@ function givesBack(event) {
     const parts = Object.fromEntries(event.codec.frame.shown.map((part) => [part.name, event.values[part.slot]]));
     try {
         const wire = event.plan
-            ? frameOf(event.codec, event.plan, event.message, parts, false)
+            ? makerOf(event.codec, event.plan).make(event.message, parts, false)
             : unknownFrameOf(event.codec, event.payload, parts);
         return equal(wire, event.raw);
     }

@@ -94,7 +94,7 @@ function numberIn(reader, form, text, step) {
 /** Write an integer as text. */
 export function writeNumeral(writer, value, form, step) {
     if (form.separator !== undefined && form.leads)
-        writer.u8(form.separator);
+        writer.byte(form.separator);
     if (form.separator !== undefined && form.empty && value === form.absent)
         return;
     const least = form.signed ? -BigInt(form.greatest) : 0n;
@@ -102,7 +102,7 @@ export function writeNumeral(writer, value, form, step) {
         throw writer.error(step, `${value} is not in ${least}..${form.greatest}`);
     }
     if (form.base === 256) {
-        writer.u8(Number(value));
+        writer.byte(Number(value));
         return;
     }
     const plain = BigInt(value) < 0n ? -BigInt(value) : BigInt(value);
@@ -115,5 +115,5 @@ export function writeNumeral(writer, value, form, step) {
     if (BigInt(value) < 0n)
         digits = `-${digits}`;
     for (let index = 0; index < digits.length; index++)
-        writer.u8(digits.charCodeAt(index));
+        writer.byte(digits.charCodeAt(index));
 }

@@ -1,12 +1,13 @@
 /** The codec of a protocol: encode, decode, and an encoder that counts. */
-import { frameOf } from "./assembly.js";
+import { makerOf } from "./assembly.js";
 import { standsAt } from "./bytes.js";
 import { Candidate, Failure, verdictOn } from "./candidate.js";
 import { DecodeError, EncodeError, Fault } from "./errors.js";
 import { framed } from "./events.js";
-import { ownOf } from "./plan.js";
 import { Sender } from "./sender.js";
 import { Told } from "./told.js";
+const NO_OPTIONS = {};
+const NO_PARTS = {};
 /** The senders of a protocol. */
 export class Protocol {
     constructor(
@@ -60,24 +61,25 @@ export class Protocol {
         return event.message;
     }
     /** The frame of a message. Throws an EncodeError. */
-    encode(message, options = {}) {
-        const parts = (options.parts ?? {});
-        const strict = options.strict ?? true;
-        return firstThatFits(this.sendersOf(message, options), (sender) => frameOf(sender, sender.named(message.message), message, parts, strict));
+    encode(message, options = NO_OPTIONS) {
+        const { parts = NO_PARTS, strict = true } = options;
+        return firstThatFits(this.makers(message, options), message, parts, strict);
     }
-    /** An endpoint that sends the message, in the forms that carry it. */
-    sendersOf(message, options) {
+    /** What makes the frames of a message: an endpoint that sends it, in the forms that carry it. */
+    makers(message, options) {
         const { sender, form } = options;
         const { message: name } = message;
         let known = this.chosen.get(name);
         if (!known)
             this.chosen.set(name, (known = []));
-        for (const item of known)
+        for (let index = 0; index < known.length; index++) {
+            const item = known[index];
             if (item.sender === sender && item.form === form)
-                return item.senders;
-        const senders = this.choose(message, options);
-        known.push({ sender, form, senders });
-        return senders;
+                return item.makers;
+        }
+        const makers = makersOf(this.choose(message, options), name);
+        known.push({ sender, form, makers });
+        return makers;
     }
     choose(message, options) {
         const { message: name } = message;
@@ -100,19 +102,23 @@ export class Protocol {
         return inForm;
     }
 }
+/** What makes the frames of a message that all of these send. */
+function makersOf(senders, name) {
+    return senders.map((sender) => makerOf(sender, sender.named(name)));
+}
 /** The frame in the first form that can be made. Throws the EncodeError of the last. */
-function firstThatFits(senders, encode) {
-    const last = senders.length - 1;
+function firstThatFits(makers, message, parts, strict, counts) {
+    const last = makers.length - 1;
     for (let index = 0; index < last; index++) {
         try {
-            return encode(senders[index]);
+            return makers[index].make(message, parts, strict, counts);
         }
         catch (error) {
             if (!(error instanceof EncodeError))
                 throw error;
         }
     }
-    return encode(senders[last]);
+    return makers[last].make(message, parts, strict, counts);
 }
 function readAs(sender, data, told) {
     const { startWords } = sender.frame;
@@ -151,11 +157,13 @@ function wireOffset(sender, data, told, offset) {
 /** Makes the frames of one endpoint, one after another, and advances their counters. */
 export class Encoder {
     constructor(protocol, sender) {
-        this.next = new Map();
+        this.counts = new Map();
+        /** By the names of messages. */
+        this.known = new Map();
         this.senders = protocol.senders(sender);
         for (const part of this.senders.flatMap((sender) => sender.valueParts)) {
             if (part.isCounter)
-                this.next.set(part.name, part.default ?? part.least);
+                this.counts.set(part.name, part.default ?? part.least);
         }
     }
     /**
@@ -163,23 +171,22 @@ export class Encoder {
      *
      * A given value is used once and does not change the count, nor does an EncodeError.
      */
-    encode(message, options = {}) {
-        const given = (options.parts ?? {});
-        const { form } = options;
-        const senders = this.senders.filter((sender) => sender.named(message.message) && (form === undefined || sender.frame.form === form));
+    encode(message, options = NO_OPTIONS) {
+        const { form, strict = true } = options;
+        const { message: name } = message;
+        let makers = form === undefined ? this.known.get(name) : undefined;
+        if (!makers) {
+            makers = this.makers(name, form);
+            if (form === undefined)
+                this.known.set(name, makers);
+        }
+        const parts = (options.parts ?? NO_PARTS);
+        return firstThatFits(makers, message, parts, strict, this.counts);
+    }
+    makers(name, form) {
+        const senders = this.senders.filter((sender) => sender.named(name) && (form === undefined || sender.frame.form === form));
         if (!senders.length)
-            throw new EncodeError("message", `${message.message} is not sent`);
-        return firstThatFits(senders, (sender) => {
-            const counters = sender.valueParts.filter((part) => part.isCounter && (ownOf(given, part.name) ?? null) === null);
-            const counted = counters.map((part) => [part.name, this.next.get(part.name)]);
-            const parts = { ...given, ...Object.fromEntries(counted) };
-            const plan = sender.named(message.message);
-            const wire = frameOf(sender, plan, message, parts, options.strict ?? true);
-            for (const part of counters) {
-                const value = this.next.get(part.name);
-                this.next.set(part.name, value >= part.greatest ? part.least : Number(value) + 1);
-            }
-            return wire;
-        });
+            throw new EncodeError("message", `${name} is not sent`);
+        return makersOf(senders, name);
     }
 }

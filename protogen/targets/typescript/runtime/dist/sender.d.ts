@@ -21,8 +21,6 @@ export declare class Sender {
     readonly identityParts: readonly IdentityPart[];
     /** Values that callers give. */
     readonly valueParts: readonly ValueNumber[];
-    /** Names of parts that callers may give. */
-    readonly given: ReadonlySet<string>;
     /** Where each part begins without the bytes of the payload, and where the last one ends. */
     readonly offsets: readonly number[];
     /** The same where the payload is empty. */
@@ -71,13 +69,13 @@ export declare class Sender {
 export declare function readPayload(message: MessagePlan, payload: Uint8Array, held?: HeldParts): unknown;
 /** The payload of a message. Throws an EncodeError. */
 export declare function writePayload(message: MessagePlan, value: unknown, strict: boolean): Uint8Array;
-/** Room for a payload behind so many bytes. It is that of all frames, one after another. */
-export declare function writerOf(strict: boolean, from: number): Writer;
 /**
- * The payload of a message behind so many bytes, and its fields that are parts.
+ * What writes a payload behind so many bytes. It is that of all frames, one after another.
  *
- * It stays until the next call. Throws an EncodeError.
+ * With a size, it writes into an array of so many bytes, which are all that it has to write.
  */
-export declare function payloadOf(message: MessagePlan, value: unknown, strict: boolean, from: number): Writer;
+export declare function writerOf(strict: boolean, from: number, size?: number): Writer;
+/** Write the payload of a message. Throws an EncodeError. */
+export declare function writeMessage(message: MessagePlan, writer: Writer, value: unknown): void;
 /** Bytes at the start of `data` that the message takes. Throws a Fault. */
 export declare function prefixSize(message: MessagePlan, data: Uint8Array, held: HeldParts): number;

@@ -19,9 +19,13 @@ export class Unstuffer {
     }
 }
 function putBy(encode) {
-    return (bytes, size, from, to, end) => {
+    return (bytes, size, from, to) => {
         const region = encode(bytes.slice(from, to));
-        return concatenated([bytes.slice(0, from), region, bytes.slice(to, size), end]);
+        const wire = new Uint8Array(size - (to - from) + region.length);
+        wire.set(bytes.subarray(0, from));
+        wire.set(region, from);
+        wire.set(bytes.subarray(to, size), from + region.length);
+        return wire;
     };
 }
 /** Each byte by its value, as what a byte releases. */
@@ -157,13 +161,16 @@ class LenientSequences extends Unstuffer {
 export function substitution(codes, lenient = false) {
     let sequences;
     let words;
-    const put = (bytes, size, from, to, end) => {
+    const put = (bytes, size, from, to) => {
         words ?? (words = wordsOf(codes));
-        return replaced(bytes, size, from, to, end, words);
+        const more = added(words.more, bytes, from, to);
+        if (!more)
+            return bytes.slice(0, size);
+        return replaced(bytes, from, to, words.words, new Uint8Array(size + more));
     };
     return {
         isStrict: !lenient,
-        encode: (bytes) => put(bytes, bytes.length, 0, bytes.length, NO_BYTES),
+        encode: (bytes) => put(bytes, bytes.length, 0, bytes.length),
         put,
         decoder() {
             sequences ?? (sequences = sequencesOf(codes));
@@ -175,28 +182,30 @@ function wordsOf(codes) {
     const words = BYTES.map(() => null);
     for (const [byte, word] of codes)
         words[byte] = word;
-    return words;
+    return { more: Uint8Array.from(words, (word) => (word ? word.length - 1 : 0)), words };
 }
-function replaced(bytes, size, from, to, end, words) {
-    let more = end.length;
+/** Bytes that are replaced in a run of some. */
+function added(more, bytes, from, to) {
+    let count = 0;
+    for (let index = from; index < to; index++)
+        count += more[bytes[index]];
+    return count;
+}
+/** Some bytes, of which those in a run are replaced. */
+function replaced(bytes, from, to, words, out) {
+    let at = 0;
+    for (; at < from; at++)
+        out[at] = bytes[at];
     for (let index = from; index < to; index++) {
         const word = words[bytes[index]];
-        if (word)
-            more += word.length - 1;
-    }
-    const out = new Uint8Array(size + more);
-    let at = 0;
-    for (let index = 0; index < size; index++) {
-        const byte = bytes[index];
-        const word = index >= from && index < to ? words[byte] : null;
         if (!word)
-            out[at++] = byte;
+            out[at++] = bytes[index];
         else
             for (let place = 0; place < word.length; place++)
                 out[at++] = word[place];
     }
-    for (let index = 0; index < end.length; index++)
-        out[at++] = end[index];
+    for (let index = to; at < out.length; index++)
+        out[at++] = bytes[index];
     return out;
 }
 /** Any byte behind the escape byte is transformed back; others stand for themselves. */
