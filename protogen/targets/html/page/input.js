@@ -64,7 +64,8 @@ function dump(head) {
       // The last line of `hexdump -C` is the size alone.
       if (parseInt(at ?? line, 16) !== size) fail();
       if (at === undefined) return;
-      const digits = (bar ? rest : rest.split(/\s{2,}/)[0]).replace(/\s/g, "");
+      // Characters that `xxd` shows may be bars.
+      const digits = (colon ? rest.split(/\s{2,}/)[0] : rest).replace(/\s/g, "");
       if (!(colon || bar) || !/^(?:[0-9A-Fa-f]{2})+$/.test(digits)) fail();
       out.digits(digits);
       out.piece();
