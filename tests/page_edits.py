@@ -78,8 +78,11 @@ TRY = """([message, sender, frames, edits]) => {
             if (tried.has(class_(key))) continue;
             tried.add(class_(key));
             reset();
+            const { tagName, type } = find(key);
+            const isText = tagName === "TEXTAREA" || (tagName === "INPUT" && type !== "checkbox");
             for (const value of choices(find(key))) {
-                reset();
+                // A text takes the place of the one before, and the form stays as it is.
+                if (!isText) reset();
                 const own = find(key);
                 if (own.disabled) continue;
                 if (own.tagName === "BUTTON") own.click();

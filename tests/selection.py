@@ -58,6 +58,7 @@ ONLY = {
     "test_html_page.py": r"is_one_file|anchor|markup|blanks|hostile|titles|texts_to_copy|counted",
     "test_html_hostile.py": "markup|policies",
     "test_html_keyboard.py": "encode_by_keys",
+    "test_html_recordings.py": r"\[(a raw recording|a log|hex)\]|many",
     "test_html_scale.py": r"\[(matty|rn1|cobs|sync_length_crc)\]|thousand",
     "test_import_mavlink_c.py": "minimal",
     "test_import_mavlink_published.py": r"all_files.*\[2|is_named|small_dialects|left_out_are_read",

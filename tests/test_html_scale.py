@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import suppress
+from datetime import date
 from itertools import cycle, islice
 from pathlib import Path
 from random import Random
@@ -27,6 +28,8 @@ ROOT = Path(__file__).parents[1]
 FOLDERS = ("schemas", "schemas/dialects", "tests/framings", "protogen/library")
 SCHEMAS = [path for folder in FOLDERS for path in sorted((ROOT / folder).glob("*.yaml"))]
 EDIT_ALL = os.environ.get("PROTOGEN_EDIT_ALL") == "1"
+TURN = int(os.environ.get("PROTOGEN_EDIT_TURN") or date.today().toordinal())
+"""Which of many messages have their turn; all of a schema have had it within three weeks."""
 EDITED = 12
 """Messages of an endpoint whose values are edited; of our own schemas, that is all of them."""
 FRAMES = 100
@@ -89,7 +92,7 @@ def check_edits(opened: Opened, codec: Codec, sender: Sender, message: Message) 
     most = min(_TRIED, boundary_rounds(message, sender.frame))
     drawn_frames = [*islice(frames_of(codec, sender, message), most)]
     longest = max(_FORM_SIZE, min(len(data) for _, data in drawn_frames))
-    frames = [(values, data) for values, data in drawn_frames if EDIT_ALL or len(data) <= longest]
+    frames = [(values, data) for values, data in drawn_frames if len(data) <= longest]
     frames_hex = [data.hex() for _, data in frames]
     given = [message.name, sender.endpoint, frames_hex, edits(message, sender.frame)]
     made, tried = opened.run_on_much(TRY, given)
@@ -102,10 +105,11 @@ def check_edits(opened: Opened, codec: Codec, sender: Sender, message: Message) 
 
 
 def spread(messages):
-    """Some of many messages, evenly; all where that is asked for, which takes half an hour."""
-    if EDIT_ALL or len(messages) <= EDITED:
+    """Some of many messages, evenly, others each day; all where that is asked for."""
+    count = len(messages)
+    if EDIT_ALL or count <= EDITED:
         return messages
-    return [messages[index * len(messages) // EDITED] for index in range(EDITED)]
+    return [messages[(index * count // EDITED + TURN) % count] for index in range(EDITED)]
 
 
 @pytest.mark.parametrize("path", SCHEMAS, ids=lambda path: path.stem)

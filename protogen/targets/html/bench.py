@@ -15,8 +15,8 @@ from protogen.targets.typescript.emit import codecs
 
 _BUILT = PurePosixPath("dist")
 _RUNTIME = "./runtime/"
-_MORE = ("protocol",)
-"""What the bench takes of a codec besides its exports."""
+_TAKEN = ("Decoder", "EncodeError", "encode", "protocol")
+"""What the bench takes of a codec."""
 
 Modules = dict[str, str]
 
@@ -26,7 +26,7 @@ def page_script(protocol: Protocol) -> str | None:
     codec = _codec(protocol, "codec.js")
     if codec is None:
         return None
-    return bundled(dict(_page_modules()) | codec, "main.js", {"codec.js": _MORE})
+    return bundled(dict(_page_modules()) | codec, "main.js", {"codec.js": _TAKEN})
 
 
 def has_codec(protocol: Protocol) -> bool:
@@ -44,7 +44,7 @@ def comparison_script(versions: Sequence[tuple[Protocol, Protocol]]) -> str:
     imports = "".join(f'import * as {name} from "./{name}.js";\n' for name in names)
     pairs = ", ".join(f"[old{number}, new{number}]" for number in range(len(versions)))
     modules["codecs.js"] = f"{imports}export const codecs = [{pairs}];\n"
-    return bundled(modules, "comparison.js", {f"{name}.js": _MORE for name in names})
+    return bundled(modules, "comparison.js", {f"{name}.js": _TAKEN for name in names})
 
 
 def _codec(protocol: Protocol, name: str) -> Modules | None:

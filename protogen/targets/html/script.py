@@ -7,18 +7,11 @@ So it needs no module loader, which no page has that is opened as a file.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
-from posixpath import dirname, join, normpath
 
-_IMPORT = re.compile(
-    r"^(?P<kind>import|export)\s+(?:\*\s+as\s+(?P<whole>\w+)|\{(?P<names>[^}]*)\})"
-    r'\s+from\s+"(?P<path>[^"]+)";[^\S\n]*\n?',
-    re.MULTILINE,
-)
-_EXPORTED = re.compile(
-    r"^export (?:async )?(?:function\*?|class|const) (?P<name>\w+)", re.MULTILINE
-)
+from protogen.targets.html.needs import Needed, needed
+
 _TOKEN = re.compile(
     r"(?P<remark>//[^\n]*|/\*.*?\*/)"
     r"|(?P<text>'(?:\\.|[^'\\\n])*'|\"(?:\\.|[^\"\\\n])*\")"
@@ -39,62 +32,44 @@ _HEADS = ("for", "while", "if")
 _SHORTER = {"const": "let", "undefined": "void 0", "true": "!0", "false": "!1"}
 """Words, and what means the same where they are no names of members."""
 
-_KEPT = 128
-"""Modules of which is remembered what was made of them: most are the same on each page."""
+_KEPT = 4096
+"""Statements of which is remembered what was made of them: most are the same on each page."""
 
 
-def bundled(modules: Mapping[str, str], entry: str, more: Mapping[str, Iterable[str]]) -> str:
-    """The script that runs the module `entry`; `more` names what modules give besides exports."""
-    order: list[str] = []
-    _visit(entry, modules, order, ())
-    numbers = {path: f"m{index}" for index, path in enumerate(order)}
-    parts = [_module(path, modules[path], numbers, more.get(path, ())) for path in order]
+def bundled(modules: Mapping[str, str], entry: str, taken: Mapping[str, Collection[str]]) -> str:
+    """The script that runs the module `entry`, with what it needs of the others.
+
+    `taken` names what is taken of modules that others take whole; they need not export it.
+    """
+    found = needed(modules, entry, taken)
+    numbers = {path: f"m{index}" for index, path in enumerate(found)}
+    parts = [_module(own, numbers[path], numbers) for path, own in found.items()]
     return '(() => {\n"use strict";\n' + "".join(parts) + "})();\n"
 
 
-def _visit(
-    path: str, modules: Mapping[str, str], order: list[str], around: tuple[str, ...]
-) -> None:
-    """Put a module behind those that it imports."""
-    assert path not in around, f"{path} imports itself by {around}"
-    if path in order:
-        return
-    for found in _IMPORT.finditer(modules[path]):
-        _visit(_resolved(path, found["path"]), modules, order, (*around, path))
-    order.append(path)
-
-
-def _resolved(importer: str, path: str) -> str:
-    return normpath(join(dirname(importer), path))
-
-
-def _module(path: str, text: str, numbers: Mapping[str, str], more: Iterable[str]) -> str:
-    given: list[str] = [*more]
-
-    def bind(found: re.Match[str]) -> str:
-        name = numbers[_resolved(path, found["path"])]
-        if found["whole"]:
-            return f"const {found['whole']} = {name};\n"
-        names = [item.strip() for item in found["names"].split(",") if item.strip()]
-        if found["kind"] == "export":
-            given.extend(
-                f"{item.split(' as ')[-1]}:{name}.{item.split(' as ')[0]}" for item in names
-            )
-            return ""
-        bound = ", ".join(item.replace(" as ", ": ") for item in names)
-        return f"const {{ {bound} }} = {name};\n" if names else ""
-
-    text = _IMPORT.sub(bind, text)
-    given += [found["name"] for found in _EXPORTED.finditer(text)]
-    text = re.sub(r"^export (?=async|function|class|const)", "", text, flags=re.MULTILINE)
-    assert not re.search(r"^export ", text, re.MULTILINE), f"{path} exports in a way not known here"
-    exports = f"return{{{','.join(given)}}};"
-    return f"let {numbers[path]}=(()=>{{\n{_short(text)}{exports}}})();\n"
+def _module(own: Needed, number: str, numbers: Mapping[str, str]) -> str:
+    """A module as a function that gives what others need of it."""
+    bound: dict[str, list[str]] = {}
+    text = ""
+    for name, item in own.module.imports.items():
+        if name in own.names and not item.name:
+            text += f"let {name}={numbers[item.path]};"
+        elif name in own.names:
+            is_same = name == item.name
+            bound.setdefault(item.path, []).append(name if is_same else f"{item.name}:{name}")
+    text += "".join(f"let{{{','.join(names)}}}={numbers[path]};" for path, names in bound.items())
+    text += "".join(_short(item.text) for item in own.statements())
+    passed = own.module.passed_on
+    given = [
+        f"{name}:{numbers[passed[name].path]}.{passed[name].name}" if name in passed else name
+        for name in sorted(own.given)
+    ]
+    return f"let {number}=(()=>{{\n{text}return{{{','.join(given)}}};}})();\n"
 
 
 @lru_cache(_KEPT)
 def _short(text: str) -> str:
-    """The module without comments, and without blanks and line breaks that nothing needs."""
+    """A statement without comments, and without blanks and line breaks that nothing needs."""
     parts, end, blank = ["\n"], 0, ""
     while end < len(text):
         token, kind = _token(text, end, parts[-1])
@@ -112,7 +87,8 @@ def _short(text: str) -> str:
         if parts[-2:] == ["=", ">"] and len(parts) > _ARROW:
             _unwrap(parts)
         blank = ""
-    return "".join(parts[1:]) + "\n"
+    found = "".join(parts[1:])
+    return found if not found or found[-1] in ";}" else f"{found}\n"
 
 
 def _is_member(text: str, end: int, last: str) -> bool:

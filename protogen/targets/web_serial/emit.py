@@ -22,8 +22,8 @@ _FOLDER = PurePosixPath("examples", "web-serial")
 _SHARED = (
     *("page.css", "bench.css"),
     *("annotate.js", "cursor.js", "dissect.js", "dom.js", "encode_view.js", "explain.js"),
-    *("expressions.js", "form.js", "fractions.js", "input.js", "numbers.js", "octets.js"),
-    *("plans.js", "readings.js", "values.js", "wire.js"),
+    *("expressions.js", "form.js", "fractions.js", "gathered.js", "numbers.js", "octets.js"),
+    *("plans.js", "readings.js", "tokens.js", "values.js", "wire.js"),
 )
 """Of the bench."""
 

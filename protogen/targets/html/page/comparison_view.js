@@ -2,18 +2,18 @@
 import { cellsOf } from "./api.js";
 import { h, later, options, show } from "./dom.js";
 import { eventView } from "./event_view.js";
-import { InputError, piecesOf } from "./input.js";
-import { fromHex } from "./octets.js";
+import { readText } from "./input.js";
 import { eventsOf } from "./streams.js";
+import { InputError } from "./tokens.js";
 
 const MOST = 50;
 const HEADS = ["Old", "New"];
 let next = 0;
 
-/** What both versions read in pieces that one endpoint sent, in groups that end at the same byte. */
-function readingsOf(explainers, names, pieces) {
+/** What both versions read in what one endpoint sent, in groups that end at the same byte. */
+function readingsOf(explainers, names, given) {
   const found = names.map((name, side) =>
-    name === null ? [] : eventsOf(explainers[side].codec, pieces, name, [name]),
+    name === null ? [] : eventsOf(explainers[side].codec, given, name, [name]),
   );
   return groupsOf(found).map((group) => ({ names, group }));
 }
@@ -73,11 +73,11 @@ export class ComparisonBench {
     show(this.events);
     this.note.textContent = "";
     try {
-      const { form, pieces, notes } = piecesOf(this.bytes.value, this.endpoints.flat().filter(Boolean));
-      const found = this.readings(pieces);
-      const size = pieces.reduce((sum, item) => sum + item.bytes.length, 0);
+      const given = readText(this.bytes.value, this.endpoints.flat().filter(Boolean));
+      const { form, size, notes } = given;
+      const found = this.readings(given);
       const left = found.length > MOST ? [`${found.length - MOST} more are not shown`] : [];
-      if (size) this.note.textContent = [`${size} bytes of ${form}`, ...notes.slice(0, 3), ...left].join(". ");
+      if (size) this.note.textContent = [`${size} bytes of ${form}`, ...notes, ...left].join(". ");
       show(this.events, found.slice(0, MOST).map((item) => sides(this.explainers, item)));
     } catch (error) {
       if (!(error instanceof InputError || error instanceof RangeError)) throw error;
@@ -86,15 +86,15 @@ export class ComparisonBench {
   }
 
   /** Of each endpoint what it sent: lines that name one are its own, others of the one chosen. */
-  readings(pieces) {
+  readings(given) {
     const chosen = Number(this.from.value);
-    const place = ({ name }) => {
+    const place = (name) => {
       const own = this.endpoints.findIndex((names) => names.includes(name));
       return name && own >= 0 ? own : chosen;
     };
     return this.endpoints.flatMap((names, at) => {
-      const own = pieces.filter((item) => place(item) === at).map((item) => ({ ...item, name: "" }));
-      return own.length ? readingsOf(this.explainers, names, own) : [];
+      const own = given.only((name) => place(name) === at);
+      return own.size ? readingsOf(this.explainers, names, own) : [];
     });
   }
 }
@@ -102,8 +102,7 @@ export class ComparisonBench {
 /** Show a frame that the page has as digits in place of its table. */
 export function showWitness(holder, explainers) {
   const { hex, old, now } = holder.dataset;
-  const pieces = [{ bytes: fromHex(hex), time: null, name: "" }];
   const heads = [...holder.querySelectorAll(".side")].map((item) => item.textContent);
-  const found = readingsOf(explainers, [old ?? null, now ?? null], pieces);
+  const found = readingsOf(explainers, [old ?? null, now ?? null], readText(hex, []));
   holder.replaceWith(...found.map((item) => sides(explainers, item, heads)));
 }

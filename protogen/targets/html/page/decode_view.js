@@ -1,9 +1,10 @@
 /** The bench's side that decodes: bytes of any dress, and what each event says. */
 import { by, h, later, options, show } from "./dom.js";
 import { eventView } from "./event_view.js";
-import { InputError, piecesOf } from "./input.js";
+import { readText } from "./input.js";
 import { fromHex, hexOf } from "./octets.js";
 import { eventsOf, takesAll } from "./streams.js";
+import { InputError } from "./tokens.js";
 
 const PAGE = 50;
 
@@ -49,10 +50,9 @@ export class DecodeView {
     show(by("events"));
     by("note").textContent = "";
     try {
-      const { form, pieces, notes } = piecesOf(text, this.endpoints);
-      const found = eventsOf(this.explainer.codec, pieces, endpoint, this.endpoints, this.toldValues());
-      const size = pieces.reduce((sum, item) => sum + item.bytes.length, 0);
-      if (size) by("note").textContent = [summary(found, size, form), ...notes.slice(0, 3)].join(". ");
+      const given = readText(text, this.endpoints);
+      const found = eventsOf(this.explainer.codec, given, endpoint, this.endpoints, this.toldValues());
+      if (given.size) by("note").textContent = [summary(found, given.size, given.form), ...given.notes].join(". ");
       this.showFrom(found, 0);
     } catch (error) {
       if (!(error instanceof InputError || error instanceof RangeError)) throw error;

@@ -1,17 +1,13 @@
 /** A recording on the bench: counts and rates of messages, damage, and a field over time. */
 import { fractionOf, fraction, number } from "./fractions.js";
 import { by, h, options, show } from "./dom.js";
-import { piecesOf, InputError } from "./input.js";
 import { hexOf } from "./octets.js";
-import { Plot } from "./plot.js";
+import { Plot, Series } from "./plot.js";
 import { scaled } from "./readings.js";
-import { endpointOf } from "./streams.js";
+import { Recording, Tally } from "./recording.js";
 import { keyOf } from "./values.js";
 
 const MOST_BYTES = 50 * 1024 * 1024;
-const CHUNK = 1 << 17;
-const MOST_SPANS = 100;
-const MOST_POINTS = 200000;
 
 export class FileView {
   constructor(explainer, endpoints, inspect) {
@@ -39,73 +35,55 @@ export class FileView {
   async read(file) {
     if (!file) return;
     show(by("summary"));
+    this.input = null;
+    const run = ++this.run;
+    by("cancel").hidden = true;
     if (file.size > MOST_BYTES) {
       by("progress").textContent = `${file.name} has more than 50 MB.`;
       return;
     }
     by("progress").textContent = `Reading ${file.name}`;
-    const bytes = new Uint8Array(await file.arrayBuffer());
-    await new Promise((resolve) => setTimeout(resolve));
-    try {
-      this.input = piecesIn(bytes, this.endpoints);
-    } catch (error) {
-      if (!(error instanceof InputError)) throw error;
-      by("progress").textContent = error.message;
-      return;
-    }
+    const input = await Recording.of(file, this.endpoints);
+    if (run !== this.run) return;
+    this.input = input;
     await this.count();
   }
 
-  /** Decode all of it, and call `take(event, time)` for each event. False: another run began. */
-  async each(take) {
+  /** Decode all of it into what `begin()` gives, or up to where that is cancelled. Null: another run began. */
+  async each(begin) {
+    const { input } = this;
     const run = ++this.run;
-    const { pieces } = this.input;
-    const chosen = by("file-sender").value;
-    const decoders = new Map();
-    const size = pieces.reduce((sum, item) => sum + item.bytes.length, 0);
-    let [done, since] = [0, 0];
-    for (const item of pieces) {
-      const { bytes, time } = item;
-      const own = endpointOf(item, chosen, this.endpoints);
-      if (!decoders.has(own)) decoders.set(own, new this.explainer.codec.Decoder(own));
-      for (let at = 0; at < bytes.length; at += CHUNK) {
-        for (const event of decoders.get(own).feed(bytes.subarray(at, at + CHUNK))) take(event, time);
-        const taken = Math.min(CHUNK, bytes.length - at);
-        [done, since] = [done + taken, since + taken];
-        if (since < CHUNK) continue;
-        since = 0;
-        by("progress").textContent = `${Math.floor((100 * done) / size)} % of ${size} bytes`;
-        await new Promise((resolve) => setTimeout(resolve));
-        if (run !== this.run) return false;
-      }
-    }
-    for (const decoder of decoders.values()) for (const event of decoder.flush()) take(event, null);
-    by("progress").textContent = `${size} bytes of ${this.input.form}, decoded.`;
-    return true;
+    const [cancel, said] = [by("cancel"), by("progress")];
+    let [isCancelled, told] = [false, ""];
+    cancel.onclick = () => (isCancelled = true);
+    cancel.hidden = false;
+    const goesOn = (place) => {
+      if (run !== this.run || isCancelled) return false;
+      const now = `${Math.floor((100 * place) / input.file.size)} % of ${input.file.size} bytes`;
+      // What is read aloud changes seldom.
+      if (now !== told) said.textContent = told = now;
+      return true;
+    };
+    const taker = await input.read(this.explainer.codec, by("file-sender").value, begin, goesOn);
+    if (run !== this.run) return null;
+    if (document.activeElement === cancel) by("chosen").focus();
+    cancel.hidden = true;
+    const { size, out } = taker;
+    said.textContent = [
+      `${size} bytes of ${input.form}, decoded${isCancelled ? ", then cancelled" : ""}`,
+      ...(out.left ? [`${out.left} lines are left out`, ...out.notes] : []),
+    ].join(". ");
+    return taker;
   }
 
   async count() {
     if (!this.input) return;
-    const [counts, spans] = [new Map(), []];
-    let [invalid, lost] = [0, 0];
-    let [first, last] = [null, null];
-    const isWhole = await this.each((event, time) => {
-      if (time !== null) [first, last] = [first ?? time, time];
-      if (event.kind === "invalid") {
-        [invalid, lost] = [invalid + 1, lost + event.size];
-        // The bytes are copied, so that what they lie in can be forgotten.
-        if (spans.length < MOST_SPANS) spans.push({ ...spanOf(event), raw: event.raw.slice(0, 64) });
-        return;
-      }
-      const name = event.kind === "message" ? event.message.message : "unknown";
-      const own = counts.get(name) ?? { count: 0, bytes: 0 };
-      counts.set(name, { count: own.count + 1, bytes: own.bytes + event.size });
-    });
-    if (isWhole) this.show(counts, spans, { invalid, lost, seconds: first === last ? 0 : (last - first) / 1e9 });
+    const tally = await this.each(() => new Tally());
+    if (tally) this.show(tally);
   }
 
-  show(counts, spans, { invalid, lost, seconds }) {
-    const size = this.input.pieces.reduce((sum, item) => sum + item.bytes.length, 0);
+  show({ counts, spans, invalid, lost, size, first, last }) {
+    const seconds = Math.max(0, last - first) / 1e9;
     // Without times, a second is so many bytes as the link carries.
     const { byteRate } = this.explainer.plans;
     const duration = seconds || (byteRate ? size / byteRate : 0);
@@ -148,42 +126,26 @@ export class FileView {
   }
 
   async plot(field, canvas, said) {
-    let points = [];
-    let [step, seen] = [1, 0];
-    const isWhole = await this.each((event, time) => {
-      if (event.kind !== "message" || event.message.message !== field.message) return;
-      const value = field.read(event.message);
-      if (value === null || seen++ % step) return;
-      points.push([time === null ? event.offset : time / 1e9, value]);
-      if (points.length < MOST_POINTS) return;
-      [points, step] = [points.filter((_, index) => index % 2 === 0), step * 2];
-    });
-    if (!isWhole) return;
-    const isTimed = this.input.pieces.some((item) => item.time !== null);
-    const words = new Plot(canvas, points, isTimed ? "s" : "offset in bytes", field.unit).draw();
-    const text = `${field.message}.${field.path}: ${words}${step > 1 ? `, each ${step}th value` : ""}`;
+    let isTimed = false;
+    const series = await this.each(() =>
+      Object.assign(new Series(), {
+        take(event, time) {
+          isTimed ||= time !== null;
+          if (event.kind !== "message" || event.message.message !== field.message) return;
+          const value = field.read(event.message);
+          if (value !== null) this.add(time === null ? event.offset : time / 1e9, value);
+        },
+      }),
+    );
+    if (!series) return;
+    const words = new Plot(canvas, series.scaled(field.physical), isTimed ? "s" : "offset in bytes", field.unit).draw();
+    const text = `${field.message}.${field.path}: ${words}`;
     canvas.setAttribute("aria-label", text);
     said.textContent = text;
   }
 }
 
-const spanOf = ({ offset, size, reason }) => ({ offset, size, reason });
-
-/** Bytes as pieces: text where it is text that stands for bytes, else as they are. */
-function piecesIn(bytes, endpoints) {
-  const isText = bytes.subarray(0, 4096).every((byte) => (byte >= 0x20 && byte < 0x7f) || [9, 10, 13].includes(byte));
-  const raw = { form: "a raw recording", pieces: [{ bytes, time: null, name: "" }] };
-  if (!isText || !bytes.length) return raw;
-  try {
-    return piecesOf(new TextDecoder().decode(bytes), endpoints);
-  } catch (error) {
-    // Protocols of printable bytes look like text, too.
-    if (!(error instanceof InputError)) throw error;
-    return raw;
-  }
-}
-
-/** The numbers of a message that are always there, with what reads them as physical values. */
+/** The numbers of a message that are always there, with what reads them and makes them physical. */
 function numbersOf(steps, path = "", reach = (message) => message) {
   return steps.flatMap((step) => {
     const own = path + step.name;
@@ -192,15 +154,15 @@ function numbersOf(steps, path = "", reach = (message) => message) {
     if (step.kind === "optional") return numbersOf([step.step], path, reach);
     const { type } = step;
     if (step.kind !== "scalar" || !["integer", "float"].includes(type.kind)) return [];
-    const special = Object.values(step.special ?? {}).map(Number);
+    const isFloat = type.kind === "float";
+    const special = new Set(Object.values(step.special ?? {}).map(Number));
     const read = (message) => {
-      const raw = inside(message);
-      if (raw === null || raw === undefined || special.includes(Number(raw))) return null;
-      if (type.kind === "float" && !Number.isFinite(raw)) return null;
-      if (!step.scale) return Number(raw);
-      return number(scaled(step, type.kind === "float" ? fractionOf(raw) : fraction(BigInt(raw))));
+      const raw = Number(inside(message) ?? NaN);
+      return special.has(raw) || !Number.isFinite(raw) ? null : raw;
     };
-    return [{ path: own, unit: step.unit ?? "", read }];
+    const physical = (raw) =>
+      step.scale ? number(scaled(step, isFloat ? fractionOf(raw) : fraction(BigInt(raw)))) : raw;
+    return [{ path: own, unit: step.unit ?? "", read, physical }];
   });
 }
 

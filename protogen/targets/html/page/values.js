@@ -2,7 +2,7 @@
 import { decimalIn, fractionIn, minus, over, rounded } from "./fractions.js";
 import { said } from "./expressions.js";
 import { hexOf } from "./octets.js";
-import { parseHex } from "./input.js";
+import { parseHex } from "./tokens.js";
 
 export const keyOf = (step) => step.key ?? step.name;
 
