@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import suppress
-from datetime import date
 from itertools import cycle, islice
 from pathlib import Path
 from random import Random
@@ -28,8 +27,8 @@ ROOT = Path(__file__).parents[1]
 FOLDERS = ("schemas", "schemas/dialects", "tests/framings", "protogen/library")
 SCHEMAS = [path for folder in FOLDERS for path in sorted((ROOT / folder).glob("*.yaml"))]
 EDIT_ALL = os.environ.get("PROTOGEN_EDIT_ALL") == "1"
-TURN = int(os.environ.get("PROTOGEN_EDIT_TURN") or date.today().toordinal())
-"""Which of many messages have their turn; all of a schema have had it within three weeks."""
+TURN = int(os.environ.get("PROTOGEN_EDIT_TURN", "0"))
+"""Which of an endpoint's messages come first; other numbers try others of a large endpoint."""
 EDITED = 12
 """Messages of an endpoint whose values are edited; of our own schemas, that is all of them."""
 FRAMES = 100
