@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import os
 import re
 import select
@@ -14,11 +16,12 @@ import tty
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import pytest
 from cli_support import PATIENCE, ROOT, run
 
+from protogen.cli.line.recorders import AnyRecorder
 from protogen.recording import Record, Recorder, RecordKind, records
 
 pytest.importorskip("serialx")
@@ -207,6 +210,14 @@ class TestRecord:
         assert done.exit_code == 2
         assert problem in done.stderr
         assert "hint" in done.stderr
+        assert list(tmp_path.iterdir()) == [], "a file that is in the way of the next attempt"
+
+    def test_without_a_port_an_old_recording_stays(self, tmp_path: Path) -> None:
+        file = tmp_path / "run.pgrec"
+        file.write_text("old")
+        done = run("record", MATTY, "/dev/no_such_port", "-o", str(file), "--force")
+        assert done.exit_code == 2
+        assert file.read_text() == "old"
 
 
 class TestTap:
@@ -285,12 +296,65 @@ class TestReplay:
                 assert read(own, 6) == b"?" + STOP
                 assert line_of(it.stderr) == "11 bytes sent\n"
 
+    def test_waits_until_a_port_that_it_made_is_opened_and_read(self, recording: str) -> None:
+        args = ("replay", recording, "pty:", "--source", "pc", "--speed", "0")
+        with started(*args) as it:
+            made = line_of(it.stderr).split()[-1]
+            assert line_of(it.stderr) == "waiting until it is opened\n"
+            assert not select.select([it.stderr], [], [], 0.3)[0], "it did not wait"
+            with opened(made) as port:
+                time.sleep(0.1)
+                termios.tcflush(port, termios.TCIFLUSH)  # As programs do that open a port.
+                assert not termios.tcgetattr(port)[3] & (termios.ICANON | termios.ECHO)
+                assert select.select([port], [], [], 10)[0]
+                assert it.poll() is None, "it took the port away from its reader"
+                assert read(port, 11) == STOP + b"?" + STOP
+                assert line_of(it.stderr) == "11 bytes sent\n"
+
+    def test_says_what_nobody_read(self, recording: str) -> None:
+        args = ("replay", recording, "pty:", "--source", "pc", "--speed", "0")
+        with started(*args) as it:
+            made = line_of(it.stderr).split()[-1]
+            line_of(it.stderr)
+            with opened(made):
+                assert line_of(it.stderr) == "the other end has not read all of it\n"
+
     def test_asks_whose_bytes_are_sent(self, recording: str) -> None:
         done = run("replay", recording, "pty:")
         assert done.exit_code == 2
         assert "give --source pc or --source esp" in done.stderr
         done = run("replay", recording, "pty:", "--source", "nobody")
         assert "has nothing of `nobody`" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        (("-o", "-"), "a recording is written to a file"),
+        (("-o", "run.pgrec", "--max-size", "0"), "greater than or equal to"),
+        (("-o", "run.pgrec", "--for", "-1"), "greater than or equal to"),
+        (("-o", "run.pgrec", "--baud", "0"), "greater than or equal to"),
+        (("-o", "no/such/run.pgrec"), "no/such/run.pgrec: No such file"),
+    ],
+)
+def test_a_recording_that_can_not_be_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: tuple[str, ...], problem: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = run("record", MATTY, "pty:", *options)
+    assert done.exit_code == 2
+    assert problem in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_is_told_with_the_file() -> None:
+    class Full(Recorder):
+        def write(self, *args: Any, **settings: Any) -> None:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    recorder = AnyRecorder(Full(io.BytesIO()), [Path("run.pgrec")])
+    with pytest.raises(OSError, match=r"No space left on device: 'run\.pgrec'"):
+        recorder.write(b"x", 0)
 
 
 def test_a_pseudo_terminal_passes_control_characters(tmp_path: Path) -> None:

@@ -58,6 +58,17 @@ def test_a_refusal_and_another_reply_are_findings(rig: str, board: SimulatedDevi
     result = run("send", rig, board.port, "set", "value=1", "--expect", "failed")
     assert (result.exit_code, result.stdout.split()[0]) == (1, "done")
     assert "the reply is done, not failed" in result.stderr
+    result = run("send", rig, board.port, "set", "value=0", "--expect", "failed")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert "set was refused: failed (code=1)" in result.stdout
+
+
+def test_what_is_no_reply_can_be_waited_for_as_well(rig: str, board: SimulatedDevice) -> None:
+    result = run("send", rig, f"board={board.port}", "set", "value=1", "--expect", "state")
+    assert (result.exit_code, result.stdout.split()[0]) == (0, "state")
+    result = run("send", rig, board.port, "set", "value=1", "--expect", "reset")
+    assert (result.exit_code, "nobody else sends `reset`" in result.stderr) == (2, True)
+    assert board.counts.received == {"set": 1}  # The second was not sent.
 
 
 def test_without_a_reply_it_says_what_came_instead(rig: str, board: SimulatedDevice) -> None:
@@ -84,5 +95,9 @@ def test_mistakes_are_told_with_what_may_be_given(rig: str, board: SimulatedDevi
     assert (result.exit_code, "70000 is not in 0..65535" in result.stderr) == (2, True)
     result = run("send", rig, board.port, "note", "text=hi", "--expect", "set")
     assert (result.exit_code, "nobody else sends `set`" in result.stderr) == (2, True)
+    result = run("send", rig, f"baord={board.port}", "reset")
+    assert (result.exit_code, "did you mean `board`?" in result.stderr) == (2, True)
+    result = run("send", rig, board.port, "reset", "--timeout", "0")
+    assert (result.exit_code, "0.0 is no timeout" in result.stderr) == (2, True)
     result = run("send", rig, "/dev/no_such_port", "reset")
     assert (result.exit_code, "there is no such port" in result.stderr) == (2, True)

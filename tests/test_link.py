@@ -41,6 +41,13 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
     return kept_module(protogen.load(path))
 
 
+@pytest.fixture
+def schema(tmp_path: Path) -> Path:
+    path = tmp_path / "rig.yaml"
+    path.write_text(SCHEMA)
+    return path
+
+
 async def until(condition: Callable[[], bool]) -> None:
     while not condition():
         await asyncio.sleep(0.005)
@@ -429,3 +436,72 @@ class TestBlocking:
     def test_a_port_that_can_not_be_opened_is_told(self, rig: ModuleType) -> None:
         with pytest.raises(protogen.link.PortError, match="no such port"), rig.connect("/dev/no"):
             pass
+
+
+class TestMistakes:
+    """What a program gets wrong is told at once, with what would be right."""
+
+    @pytest.mark.parametrize(
+        ("options", "problem"),
+        [
+            ({"bauds": 9600}, "`connect` has no option `bauds`"),
+            ({"timeout": 5}, "`connect` has no option `timeout`"),
+            ({"baud": "9600"}, "'9600' is no baud rate"),
+            ({"baud": -1}, "-1 is no baud rate"),
+            ({"silence": -1}, "-1 is no silence"),
+        ],
+    )
+    def test_options(self, rig: ModuleType, options: Any, problem: str) -> None:
+        with pytest.raises(LinkError, match=problem) as caught:
+            rig.connect("/dev/no_such_port", "host", **options)
+        assert caught.value.hint
+
+    def test_calls(self, rig: ModuleType, schema: Path) -> None:
+        with SimulatedDevice(schema, "board") as board, rig.connect(board.port, "host") as link:
+            calls: list[tuple[Callable[[], Any], str]] = [
+                (lambda: link.request(rig.Set(value=1), timeout=0), "0 is no timeout"),
+                (lambda: link.request(rig.Set(value=1), timeout=float("nan")), "nan is no timeout"),
+                (lambda: link.request(rig.Set(value=1), retries=-1), "-1 is no number of retries"),
+                (lambda: link.request({"value": 1}), r"\{'value': 1\} is no message"),
+                (lambda: link.send(rig.Reset), "is no message"),
+                (lambda: link.messages("state"), "sends no 'state'"),
+                (lambda: link.messages(rig.State, overflow="block"), "'block' is no `overflow`"),
+                (lambda: link.last(rig.Set), "the other end sends no set"),
+            ]
+            for call, problem in calls:
+                with pytest.raises(LinkError, match=problem) as caught:
+                    call()
+                assert caught.value.hint, problem
+            assert not link.counts.sent
+
+    def test_a_path_is_a_port(self, rig: ModuleType, schema: Path) -> None:
+        board = SimulatedDevice(schema, "board")
+        with board, rig.connect(Path(board.port), "host") as link:
+            assert link.last(rig.State) is None
+
+    def test_a_link_without_async_works_where_a_loop_runs(
+        self, rig: ModuleType, schema: Path
+    ) -> None:
+        """As in a notebook, whose cells run in a loop."""
+
+        async def cell() -> None:
+            board = SimulatedDevice(schema, "board")
+            with board, rig.connect(board.port, "host") as link:
+                link.send(rig.Note(text="hi"))
+
+        asyncio.run(cell())
+
+    def test_bytes_that_are_no_frame_are_not_nothing(self, rig: ModuleType) -> None:
+        """As with a wrong baud rate: what came may yet be the beginning of a frame."""
+
+        async def asked() -> None:
+            async with (
+                Board(rig, silent) as board,
+                rig.connect(board.port.name, "host", silence=None) as link,
+            ):
+                board.later(0, rig.encode(rig.State(n=1), counter=0)[:3])
+                with pytest.raises(NoReplyError, match="no frame in 3 bytes") as caught:
+                    await link.request(rig.Set(value=1), timeout=0.3, retries=0)
+                assert "baud" in str(caught.value.hint)
+
+        run(asked())

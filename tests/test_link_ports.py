@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from protogen.link.ports import pseudo_terminal
 from protogen.link.ports.address import PortKind, parse_address
 from protogen.link.ports.lasting import LastingPort
 from protogen.link.ports.opening import open_port
@@ -64,6 +65,8 @@ class TestAddress:
             ("socket://:9000", "lacks a host"),
             ("socket://host:many", "has no port number"),
             ("socket://host:99999", "has no port number"),
+            ("udp:9", "`udp:9` is no port"),
+            ("", "no port is named"),
         ],
     )
     def test_of_nothing_is_told_with_a_hint(self, text: str, problem: str) -> None:
@@ -328,3 +331,54 @@ def _noting(asked: list[dict[str, Any]]) -> Callable[..., Any]:
         return Nothing()
 
     return opened
+
+
+@POSIX
+class TestPassingOn:
+    """A tap's line goes on where one end does not take what the other sends."""
+
+    def test_a_pseudo_terminal_that_nobody_reads(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(pseudo_terminal, "PATIENCE", 0.1)
+
+        async def passed_on() -> None:
+            async with make_pseudo_terminal() as made:
+                taken = 0
+                while (sent := await made.pass_on(bytes(1000))) == 1000:
+                    taken += sent
+                taken += sent
+                began = time.monotonic()
+                found = [await made.pass_on(bytes(1000)) for _ in range(100)]
+                taken += sum(found)
+                assert sum(found) < 50_000  # The system may find some room yet.
+                assert time.monotonic() - began < 5, "each waits for itself"
+                program = os.open(made.name, os.O_RDWR | os.O_NOCTTY)
+                while taken:
+                    taken -= len(os.read(program, 4096))
+                await asyncio.sleep(0.05)
+                assert await made.pass_on(b"back") == 4
+                assert os.read(program, 10) == b"back"
+                os.close(program)
+
+        asyncio.run(asyncio.wait_for(passed_on(), 30))
+
+    def test_to_nobody_who_is_connected(self) -> None:
+        async def passed_on() -> None:
+            async with await open_port("listen://127.0.0.1:0") as made:
+                assert await made.pass_on(b"lost") == 0
+                async with await open_port(made.name) as program:
+                    await made.joined()
+                    assert await made.pass_on(b"there") == 5
+                    assert (await program.read()).data == b"there"
+
+        asyncio.run(asyncio.wait_for(passed_on(), 30))
+
+    def test_to_a_port_that_is_gone(self) -> None:
+        async def passed_on() -> None:
+            made, news = make_pseudo_terminal(), list[str]()
+            lasting = LastingPort(made, lambda: open_port("/dev/no_such_port"), news.append)
+            await made.close()
+            assert [await lasting.pass_on(b"x") for _ in range(2)] == [0, 0]
+            assert len(news) == 1
+            assert "waiting for it" in news[0]
+
+        asyncio.run(asyncio.wait_for(passed_on(), 30))

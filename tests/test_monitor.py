@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import json
+import math
 import os
 import re
 import subprocess
@@ -21,12 +23,17 @@ from tooling import require_tool
 
 from generated.python import matty
 from protogen.api import load
+from protogen.cli.line.monitor import has_screen
 from protogen.cli.wire.codec import Codec
 from protogen.link.device import SimulatedDevice
 from protogen.link.ports.settings import LineSettings
 from protogen.link.statistics import LineStatistics
 from protogen.live.codec import kept_module
-from protogen.monitor.filters import FilterError, parse_filter
+from protogen.monitor.fields import FilterError
+from protogen.monitor.filters import parse_filter
+from protogen.monitor.plain import watch
+from protogen.monitor.rows import jitter_text
+from protogen.monitor.session import Session
 from protogen.recording import Recorder
 
 pytest.importorskip("serialx")
@@ -70,6 +77,12 @@ class TestStatistics:
         statistics.take(event_of("status", 6, **STATUS), 0)
         assert statistics.messages["esp", "ack"].gaps == 2
         assert statistics.messages["esp", "status"].gaps == 1
+
+    def test_a_frame_that_is_sent_again_is_no_gap(self) -> None:
+        statistics = LineStatistics(PROTOCOL)
+        for counter in (7, 7, 8, 8, 10):
+            statistics.take(event_of("ack", counter), 0)
+        assert statistics.messages["esp", "ack"].gaps == 1
 
     def test_what_has_changed(self) -> None:
         statistics = LineStatistics(PROTOCOL)
@@ -126,12 +139,93 @@ class TestFilter:
             ("status > 1", "does not say what is compared"),
             ("invalid.size > 1", "`invalid` has no fields"),
             ("status.speed >", "is no condition"),
+            ("status.to_dict < 1", "`status` has no field `to_dict`"),
+            ("status.angle_deg < 11deg", "`11deg` is no number"),
+            ("status.speed = fast", "`fast` is no number"),
+            ("status.mode < remote", "`remote` is no number"),
+            ("status.mode = remoet", "`mode` is never `remoet`"),
+            ("status..mode = 1", "names no field"),
         ],
     )
     def test_mistakes_are_told(self, text: str, problem: str) -> None:
         with pytest.raises(FilterError, match=problem) as caught:
             parse_filter(text, module())
         assert caught.value.hint
+
+
+PACK = """
+protocol: pack
+endpoints: {pack: Battery}
+byte_order: little
+transparency: {encoding: cobs}
+frame:
+  type: {type: uint8, id: true}
+  payload: {}
+  end: {literal: 0}
+messages:
+  cells:
+    id: 1
+    from: pack
+    fields:
+      volts: {type: uint16, count: 2, scale: 0.001, unit: V}
+      name: {type: ascii, size: 8}
+      raw: {type: bytes, size: 2}
+      temp: float32
+      pose: {fields: {x: sint8, y: {type: sint8, count: 2}}}
+"""
+
+
+class TestFilterOfValues:
+    @pytest.mark.parametrize(
+        ("text", "kept"),
+        [
+            ("cells.volts_v[1] < 3.6", True),
+            ("cells.volts[0] = 3600", True),
+            ("cells.volts[9] > 0", False),
+            ("cells.name = 'my pack'", True),
+            ('cells.name != "my pack"', False),
+            ("cells.name < 3", False),
+            ("cells.raw = 0aff", True),
+            ("cells.temp > 0", False),  # It is not a number.
+            ("cells.pose.x = -1 and cells.pose.y[1] = 5", True),
+            ("cells.pose.nothing = 1", False),
+        ],
+    )
+    def test_keeps(self, tmp_path: Path, text: str, kept: bool) -> None:
+        own = self.module(tmp_path)
+        message = own.Cells.from_dict(
+            {"volts": [3600, 3500], "name": "my pack", "raw": "0AFF", "temp": math.nan}
+            | {"pose": {"x": -1, "y": [4, 5]}}
+        )
+        (event,) = own.Decoder("pack").feed(own.encode(message))
+        assert parse_filter(text, own).keeps(event) is kept
+
+    @pytest.mark.parametrize(
+        ("text", "problem"),
+        [
+            ("cells.volts < 3", r"`cells.volts` has several values"),
+            ("cells.volts_v < 3", r"`cells.volts_v` has several values"),
+            ("cells.pose = 1", "`cells.pose` has fields of its own"),
+            ("cells.volts[x] = 1", "is no condition|names no field"),
+        ],
+    )
+    def test_what_is_not_one_value_is_told(self, tmp_path: Path, text: str, problem: str) -> None:
+        with pytest.raises(FilterError, match=problem) as caught:
+            parse_filter(text, self.module(tmp_path))
+        assert caught.value.hint
+
+    def module(self, folder: Path) -> ModuleType:
+        path = folder / "pack.yaml"
+        path.write_text(PACK)
+        return kept_module(load(path))
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(0.0049, "4.9ms"), (0.0999, "99.9ms"), (0.1787, "179ms"), (2.34, "2.3s")],
+)
+def test_a_jitter_is_never_cut(seconds: float, text: str) -> None:
+    assert jitter_text(seconds) == text
 
 
 Test = Callable[[Any, Any, Any], Awaitable[None]]
@@ -198,10 +292,13 @@ class TestScreen:
             )
             await typed(pilot, "p", "status.voltage")
             await until(pilot, lambda: len(app.query_one(Sparkline).data or []) > 3)
+            await typed(pilot, "p", "ack")  # Names no field: the plot stays.
+            assert len(app.query_one(Sparkline).data) > 3
+            await pilot.press("escape")
             await typed(pilot, "f", "ack")
             log = app.query_one(RichLog)
             assert log.lines
-            assert all(" ack " in line.text for line in log.lines)
+            assert [line.text for line in log.lines if " ack " not in line.text] == []
             await typed(pilot, "f", "statsu")  # Is told, and what was typed stays.
             assert app.query_one("#typed").display
             await pilot.press("escape")
@@ -218,13 +315,21 @@ class TestScreen:
             await typed(pilot, "s", "go speed=5 steer=0 @counter=7")
             await until(pilot, lambda: board.counts.received == {"go": 1})
             await until(pilot, lambda: len(session.log) > 5)
+            await typed(pilot, "w", "")  # Is told.
+            assert app.query_one("#typed").display
+            await pilot.press("escape")
             await typed(pilot, "w", str(tmp_path / "log.jsonl"))
+            await pilot.press("ctrl+c")
+            await until(pilot, lambda: not app.is_running)
 
         with SimulatedDevice(MATTY, "esp", rates={"ack": 50}) as board:
             watched({"esp": board.port}, test)
         lines = (tmp_path / "log.jsonl").read_text().splitlines()
         assert len(lines) > 5
         assert all('"message": "ack"' in line for line in lines)
+        times = [json.loads(line)["t_ns"] for line in lines]
+        assert times == sorted(times)
+        assert abs(times[-1] / SECOND - time.time()) < 60
 
     def test_two_hundred_messages(self, tmp_path: Path) -> None:
         from textual.widgets import DataTable
@@ -304,6 +409,23 @@ def test_in_a_terminal_rates_are_right_and_a_port_comes_back() -> None:
                 shown(screen, rf"esp ack +(?!{count} )\d+")
 
 
+@pytest.mark.parametrize(
+    ("term", "addresses", "has"),
+    [
+        ("xterm", ["/dev/ttyUSB0"], True),
+        ("dumb", ["/dev/ttyUSB0"], False),
+        ("xterm", ["-"], False),  # The keys would be the line.
+    ],
+)
+def test_lines_where_there_is_no_screen_or_no_keyboard(
+    monkeypatch: pytest.MonkeyPatch, term: str, addresses: list[str], has: bool
+) -> None:
+    monkeypatch.setenv("TERM", term)
+    for stream in (sys.stdin, sys.stdout):
+        monkeypatch.setattr(stream, "isatty", lambda: True, raising=False)
+    assert has_screen(addresses) is has
+
+
 class TestPlain:
     def test_lines_for_a_pipe(self, tmp_path: Path) -> None:
         with Recorder(tmp_path / "run.pgrec") as recorder:
@@ -317,6 +439,25 @@ class TestPlain:
         ]
         done = run("monitor", MATTY, f"esp={tmp_path}/run.pgrec", "--plain", "--filter", "ack")
         assert len(done.stdout.splitlines()) == 1
+
+    def test_says_what_a_slow_output_misses(
+        self, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        with Recorder(tmp_path / "run.pgrec") as recorder:
+            for number in range(10_100):
+                frame = matty.encode(matty.Ack(), counter=number % 256)
+                recorder.write(frame, t_ns=1, source="esp")
+        ends = {"esp": f"{tmp_path}/run.pgrec"}
+        session = Session(Codec(PROTOCOL, module()), ends, LineSettings())
+        session.start()
+        end = time.monotonic() + 20
+        while not session.is_over and time.monotonic() < end:
+            time.sleep(0.01)
+        watch(session, parse_filter("", module()), None)
+        session.stop()
+        out, err = capsys.readouterr()
+        assert "100 events left out" in err
+        assert len(out.splitlines()) == 10_000
 
     @pytest.mark.parametrize(
         ("args", "problem"),

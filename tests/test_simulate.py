@@ -22,11 +22,11 @@ from test_cli_line import line_of, opened, read, started
 
 import protogen
 from generated.python import matty
-from protogen.link import NoReplyError, RefusedError
+from protogen.link import NoReplyError, PortError, RefusedError
 from protogen.link.answers import AnswerRates
 from protogen.link.damage import DamageRates
 from protogen.link.device import SimulatedDevice
-from protogen.link.simulated_values import example_values
+from protogen.link.simulated_values import ValuesError, example_values
 from protogen.live.codec import kept_module
 from protogen.model.protocol import Protocol
 from protogen.recording import Recorder
@@ -305,12 +305,20 @@ class TestCommand:
             (("--endpoint", "esb"), "`esb` is no endpoint of matty that sends"),
             (("--endpoint", "esp", "--rate", "statu=1"), "esp sends no `statu`"),
             (("--endpoint", "esp", "--rate", "status"), "does not say how often status is sent"),
-            (("--endpoint", "esp", "--rate", "status=-1"), "does not say how often status is sent"),
+            (
+                ("--endpoint", "esp", "--rate", "status=-1"),
+                "does not say how often `status` is sent",
+            ),
             (("--endpoint", "pc", "--refuse", "0.1"), "no exchange of matty has a refusal of pc"),
             (("--endpoint", "esp", "--silent", "--ignore", "1"), "answers no request at all"),
             (("--endpoint", "esp", "--refuse", "1", "--ignore", "1"), "more than 1 together"),
             (("--endpoint", "esp", "--pty", "--listen", ":1"), "exclude each other"),
-            (("--endpoint", "esp", "--values", "no.pgrec"), "no.pgrec: No such file"),
+            (
+                ("--endpoint", "esp", "--values", "no.pgrec"),
+                "--values no.pgrec is none of: examples",
+            ),
+            (("--endpoint", "esp", "--values", "exampels"), "did you mean `examples`?"),
+            (("--endpoint", "esp", "--values", "wave.py"), "write wave.py:NAME"),
             (("--endpoint", "esp", "--values", "no.py:wave"), "there is no file no.py"),
         ],
     )
@@ -354,3 +362,60 @@ def test_a_fixture_of_pytest(tmp_path: Path) -> None:
         [*command, "test_robot.py"], cwd=tmp_path, capture_output=True, text=True, check=False
     )
     assert "1 passed" in done.stdout, done.stdout
+
+
+class TestMistakesOfAProgram:
+    """What a test's author gets wrong is told as it is, and not as what followed of it."""
+
+    def test_an_error_in_an_answer_comes_out_where_the_device_ends(self) -> None:
+        def answered(event: Any) -> list[Any]:
+            raise ZeroDivisionError("of the test's author")
+
+        it = SimulatedDevice(MATTY, "esp").start()
+        it.on("stop", answered)
+        with opened(it.port) as port:
+            os.write(port, STOP)
+            time.sleep(0.2)
+        with pytest.raises(ZeroDivisionError, match="author"):
+            it.send(it.messages["ack"]())
+        with pytest.raises(ZeroDivisionError, match="author"):
+            it.stop()
+
+    @pytest.mark.parametrize("given", [None, [("battery", 1)], 5])
+    def test_values_that_are_no_dict_are_a_mistake_of_the_function(self, given: Any) -> None:
+        it = SimulatedDevice(MATTY, "esp", rates={"status": 200}, values=lambda name, when: given)
+        it.start()
+        time.sleep(0.2)
+        with pytest.raises(ValuesError, match=f"gives {type(given).__name__} for `status`"):
+            it.stop()
+
+    @pytest.mark.parametrize(
+        ("rates", "problem"),
+        [
+            ({"statsu": 5}, "esp sends no `statsu`"),
+            ({"go": 5}, "esp sends no `go`"),
+            ({"status": -1}, "-1 does not say how often `status` is sent"),
+            ({"status": "5 Hz"}, "'5 Hz' does not say how often `status` is sent"),
+            ({"status": math.nan}, "nan does not say"),
+        ],
+    )
+    def test_a_rate_of_nothing_is_told_at_once(self, rates: Any, problem: str) -> None:
+        with pytest.raises(ValuesError, match=re.escape(problem)):
+            SimulatedDevice(MATTY, "esp", rates=rates)
+
+    def test_answers_may_be_messages_of_the_generated_module(self) -> None:
+        with SimulatedDevice(MATTY, "esp") as it, matty.connect(it.port, "pc") as link:
+            it.on("stop", lambda event: [(matty.Nack(), {"counter": event.parts.counter})])
+            with pytest.raises(RefusedError):
+                link.request(matty.Stop())
+
+    def test_begins_once_more_after_its_end(self) -> None:
+        it = SimulatedDevice(MATTY, "esp")
+        for _ in range(2):
+            with it, matty.connect(it.port, "pc") as link:
+                assert link.request(matty.Stop()) == matty.Ack()
+        it.stop()
+        with pytest.raises(PortError, match="has not begun"):
+            it.send(it.messages["ack"]())
+        with it, pytest.raises(PortError, match="has begun already"):
+            it.start()

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections import deque
 from collections.abc import Callable, Coroutine
-from contextlib import suppress
-from threading import Event, Thread
+from threading import Event
 from types import TracebackType
 from typing import Any, Generic, Self, TypeVar
 
 from protogen.link.counts import LinkCounts
-from protogen.link.errors import LinkClosedError, LinkError
+from protogen.link.errors import LinkError
 from protogen.link.link import Link, MessageT, ReceivedT, SentT
+from protogen.link.loop_thread import LoopThread
 from protogen.link.streams import DEFAULT_LIMIT, Heard, Overflow, Stream
 from protogen.runtime.payload.number import GivenValue
 
@@ -20,45 +19,10 @@ ItemT = TypeVar("ItemT")
 ResultT = TypeVar("ResultT")
 
 
-class _Loop:
-    """An event loop in a thread, which other threads ask to do something."""
-
-    def __init__(self) -> None:
-        self._loop = asyncio.new_event_loop()
-        self._thread = Thread(target=self._loop.run_forever, name="protogen link", daemon=True)
-        self._thread.start()
-
-    def do(self, work: Coroutine[Any, Any, ResultT]) -> ResultT:
-        """Wait for the result of some work. Interrupted, the work is cancelled."""
-        if self._loop.is_closed():
-            work.close()
-            raise LinkClosedError("the link is closed")
-        future = asyncio.run_coroutine_threadsafe(work, self._loop)
-        try:
-            return future.result()
-        except BaseException:
-            future.cancel()
-            raise
-
-    def call(self, work: Callable[[], None]) -> None:
-        """Have something done soon, if the loop has not ended."""
-        with suppress(RuntimeError):
-            self._loop.call_soon_threadsafe(work)
-
-    def close(self) -> None:
-        """End the thread."""
-        if self._loop.is_closed():
-            return
-        self._loop.call_soon_threadsafe(self._loop.stop)
-        self._thread.join()
-        self._loop.run_until_complete(self._loop.shutdown_asyncgens())
-        self._loop.close()
-
-
 class BlockingStream(Generic[ItemT]):
     """What comes in from now on: `for item in stream`. See `Stream`."""
 
-    def __init__(self, loop: _Loop, stream: Stream[ItemT]) -> None:
+    def __init__(self, loop: LoopThread, stream: Stream[ItemT]) -> None:
         self._loop = loop
         self._stream = stream
         self._queue = stream.queue
@@ -122,7 +86,7 @@ class BlockingLink(Generic[SentT, ReceivedT]):
 
     def __init__(self, opened: Callable[[], Coroutine[Any, Any, Link[SentT, ReceivedT]]]) -> None:
         """`opened` opens the link, in the event loop that it will have. Raises PortError."""
-        self._loop = _Loop()
+        self._loop = LoopThread("link")
         try:
             self._link = self._loop.do(opened())
         except BaseException:

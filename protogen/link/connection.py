@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from types import ModuleType, TracebackType
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, Unpack
@@ -14,6 +15,7 @@ from protogen.link.ports.lasting import LastingPort
 from protogen.link.ports.opening import open_lasting_port, open_port
 from protogen.link.ports.port import Port
 from protogen.link.ports.settings import settings_of
+from protogen.problems import hint_for
 from protogen.runtime.codec import Protocol as Codec
 
 if TYPE_CHECKING:
@@ -47,17 +49,19 @@ class Connection(Generic[SentT, ReceivedT]):
     def __init__(
         self,
         codec: Codec[Any, Any],
-        port: str | Port,
+        port: str | os.PathLike[str] | Port,
         endpoint: str | None,
         encode: Callable[..., bytes] | None,
         options: Options,
     ) -> None:
         self._codec = codec
-        self._port = port
+        self._port = port if isinstance(port, Port) else os.fspath(port)
         self._endpoint = endpoint
         self._encode = encode
         self._options = options
-        _decoders(codec, endpoint, options)  # What is wrong is told before a port is opened.
+        # What is wrong is told before a port is opened.
+        _check(options)
+        _decoders(codec, endpoint, options)
         self._link: Link[SentT, ReceivedT] | None = None
         self._blocking: BlockingLink[SentT, ReceivedT] | None = None
 
@@ -118,7 +122,7 @@ class Connection(Generic[SentT, ReceivedT]):
 
 def connect(
     codec: ModuleType | Codec[Any, Any] | Protocol,
-    port: str | Port,
+    port: str | os.PathLike[str] | Port,
     endpoint: str | None = None,
     *,
     encode: Callable[..., bytes] | None = None,
@@ -128,7 +132,7 @@ def connect(
 
     `codec` is a generated module, or the protocol that `protogen.load` gives. `endpoint` is this
     program; what the others send is decoded. Without one, the link only listens. Raises LinkError
-    where the protocol has no such endpoint.
+    where the protocol has no such endpoint, or an option is wrong.
     """
     if isinstance(codec, Codec):
         return Connection(codec, port, endpoint, encode, options)
@@ -137,6 +141,20 @@ def connect(
         problem = f"{module.__name__} carries a runtime of its own along"
         raise LinkError(problem, "generate it without --standalone")
     return Connection(module.PROTOCOL, port, endpoint, module.encode, options)
+
+
+def _check(options: Options) -> None:
+    """Raise LinkError for an option that is none, or that has a value that can't be."""
+    known = Options.__annotations__
+    for name in options:
+        if name not in known:
+            hint = hint_for(name, known) or f"options are {', '.join(known)}"
+            raise LinkError(f"`connect` has no option `{name}`", hint)
+    baud, silence = options.get("baud"), options.get("silence")
+    if baud is not None and (not isinstance(baud, int) or baud < 1):
+        raise LinkError(f"{baud!r} is no baud rate", "give bits per second, such as 115200")
+    if silence is not None and not silence >= 0:
+        raise LinkError(f"{silence!r} is no silence", "give seconds, or None")
 
 
 def _module_of(protocol: Protocol) -> ModuleType:

@@ -5,14 +5,13 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import Mapping
-from concurrent.futures import Future
-from threading import Thread
 from types import TracebackType
 from typing import Any, Literal, Self
 
 from protogen.api import load
 from protogen.link.answers import Answer, AnswerRates
 from protogen.link.damage import Damage, DamageRates
+from protogen.link.loop_thread import LoopThread
 from protogen.link.ports.opening import open_port
 from protogen.link.ports.port import Port, PortError
 from protogen.link.simulated_values import (
@@ -74,10 +73,9 @@ class SimulatedDevice:
         """The port that a program opens."""
         self.messages: dict[str, Any] = kept_module(protocol).MESSAGES
         """Classes of the messages, by name, for answers."""
-        self._loop = asyncio.new_event_loop()
+        self._loop: LoopThread | None = None
         self._work: asyncio.Task[None] | None = None
         self._opened: Port | None = None
-        self._ended: Future[None] = Future()
 
     @property
     def counts(self) -> Counts:
@@ -94,46 +92,47 @@ class SimulatedDevice:
         self._simulation.on(message, answer)
 
     def send(self, message: Any, **parts: Any) -> None:
-        """Send a message now. Raises EncodeError, and PortError before the device has begun."""
-        if self._opened is None:
+        """Send a message now. Raises EncodeError, PortError before the device has begun.
+
+        Raises what ended the device, where something has.
+        """
+        if self._loop is None or self._opened is None or self._work is None:
             raise PortError("the device has not begun", "use it in a `with`, or call `start`")
-        sending = self._simulation.send(self._opened, message, **parts)
-        asyncio.run_coroutine_threadsafe(sending, self._loop).result(_PATIENCE)
+        if self._work.done():
+            self._work.result()
+        self._loop.do(self._simulation.send(self._opened, message, **parts), _PATIENCE)
 
     def start(self) -> Self:
-        """Open the port, and begin. Raises PortError."""
-        opened: Future[Port] = Future()
-        Thread(target=self._run, args=(opened,), name="simulated device", daemon=True).start()
-        self._opened = opened.result(_PATIENCE)
+        """Open the port, and begin, also once more after `stop`. Raises PortError."""
+        if self._loop is not None:
+            raise PortError("the device has begun already", "`stop` it first")
+        loop = LoopThread("simulated device")
+        try:
+            self._opened = loop.do(open_port(self._address), _PATIENCE)
+        except BaseException:
+            loop.close()
+            raise
+        self._loop = loop
+        self._work = loop.begin(self._serve(self._opened))
         self.port = self._opened.name
         return self
 
     def stop(self) -> None:
-        """Take the device away, as if it were unplugged."""
-        if self._work is not None:
-            self._loop.call_soon_threadsafe(self._work.cancel)
-            self._ended.result(_PATIENCE)
-            self._work = None
+        """Take the device away, as if it were unplugged.
 
-    def _run(self, opened: Future[Port]) -> None:
+        Raises what ended it before, such as an error in a function that answers.
+        """
+        loop, work = self._loop, self._work
+        self._loop = self._work = self._opened = None
+        if loop is None or work is None:
+            return
         try:
-            self._loop.run_until_complete(self._serve(opened))
-        except asyncio.CancelledError:
-            pass
-        except Exception as error:
-            if opened.done():
-                self._ended.set_exception(error)
-                return
-            opened.set_exception(error)
+            loop.end(work, _PATIENCE)
         finally:
-            self._loop.close()
-        if not self._ended.done():
-            self._ended.set_result(None)
+            loop.close()
 
-    async def _serve(self, opened: Future[Port]) -> None:
-        self._work = asyncio.current_task()
-        async with await open_port(self._address) as port:
-            opened.set_result(port)
+    async def _serve(self, port: Port) -> None:
+        async with port:
             await self._simulation.run(port)
 
     def __enter__(self) -> Self:

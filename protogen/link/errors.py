@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from typing import Any
 
 from protogen.errors import UserError
+from protogen.runtime.attributes import attribute
 from protogen.runtime.payload.message import Message
 
 
@@ -54,8 +56,15 @@ _FULL = "does the other end read, or does its flow control hold the line back?"
 
 def _shown(message: Message) -> str:
     name = type(message).NAME
-    fields = ", ".join(f"{key}={value!r}" for key, value in message.to_dict().items())
+    shown = message.to_dict().items()
+    fields = ", ".join(f"{key}={_label(message, key, value)}" for key, value in shown)
     return f"{name} ({fields})" if fields else name
+
+
+def _label(message: Message, name: str, value: Any) -> str:
+    """A value by its name, where it has one."""
+    label = getattr(getattr(message, attribute(name), None), "name", None)
+    return label.lower() if isinstance(label, str) else repr(value)
 
 
 def _listed(came: Mapping[str, int]) -> str:
@@ -70,4 +79,6 @@ def _hint(came: Mapping[str, int]) -> str:
         return "is it the right port, does the device have power, and is it to answer?"
     if all(name.startswith("invalid") for name in came):
         return "nothing was readable: do the baud rate and the schema fit the device?"
+    if set(came) == {"unknown"}:
+        return "the schema has none of these messages: is it of that device, and the sender right?"
     return "a longer `timeout`, or `retries`, in the exchange or where the request is made"

@@ -13,7 +13,7 @@ import msgspec
 
 from protogen.errors import UserError
 from protogen.link.counts import LinkCounts, name_of
-from protogen.link.errors import LinkClosedError, LinkError
+from protogen.link.errors import LinkClosedError, LinkError, NoReplyError
 from protogen.link.line import LineDecoders
 from protogen.link.ports.port import Arrival, Port, PortLostError
 from protogen.link.requests import Requests
@@ -28,6 +28,7 @@ SentT = TypeVar("SentT", bound=Message)
 ReceivedT = TypeVar("ReceivedT", bound=Message)
 MessageT = TypeVar("MessageT", bound=Message)
 
+_CLASS = "a message is made by its class in the generated module"
 _AT_ONCE = 64
 """Events that are given at once; then those who take them have their turn."""
 
@@ -103,11 +104,8 @@ class Link(Generic[SentT, ReceivedT]):
         At most `limit` of them wait; see `Overflow` for what becomes of more. Raises LinkError
         where the other end sends no such message.
         """
-        known = self.kinds
         for kind in kinds:
-            if kind not in known:
-                names = ", ".join(item.NAME for item in known)
-                raise LinkError(f"the other end sends no {kind.NAME}; it sends {names}")
+            self._check_kind(kind)
         if not kinds:
             raise LinkError("which messages?", "name their classes, or take `events()`")
         return self._stream(frozenset[type[Message]](kinds), limit, overflow)
@@ -117,9 +115,20 @@ class Link(Generic[SentT, ReceivedT]):
         return self._stream(None, limit, overflow)
 
     def last(self, kind: type[MessageT]) -> MessageT | None:
-        """The last message of a kind; None where none has come yet."""
+        """The last message of a kind; None where none has come yet.
+
+        Raises LinkError where the other end sends no such message.
+        """
         found = self._last.get(kind)
+        if found is None:
+            self._check_kind(kind)
         return found if isinstance(found, kind) else None
+
+    def _check_kind(self, kind: type[Message]) -> None:
+        if kind not in self.kinds:
+            names = ", ".join(item.NAME for item in self.kinds)
+            shown = getattr(kind, "NAME", repr(kind))
+            raise LinkError(f"the other end sends no {shown}; it sends {names}", _CLASS)
 
     @property
     def kinds(self) -> tuple[type[Message], ...]:
@@ -164,11 +173,32 @@ class Link(Generic[SentT, ReceivedT]):
         """
         self._encoder_for(message)
         assert self._requests is not None
+        if timeout is not None and not timeout > 0:
+            raise LinkError(f"{timeout!r} is no timeout", "give seconds, more than 0")
+        if retries is not None and retries < 0:
+            raise LinkError(f"{retries!r} is no number of retries", "0 sends it once")
         self._check_open()
-        reply: Any = await self._requests.ask(message, timeout, retries, parts)
+        try:
+            reply: Any = await self._requests.ask(message, timeout, retries, parts)
+        except NoReplyError as error:
+            raise self.told(error) from None
         return reply  # type: ignore[no-any-return]
 
+    @property
+    def unfinished(self) -> int:
+        """Bytes that came and of which nothing is certain yet."""
+        return self._line.pending
+
+    def told(self, error: NoReplyError) -> NoReplyError:
+        """The error, which does not say that nothing came where bytes did."""
+        if error.came or not self.unfinished:
+            return error
+        came = {f"invalid: no frame in {self.unfinished} bytes": 1}
+        return NoReplyError(error.request, error.attempts, error.timeout, came)
+
     def _encoder_for(self, message: Message) -> Encoder:
+        if not isinstance(message, Message):
+            raise LinkError(f"{message!r} is no message", _CLASS)
         if self._encoder is None:
             who = f"{self.endpoint} sends nothing" if self.endpoint else "it only listens"
             names = " or ".join(self._codec.endpoints)

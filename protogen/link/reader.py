@@ -97,7 +97,9 @@ class LineReader:
         seen = {source}
         while True:
             try:
-                arrival = await asyncio.wait_for(port.read(), silence)
+                # wait_for of Python 3.11 may take a cancellation for a read that has just ended.
+                async with asyncio.timeout(silence):
+                    arrival = await port.read()
             except TimeoutError:
                 for name in seen:
                     self._listener.take_events(name, self._decoders.idle(name), time.time_ns())

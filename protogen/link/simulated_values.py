@@ -101,10 +101,13 @@ def computed_values(others: ValueSource, function: ValueFunction) -> ValueSource
     def values(name: str, seconds: float) -> tuple[Values, Values]:
         fields, parts = others(name, seconds)
         try:
-            given = function(name, seconds)
+            given: Any = function(name, seconds)
         except Exception as error:  # It is the user's own program.
             problem = f"the function of values fails for `{name}`: {type(error).__name__}: {error}"
             raise ValuesError(problem) from error
+        if not isinstance(given, Mapping):
+            problem = f"the function of values gives {type(given).__name__} for `{name}`"
+            raise ValuesError(problem, "have it return a dict of fields; {} leaves all as they are")
         return {**fields, **given}, parts
 
     return values

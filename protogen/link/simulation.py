@@ -18,8 +18,12 @@ from protogen.link.simulated_values import ValuesError, ValueSource
 from protogen.model.messages import given_parts
 from protogen.model.parts import CounterPart
 from protogen.model.protocol import Protocol
+from protogen.problems import hint_for
 from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import DecodeError, EncodeError
+
+FASTEST = 100_000.0
+"""Messages a second; no clock is finer."""
 
 
 class Counts(msgspec.Struct):
@@ -33,7 +37,18 @@ class Counts(msgspec.Struct):
 
 
 def rates_of(protocol: Protocol, endpoint: str, stated: Mapping[str, float]) -> dict[str, float]:
-    """How often an endpoint sends each message, in Hz: as stated, else as the schema says."""
+    """How often an endpoint sends each message, in Hz: as stated, else as the schema says.
+
+    Raises ValuesError for a message that it does not send, and for what is no rate.
+    """
+    names = [message.name for message in protocol.messages if endpoint in message.senders]
+    for name, rate in stated.items():
+        if name not in names:
+            hint = hint_for(name, names) or f"it sends {', '.join(names)}"
+            raise ValuesError(f"{endpoint} sends no `{name}`", hint)
+        if not isinstance(rate, int | float) or not 0 <= rate <= FASTEST:
+            problem = f"{rate!r} does not say how often `{name}` is sent"
+            raise ValuesError(problem, "give a number of Hz; 0 sends it not at all")
     said = {
         message.name: float(message.rate)
         for message in protocol.messages
@@ -100,7 +115,8 @@ class Simulation:
             await asyncio.gather(listening, *tasks, return_exceptions=True)
 
     async def send(self, port: Port, message: Any, **parts: Any) -> None:
-        """Send a message now. Raises EncodeError."""
+        """Send a message now, of this module or of one generated elsewhere. Raises EncodeError."""
+        message = self._own(message)
         frame = self._encoder.encode(message, **parts)
         if self._damage is not None:
             await asyncio.sleep(self._damage.pause())
@@ -109,6 +125,13 @@ class Simulation:
         self.counts.sent[name] = self.counts.sent.get(name, 0) + 1
         if not await port.offer(frame):
             self.counts.lost += 1
+
+    def _own(self, message: Any) -> Any:
+        """A message as one of this module's class: users have generated a module, too."""
+        own = self._module.MESSAGES.get(getattr(message, "NAME", None))
+        if own is None or isinstance(message, (own, type)):
+            return message
+        return own.from_dict(message.to_dict())
 
     def made(self, name: str) -> tuple[Any, dict[str, Any]]:
         """A message with values for now, and its parts. Raises ValuesError."""

@@ -164,7 +164,9 @@ class LineStatistics:
         size = counter.greatest - counter.least + 1
         expected = self._expected.get(event.sender, value)
         self._expected[event.sender] = counter.least + (value - counter.least + 1) % size
-        return (value - expected) % size
+        missing = (value - expected) % size
+        # The same counter once more is a repetition: that all others are missing is unlikely.
+        return 0 if missing == size - 1 else missing
 
 
 def _values_of(event: Any) -> Mapping[str, Any]:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from threading import Lock
 from types import TracebackType
-from typing import Any, Generic, Literal, NamedTuple, Self, TypeVar
+from typing import Any, Generic, Literal, NamedTuple, Self, TypeVar, get_args
 
 from protogen.link.errors import LinkError
 from protogen.runtime.events import Event
@@ -37,6 +37,9 @@ class Queue(Generic[ItemT]):
     def __init__(self, limit: int, overflow: Overflow) -> None:
         if limit < 1:
             raise LinkError(f"a stream holds at least 1 item, not {limit}")
+        if overflow not in get_args(Overflow):
+            words = " or ".join(map(repr, get_args(Overflow)))
+            raise LinkError(f"{overflow!r} is no `overflow`", f"give {words}")
         self._limit = limit
         self.waits = overflow == "wait"
         """True if the reader waits for room."""

@@ -19,6 +19,8 @@ class Passed(msgspec.Struct):
     """What was passed on in one direction, and how long the tap held it, in seconds."""
 
     bytes: int = 0
+    lost: int = 0
+    """Bytes that the other end did not take, or that came while it was gone."""
     pieces: int = 0
     held: float = 0.0
     most_held: float = 0.0
@@ -41,8 +43,9 @@ class End(msgspec.Struct):
 async def tap(one: End, other: End, take: Take) -> None:
     """Pass bytes on both ways until one end has no more.
 
-    `take` sees them first: what it records is there before anybody has got it. Raises
-    PortLostError where a port is gone, with the ports left to the caller.
+    `take` sees them first: what it records is there before anybody has got it. What the other end
+    does not take is counted, and lost, as on any line. Raises PortLostError where a port is gone,
+    with the ports left to the caller.
     """
     ways = [
         asyncio.create_task(_pass_on(one, other.port, take)),
@@ -65,10 +68,12 @@ async def _pass_on(source: End, target: Port, take: Take) -> None:
         if source.damage is not None:
             await asyncio.sleep(source.damage.pause())
             data = source.damage.of(data)
+        sent = 0
         if data:
             take(source.name, Arrival(data, arrival.when))
-            await target.write(data)
-        _note(source.passed, len(data), time.perf_counter() - came)
+            sent = await target.pass_on(data)
+        source.passed.lost += len(data) - sent
+        _note(source.passed, sent, time.perf_counter() - came)
 
 
 def _note(passed: Passed, size: int, held: float) -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import time
 from collections import deque
+from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from rich.text import Text
 from textual.app import App, ComposeResult
@@ -14,7 +15,8 @@ from textual.widgets import DataTable, Footer, Input, RichLog, Sparkline, Static
 
 from protogen.cli.wire.event_lines import EventLines, json_line
 from protogen.errors import UserError
-from protogen.monitor.filters import Filter, field_path, parse_filter, value_at
+from protogen.monitor.fields import FieldPath, FilterError, value_at
+from protogen.monitor.filters import Filter, field_path, parse_filter
 from protogen.monitor.rows import COLUMNS, cells_of, fields_of, line_status
 
 if TYPE_CHECKING:
@@ -24,6 +26,8 @@ _DRAWN = 0.2
 """Seconds from one drawing to the next."""
 _SHOWN_AT_ONCE = 200
 """Events that are added to the log in one drawing; of more, the newest."""
+_LOG_LINES = 2000
+"""Lines that the log holds."""
 _PLOTTED = 240
 """Values of a field that a plot shows."""
 _HELP = {
@@ -56,6 +60,7 @@ class MonitorApp(App[None]):
         Binding("w", "type('save')", "save"),
         Binding("escape", "leave", "back", show=False),
         Binding("q", "quit", "quit"),
+        Binding("ctrl+c", "quit", show=False, priority=True),
     ]
     ENABLE_COMMAND_PALETTE = False
 
@@ -69,7 +74,8 @@ class MonitorApp(App[None]):
         self._rows: dict[tuple[str, str], list[Text]] = {}
         self._typing = ""
         self._is_paused = False
-        self._plotted: tuple[str, tuple[str, ...]] | None = None
+        self._plotted: tuple[str, FieldPath] | None = None
+        self._plot_name = ""
         self._plot: deque[float] = deque(maxlen=_PLOTTED)
         self._seconds: float | None = None
 
@@ -88,7 +94,7 @@ class MonitorApp(App[None]):
         yield Static(id="detail", markup=False)
         yield Static(id="plot_title", markup=False)
         yield Sparkline([], id="plot", summary_function=lambda values: values[-1])
-        yield RichLog(id="log", max_lines=2000, wrap=False, markup=False, auto_scroll=True)
+        yield RichLog(id="log", max_lines=_LOG_LINES, wrap=False, markup=False, auto_scroll=True)
         yield Input(id="typed")
         yield Footer()
 
@@ -113,14 +119,15 @@ class MonitorApp(App[None]):
             kinds = list(session.statistics.messages.items())
             rows = {key: cells_of(session.codec.protocol, item, now) for key, item in kinds}
             status = line_status(session, now, is_paused=self._is_paused)
-            news = [item for item in session.log if item.number >= self._shown]
+        news = session.since(self._shown)
         self.query_one("#status", Static).update(status)
         if self._is_paused:
             return
         self._draw_table(rows)
         self._draw_detail()
+        missing = news[0].number - self._shown if news else 0
         self._shown = news[-1].number + 1 if news else self._shown
-        self._draw_log(news)
+        self._draw_log(news, missing)
         self._draw_plot(news)
 
     def _draw_table(self, rows: dict[tuple[str, str], list[Text]]) -> None:
@@ -148,10 +155,18 @@ class MonitorApp(App[None]):
             text = fields_of(self._session.codec.protocol, item)
         detail.update(text)
 
-    def _draw_log(self, news: list[Logged]) -> None:
-        log = self.query_one("#log", RichLog)
+    def _draw_log(self, news: list[Logged], missing: int) -> None:
+        """Add to the log what the filter keeps; `missing` events in front are kept no longer."""
         kept = [item for item in news if self._keeps(item)]
-        for item in kept[-_SHOWN_AT_ONCE:]:
+        missing += max(0, len(kept) - _SHOWN_AT_ONCE)
+        if missing:
+            note = Text(f"{missing:,} events are not shown", style="dim")
+            self.query_one("#log", RichLog).write(note)
+        self._add_lines(kept[-_SHOWN_AT_ONCE:])
+
+    def _add_lines(self, items: list[Logged]) -> None:
+        log = self.query_one("#log", RichLog)
+        for item in items:
             log.write(self._text(item))
 
     def _keeps(self, item: Logged) -> bool:
@@ -176,11 +191,11 @@ class MonitorApp(App[None]):
             event = item.event
             if event is not None and event.kind == "message" and message == event.message.NAME:
                 value = value_at(event.message, path)
-                if isinstance(value, int | float):
+                if isinstance(value, int | float) and isfinite(value):
                     self._plot.append(float(value))
         if self._plot:
             self.query_one("#plot", Sparkline).data = list(self._plot)
-            text = f"{message}.{'.'.join(path)}: {self._plot[-1]:g}"
+            text = f"{self._plot_name}: {self._plot[-1]:g}"
             bounds = f"  from {min(self._plot):g} to {max(self._plot):g}"
             self.query_one("#plot_title", Static).update(text + bounds)
 
@@ -232,20 +247,23 @@ class MonitorApp(App[None]):
             case "send":
                 self._send(text)
             case "save":
-                self._save(Path(text))
+                self._save(text)
 
     def _show_log_again(self) -> None:
         log = self.query_one("#log", RichLog)
         log.clear()
         with self._session.lock:
             old = [item for item in self._session.log if item.number < self._shown]
-        self._draw_log(old)
+        self._add_lines([item for item in old if self._keeps(item)][-_LOG_LINES:])
 
     def _choose_plot(self, text: str) -> None:
-        self._plotted = None
-        if text:
-            self._plotted = field_path(text, self._session.codec.module)
+        plotted = field_path(text, self._session.codec.module) if text else None
+        if plotted is not None and not plotted[1]:
+            raise FilterError(f"`{text}` names no field", f"write {text}.FIELD")
+        self._plotted, self._plot_name = plotted, text
         self._plot.clear()
+        self.query_one("#plot", Sparkline).data = []
+        self.query_one("#plot_title", Static).update(f"{text}: no value yet")
         for name in ("#plot", "#plot_title"):
             self.query_one(name).display = self._plotted is not None
         with self._session.lock:
@@ -259,12 +277,15 @@ class MonitorApp(App[None]):
         self._session.send(frame)
         self.notify(f"sent {frame.hex(' ').upper()}", markup=False)
 
-    def _save(self, path: Path) -> None:
+    def _save(self, text: str) -> None:
+        if not text:
+            raise UserError("no file is named", "write its name, such as log.jsonl")
+        path = Path(text).expanduser()
         with self._session.lock:
-            kept: list[Any] = [item.event for item in self._session.log if item.event is not None]
+            kept = [item for item in self._session.log if item.event is not None]
         try:
             with path.open("x", encoding="utf-8") as file:
-                file.writelines(f"{json_line(event)}\n" for event in kept)
+                file.writelines(f"{json_line(item.event, t_ns=item.when)}\n" for item in kept)
         except OSError as error:
             raise UserError(f"{path}: {error.strerror}") from None
         self.notify(f"{len(kept):,} events in {path}", markup=False)

@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Callable, Iterable
-from functools import reduce
+from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
 import msgspec
 
-from protogen.errors import UserError
+from protogen.monitor.fields import (
+    FieldPath,
+    FilterError,
+    check_path,
+    check_text,
+    path_of,
+    value_at,
+)
 from protogen.problems import hint_for
 
 _TERM = re.compile(
-    r"\s*(?P<path>[A-Za-z_][\w.]*)\s*(?:(?P<operator><=|>=|==|!=|=|<|>)\s*(?P<value>[^\s]+))?\s*"
+    r"\s*(?P<path>[A-Za-z_][\w.\[\]]*)\s*"
+    r"(?:(?P<operator><=|>=|==|!=|=|<|>)\s*(?P<value>\"[^\"]*\"|'[^']*'|[^\s]+))?\s*"
 )
 _OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     "<": operator.lt,
@@ -29,15 +36,11 @@ _OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
 _KINDS = ("unknown", "invalid")
 
 
-class FilterError(UserError):
-    """A filter that can't be understood."""
-
-
 class _Term(msgspec.Struct, frozen=True):
     """A kind of event, and maybe what a field of it has to be."""
 
     kind: str
-    path: tuple[str, ...]
+    path: FieldPath
     operator: str
     value: float | str
 
@@ -48,11 +51,9 @@ class _Term(msgspec.Struct, frozen=True):
         if not self.path:
             return True
         found = value_at(event.message, self.path)
-        if found is None:
-            return False
         if isinstance(self.value, str):
-            found = str(getattr(found, "name", found)).lower()
-        return _OPERATORS[self.operator](found, self.value)
+            return found is not None and _OPERATORS[self.operator](_text(found), self.value)
+        return isinstance(found, int | float) and _OPERATORS[self.operator](found, self.value)
 
 
 class Filter(msgspec.Struct, frozen=True):
@@ -79,39 +80,47 @@ def parse_filter(text: str, module: ModuleType) -> Filter:
     )
 
 
-def value_at(message: Any, path: Iterable[str]) -> Any:
-    """A field or physical value of a message; None where it is not there."""
-    return reduce(lambda value, name: getattr(value, name, None), path, message)
-
-
-def field_path(text: str, module: ModuleType) -> tuple[str, tuple[str, ...]]:
-    """Split `state.battery_v` into the message and the path to its field. Raises FilterError."""
-    message, *path = text.split(".")
+def field_path(text: str, module: ModuleType) -> tuple[str, FieldPath]:
+    """Split `state.cells_v[2]` into the message and the path to its value. Raises FilterError."""
+    message, *steps = text.split(".")
     known = {*module.MESSAGES, *_KINDS, *module.PROTOCOL.endpoints}
     if message not in known:
         raise FilterError(f"there is no message `{message}`", hint_for(message, known))
-    if path and message not in module.MESSAGES:
+    if steps and message not in module.MESSAGES:
         raise FilterError(f"`{message}` has no fields", "name a message")
-    if path and not hasattr(module.MESSAGES[message], path[0]):
-        names = [name for name in dir(module.MESSAGES[message]) if name.islower()]
-        problem = f"`{message}` has no field `{path[0]}`"
-        raise FilterError(problem, hint_for(path[0], [n for n in names if not n.startswith("_")]))
-    return message, tuple(path)
+    path = path_of(text, steps)
+    if path:
+        check_path(text, module.MESSAGES[message], path)
+    return message, path
 
 
 def _term(text: str, module: ModuleType) -> _Term:
     found = _TERM.fullmatch(text)
     if found is None:
-        raise FilterError(f"`{text}` is no condition", "write MESSAGE, or MESSAGE.FIELD < NUMBER")
+        hint = "write MESSAGE, or MESSAGE.FIELD < NUMBER, and quote a value with blanks"
+        raise FilterError(f"`{text}` is no condition", hint)
     message, path = field_path(found["path"], module)
     if bool(path) != bool(found["operator"]):
         problem = f"`{text}` does not say what " + ("the field is to be" if path else "is compared")
         raise FilterError(problem, "write MESSAGE, or MESSAGE.FIELD < NUMBER")
-    return _Term(message, path, found["operator"] or "", _value(found["value"] or ""))
+    value = _value(found["value"] or "")
+    if isinstance(value, str) and path:
+        if found["operator"] not in ("=", "==", "!="):
+            hint = "write it without its unit; names are compared by = and !="
+            raise FilterError(f"`{found['value']}` is no number", hint)
+        check_text(value, module.MESSAGES[message], path)
+    return _Term(message, path, found["operator"] or "", value)
 
 
 def _value(text: str) -> float | str:
     try:
         return float(int(text, 0)) if re.fullmatch(r"0[xX][0-9A-Fa-f]+", text) else float(text)
     except ValueError:
-        return text.lower()
+        return text.strip("\"'").lower()
+
+
+def _text(found: Any) -> str:
+    """A value as filters compare it: the name of a number, bytes in hex."""
+    if isinstance(found, bytes):
+        return found.hex()
+    return str(getattr(found, "name", found)).lower()

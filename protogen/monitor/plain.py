@@ -25,8 +25,10 @@ def watch(session: Session, kept: Filter, seconds: float | None) -> None:
     shown = 0
     while True:
         is_over = session.is_over or (end is not None and time.monotonic() >= end)
-        with session.lock:
-            news = [item for item in session.log if item.number >= shown]
+        news = session.since(shown)
+        if news and news[0].number > shown:
+            missing = news[0].number - shown
+            typer.echo(f"{missing:,} events left out: the output is slower than the line", err=True)
         for item in news:
             shown = item.number + 1
             if item.event is None:

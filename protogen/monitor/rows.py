@@ -34,7 +34,7 @@ def cells_of(protocol: Protocol, item: MessageStatistics, now: int) -> list[Text
         Text(name, style="bold cyan"),
         _right(f"{item.count}"),
         _right(rate_text(item.rate(now))),
-        _right(f"{item.jitter * 1e3:.1f}ms" if item.count > 2 else ""),
+        _right(jitter_text(item.jitter) if item.count > 2 else ""),
         _right(age_text(now - item.when)),
         Text(f"{item.gaps or ''}", style="bold red", justify="right"),
         _values(protocol, item),
@@ -46,6 +46,13 @@ def rate_text(rate: float) -> str:
     if rate >= 100:
         return f"{rate:.0f}"
     return f"{rate:.1f}" if rate >= 10 else f"{rate:.2f}"
+
+
+def jitter_text(seconds: float) -> str:
+    """A time in no more than six characters."""
+    if seconds < 0.1:
+        return f"{seconds * 1e3:.1f}ms"
+    return f"{seconds * 1e3:.0f}ms" if seconds < 1 else f"{seconds:.1f}s"
 
 
 def age_text(passed: int) -> str:

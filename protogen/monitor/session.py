@@ -6,13 +6,15 @@ import asyncio
 import time
 from collections import deque
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Future
-from threading import Lock, Thread
+from itertools import islice
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from protogen.errors import UserError
+from protogen.link.loop_thread import LoopThread
+from protogen.link.ports.port import PortError
 from protogen.link.ports.settings import LineSettings
 from protogen.link.reader import LineReader
 from protogen.link.statistics import LineStatistics
@@ -51,46 +53,51 @@ class Session:
         self.error: UserError | None = None
         """What ended the watching, if it was a mistake."""
         self._reader = LineReader(codec, ends, settings, self)
-        self._loop = asyncio.new_event_loop()
+        self._loop = LoopThread("line")
         self._work: asyncio.Task[None] | None = None
-        self._thread = Thread(target=self._run, name="line", daemon=True)
-        self._ready: Future[None] = Future()
 
     def start(self) -> None:
         """Open the ports and begin. Raises PortError."""
-        self._thread.start()
-        self._ready.result()
+        try:
+            self._loop.do(self._reader.open())
+        except BaseException:
+            self._loop.do(self._reader.close())
+            self._loop.close()
+            raise
+        self._work = self._loop.begin(self._watch())
 
     def stop(self) -> None:
         """Give the ports back."""
-        if self._work is not None and not self._work.done():
-            self._loop.call_soon_threadsafe(self._work.cancel)
-        self._thread.join(_PATIENCE)
+        if self._work is None:
+            return
+        work, self._work = self._work, None
+        try:
+            self._loop.end(work, _PATIENCE)
+        finally:
+            self._loop.close()
 
     def send(self, data: bytes) -> None:
         """Send a frame to the first port. Raises PortError."""
-        asyncio.run_coroutine_threadsafe(self._reader.send(data), self._loop).result(_PATIENCE)
-
-    def _run(self) -> None:
+        if self.is_over:
+            raise PortError("the input has ended; nothing can be sent any more")
         try:
-            self._loop.run_until_complete(self._watch())
-        except asyncio.CancelledError:
-            pass
-        except UserError as error:
-            self.error = error
-            if not self._ready.done():
-                self._ready.set_exception(error)
-        finally:
-            self.is_over = True
-            self._loop.close()
+            self._loop.do(self._reader.send(data), _PATIENCE)
+        except TimeoutError:
+            raise PortError("the port does not take it", "does anybody read at its end?") from None
+
+    def since(self, number: int) -> list[Logged]:
+        """What was logged from a number on, as far as it is kept."""
+        with self.lock:
+            count = max(0, min(self.number - number, len(self.log)))
+            return [*islice(reversed(self.log), count)][::-1]
 
     async def _watch(self) -> None:
-        self._work = asyncio.current_task()
         try:
-            await self._reader.open()
-            self._ready.set_result(None)
             await self._reader.run()
+        except UserError as error:
+            self.error = error
         finally:
+            self.is_over = True
             await self._reader.close()
 
     # --- what the reader tells --------------------------------------------------------------------

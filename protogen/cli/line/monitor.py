@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from contextlib import suppress
 from typing import TYPE_CHECKING, Annotated
@@ -9,10 +10,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from protogen.cli.exits import CLEAN, UsageError
-from protogen.cli.line.options import PORTS, Baud, Dtr, Rts, line_settings, named_ports
+from protogen.cli.line.options import PORTS, Baud, Dtr, Rts, Seconds, line_settings, named_ports
 from protogen.cli.options import SchemaFile
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from protogen.monitor.app import MonitorApp
     from protogen.monitor.session import Session
 
@@ -23,15 +26,14 @@ def monitor(  # noqa: PLR0913 - each option is one argument
     schema: SchemaFile,
     ports: Annotated[list[str], typer.Argument(metavar="[NAME=]PORT...", help=PORTS)],
     plain: Annotated[
-        bool, typer.Option("--plain", help="Print lines; what a pipe gets anyway.")
+        bool,
+        typer.Option("--plain", help="Print lines, as where there is no screen or no keyboard."),
     ] = False,
     filter: Annotated[
         str,
         typer.Option(metavar="TEXT", help="Which events to show, such as `state.battery_v < 11`."),
     ] = "",
-    seconds: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", help="End after so long.")
-    ] = None,
+    seconds: Seconds = None,
     baud: Baud = None,
     dtr: Dtr = None,
     rts: Rts = None,
@@ -51,8 +53,7 @@ def monitor(  # noqa: PLR0913 - each option is one argument
     ends = named_ports(codec.protocol, ports)
     kept = parse_filter(filter, codec.module)
     session = Session(codec, ends, line_settings(codec.protocol.link, baud, dtr, rts))
-    is_plain = plain or not sys.stdout.isatty()
-    app = None if is_plain else _app(session)
+    app = None if plain or not has_screen(ends.values()) else _app(session)
     session.start()
     try:
         if app is None:
@@ -70,6 +71,12 @@ def monitor(  # noqa: PLR0913 - each option is one argument
     if session.error is not None:
         raise PortError(str(session.error), session.error.hint)
     return CLEAN
+
+
+def has_screen(addresses: Iterable[str]) -> bool:
+    """True if the terminal takes a full screen, and its keys are not the line."""
+    is_terminal = sys.stdout.isatty() and sys.stdin.isatty()
+    return is_terminal and os.environ.get("TERM") != "dumb" and "-" not in addresses
 
 
 def _app(session: Session) -> MonitorApp:

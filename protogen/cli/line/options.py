@@ -25,7 +25,7 @@ PortText = Annotated[str, typer.Argument(metavar="[NAME=]PORT", help=PORTS)]
 
 Baud = Annotated[
     int | None,
-    typer.Option(metavar="RATE", help="Bits per second. Default: the schema's, or 115200."),
+    typer.Option(min=1, metavar="RATE", help="Bits per second. Default: the schema's, or 115200."),
 ]
 Dtr = Annotated[
     bool | None, typer.Option("--dtr/--no-dtr", help="Set DTR. Default: leave it as it is.")
@@ -42,6 +42,11 @@ Delay = Annotated[
     float, typer.Option(min=0, metavar="MS", help="The most milliseconds to hold bytes back.")
 ]
 Seed = Annotated[int, typer.Option(help="The same seed does the same.")]
+
+Seconds = Annotated[
+    float | None,
+    typer.Option("--for", min=0, metavar="SECONDS", help="End after so long."),
+]
 
 _MILLISECONDS = 1000
 

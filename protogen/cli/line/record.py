@@ -4,26 +4,29 @@ from __future__ import annotations
 
 import asyncio
 import time
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import msgspec
 import typer
 
 from protogen.cli.exits import CLEAN
-from protogen.cli.line.options import Baud, Dtr, PortText, Rts, line_settings, named_port
+from protogen.cli.line.options import Baud, Dtr, PortText, Rts, Seconds, line_settings, named_port
 from protogen.cli.line.recorders import (
+    AnyRecorder,
     Force,
     MostMegabytes,
     MostMinutes,
     Output,
     RecordingFormat,
+    check_output,
     open_recorder,
 )
 from protogen.cli.line.running import run_until_stopped, tell, tell_name
 from protogen.cli.options import SchemaFile
 
 if TYPE_CHECKING:
-    from protogen.cli.line.recorders import AnyRecorder
+    from collections.abc import Callable
+
     from protogen.link.ports.port import Port
     from protogen.link.ports.settings import LineSettings
 
@@ -31,9 +34,10 @@ EXAMPLE = "Example: protogen record rover.yaml board=/dev/ttyUSB0 -o run.pgrec"
 
 
 class _Taken(msgspec.Struct):
-    """What was recorded."""
+    """What was recorded, and where."""
 
     bytes: int = 0
+    recorder: AnyRecorder | None = None
 
 
 def record(  # noqa: PLR0913 - each option is one argument
@@ -41,9 +45,7 @@ def record(  # noqa: PLR0913 - each option is one argument
     port: PortText,
     output: Output,
     format: RecordingFormat = "pgrec",
-    seconds: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", help="End after so long.")
-    ] = None,
+    seconds: Seconds = None,
     max_size: MostMegabytes = None,
     max_time: MostMinutes = None,
     force: Force = False,
@@ -61,28 +63,41 @@ def record(  # noqa: PLR0913 - each option is one argument
     protocol = open_protocol(schema)
     source, address = named_port(port, protocol)
     settings = line_settings(protocol.link, baud, dtr, rts)
-    recorder = open_recorder(output, format, max_size, max_time, force=force)
+    check_output(output, force=force or max_size is not None or max_time is not None)
     taken = _Taken()
     began = time.monotonic()
+
+    def begin() -> AnyRecorder:
+        taken.recorder = open_recorder(output, format, max_size, max_time, force=force)
+        return taken.recorder
+
     try:
-        run_until_stopped(lambda: _record(address, settings, source, recorder, taken), seconds)
+        run_until_stopped(lambda: _record(address, settings, source, begin, taken), seconds)
     finally:
-        recorder.close()
-    passed = time.monotonic() - began
-    typer.echo(f"{taken.bytes:,} bytes in {passed:.1f} s: {recorder.where}")
+        if taken.recorder is not None:
+            taken.recorder.close()
+    if taken.recorder is not None:
+        passed = time.monotonic() - began
+        typer.echo(f"{taken.bytes:,} bytes in {passed:.1f} s: {taken.recorder.where}")
     return CLEAN
 
 
 async def _record(
-    address: str, settings: LineSettings, source: str, recorder: AnyRecorder, taken: _Taken
+    address: str,
+    settings: LineSettings,
+    source: str,
+    begin: Callable[[], AnyRecorder],
+    taken: _Taken,
 ) -> None:
     from protogen.link.ports.opening import open_lasting_port
 
     def noted(text: str) -> None:
-        recorder.note(text)
+        if taken.recorder is not None:
+            taken.recorder.note(text)
         tell(text)
 
     async with await open_lasting_port(address, settings, noted) as port:
+        recorder = begin()  # Where there is no port, no file is made, nor one written over.
         tell_name(address, port)
         tell(f"recording {port.name}; Ctrl-C ends it")
         syncing = asyncio.create_task(_synced(recorder))

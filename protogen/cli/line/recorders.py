@@ -21,10 +21,15 @@ Output = Annotated[
 ]
 MostMegabytes = Annotated[
     float | None,
-    typer.Option(metavar="MB", help="Begin the next file, FILE-0002 and so on, behind so many."),
+    typer.Option(
+        min=0.000_001,
+        metavar="MB",
+        help="Begin the next file, FILE-0002 and so on, behind so many.",
+    ),
 ]
 MostMinutes = Annotated[
-    float | None, typer.Option(metavar="MINUTES", help="Begin the next file after so long.")
+    float | None,
+    typer.Option(min=0.001, metavar="MINUTES", help="Begin the next file after so long."),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Write over a file that is there.")]
 
@@ -51,8 +56,11 @@ class AnyRecorder:
         return f"{first} to {more[-1].name}" if more else str(first)
 
     def write(self, data: bytes, t_ns: int, source: str = "") -> None:
-        """Record what a source sent. Raises OSError."""
-        self._writes.write(data, t_ns, source)
+        """Record what a source sent. Raises OSError, which names the file."""
+        try:
+            self._writes.write(data, t_ns, source)
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(self._files[-1])) from None
 
     def note(self, text: str) -> None:
         """Record what happened just now. Raises OSError."""
@@ -71,6 +79,17 @@ class AnyRecorder:
         self._writes.close()
 
 
+def check_output(path: Path, *, force: bool) -> None:
+    """Raise UsageError where a recording can't be written, or would write over a file."""
+    if str(path) == "-":
+        raise UsageError("a recording is written to a file, not to standard output", "name one")
+    if path.exists() and not force:
+        hint = "give another name, or --force to write over it"
+        raise UsageError(f"{path} is there already", hint)
+    if not path.parent.is_dir():
+        raise UsageError(f"{path}: No such file or directory", "make the folder first")
+
+
 def open_recorder(
     path: Path,
     format: Literal["pgrec", "pcapng"],
@@ -87,10 +106,7 @@ def open_recorder(
         most_seconds = None if max_time is None else max_time * 60
         rotating = RotatingRecorder(path, most_bytes, most_seconds)
         return AnyRecorder(rotating, rotating.files)
-    try:
-        stream = path.open("wb" if force else "xb", buffering=0)
-    except FileExistsError:
-        hint = "give another name, or --force to write over it"
-        raise UsageError(f"{path} is there already", hint) from None
+    check_output(path, force=force)
+    stream = path.open("wb" if force else "xb", buffering=0)
     writes = PcapngRecorder(stream) if format == "pcapng" else Recorder(stream, owned=True)
     return AnyRecorder(writes, [path])

@@ -105,9 +105,10 @@ async def _send(
 
     recorded = open_recording(str(recording), speed, source)
     async with await open_port(address, settings) as port:
-        tell_name(address, port)
+        await _begin(address, port)
         while data := (await recorded.read()).data:
             await _write(port, data, sent)
+        await _end(port)
 
 
 async def _write(port: Port, data: bytes, sent: _Sent) -> None:
@@ -147,9 +148,24 @@ async def _send_steps(
     from protogen.link.ports.opening import open_port
 
     async with await open_port(address, settings) as port:
-        tell_name(address, port)
+        await _begin(address, port)
         for text, data in frames:
             tell(f"next: {text}")
             if not await asyncio.to_thread(sys.stdin.readline):
-                return
+                break
             await _write(port, data, sent)
+        await _end(port)
+
+
+async def _begin(address: str, port: Port) -> None:
+    """Wait for who opens a port that was made: nothing is sent to nobody."""
+    tell_name(address, port)
+    if port.name != address:
+        tell("waiting until it is opened")
+    await port.joined()
+
+
+async def _end(port: Port) -> None:
+    """Leave what was sent for as long as it is being read."""
+    if not await port.taken():
+        tell("the other end has not read all of it")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from protogen.cli.exits import CLEAN, FINDINGS, UsageError
-from protogen.cli.line.options import PORTS, Baud, Dtr, Rts
+from protogen.cli.line.options import Baud, Dtr, PortText, Rts, named_port
 from protogen.cli.options import SchemaFile
 from protogen.cli.wire.encode import Assignments
 
@@ -26,7 +26,7 @@ _DEFAULT_TIMEOUT = 1.0
 
 def send(  # noqa: PLR0913 - each option is one argument
     schema: SchemaFile,
-    port: Annotated[str, typer.Argument(metavar="PORT", help=PORTS)],
+    port: PortText,
     message: Annotated[str, typer.Argument(metavar="MESSAGE", help="The message.")],
     values: Assignments = None,
     expect: Annotated[
@@ -56,8 +56,9 @@ def send(  # noqa: PLR0913 - each option is one argument
     """Send a message, and wait for what answers it.
 
     What answers it stands in the schema's `exchanges`, with how the reply is told, how long to wait
-    and how often to send it again. Without an exchange, nothing is waited for, or, with --expect,
-    the first such message. Exits with 1 if there was no reply, or a refusal.
+    and how often to send it again. Without an exchange, nothing is waited for. With --expect NAME,
+    that message is waited for: as the reply or the refusal, if it is one, else the first that comes
+    afterwards. Exits with 1 if there was no reply, or another one, or a refusal.
     """
     from protogen.cli.schemas import find_message
     from protogen.cli.wire.codec import open_codec
@@ -68,6 +69,9 @@ def send(  # noqa: PLR0913 - each option is one argument
     if expect is not None:
         find_message(codec.protocol, expect)
     options: Options = {"dtr": dtr, "rts": rts, "lasting": False}
+    peer, port = named_port(port, codec.protocol)
+    if peer:
+        options["peer"] = peer
     if baud is not None:
         options["baud"] = baud
     return asyncio.run(_talk(codec, port, given, _Wait(expect, timeout, retries), format, options))
@@ -92,8 +96,9 @@ async def _talk(
             with given.explained():
                 event = await _answer(codec, link, given, wait)
         except RefusedError as error:
-            typer.echo(f"error: {error}", err=True)
-            return FINDINGS
+            is_expected = wait.expect == error.refusal.NAME
+            typer.echo(str(error) if is_expected else f"error: {error}", err=not is_expected)
+            return CLEAN if is_expected else FINDINGS
         except NoReplyError as error:
             typer.echo(f"error: {error}\n  hint: {error.hint}", err=True)
             return FINDINGS
@@ -111,11 +116,12 @@ async def _answer(codec: Codec, link: Link[Any, Any], given: GivenMessage, wait:
     """The event that answers a message; None where nothing is waited for."""
     kind = type(given.record)
     exchange = next((item for item in codec.runtime.exchanges if kind in item.requests), None)
-    if exchange is None and wait.expect is None:
+    answers = () if exchange is None else (*exchange.replies, *exchange.refusals)
+    if wait.expect is not None and wait.expect not in {item.NAME for item in answers}:
+        return await _expected(link, given, wait)
+    if exchange is None:
         await link.send(given.record, **given.parts)
         return None
-    if exchange is None:
-        return await _expected(codec, link, given, wait)
     events = link.events()
     reply = await link.request(
         given.record, timeout=wait.timeout, retries=wait.retries, **given.parts
@@ -126,7 +132,7 @@ async def _answer(codec: Codec, link: Link[Any, Any], given: GivenMessage, wait:
     return None
 
 
-async def _expected(codec: Codec, link: Link[Any, Any], given: GivenMessage, wait: _Wait) -> Any:
+async def _expected(link: Link[Any, Any], given: GivenMessage, wait: _Wait) -> Any:
     """The first message of the kind that the user waits for."""
     from protogen.link import NoReplyError
     from protogen.link.counts import name_of
@@ -148,7 +154,7 @@ async def _expected(codec: Codec, link: Link[Any, Any], given: GivenMessage, wai
                     came[name] += 1
         except TimeoutError:
             continue
-    raise NoReplyError(given.record, attempts, seconds, came)
+    raise link.told(NoReplyError(given.record, attempts, seconds, came))
 
 
 def _print(codec: Codec, event: Any, format: str) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from protogen.cli.exits import CLEAN, UsageError
-from protogen.cli.line.options import PORTS, Baud, Dtr, Rts, line_settings, named_ports
+from protogen.cli.line.options import PORTS, Baud, Dtr, Rts, Seconds, line_settings, named_ports
 from protogen.cli.line.running import run_until_stopped, tell
 from protogen.cli.options import SchemaFile
 
@@ -51,9 +51,7 @@ def serve(  # noqa: PLR0913 - each option is one argument
     speed: Annotated[
         float, typer.Option(min=0.001, help="How fast a recording is; 2 is in half the time.")
     ] = 1.0,
-    seconds: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", help="End after so long.")
-    ] = None,
+    seconds: Seconds = None,
     baud: Baud = None,
     dtr: Dtr = None,
     rts: Rts = None,

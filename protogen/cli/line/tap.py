@@ -98,7 +98,8 @@ def tap(  # noqa: PLR0913 - each option is one argument
             shown.end()
     for name, way in passed.items():
         held = f"held {way.mean_held * 1e3:.2f} ms on average, {way.most_held * 1e3:.2f} at most"
-        typer.echo(f"{name}: {way.bytes:,} bytes passed on, {held}", err=True)
+        lost = f"; {way.lost:,} were lost, as nobody took them" if way.lost else ""
+        typer.echo(f"{name}: {way.bytes:,} bytes passed on, {held}{lost}", err=True)
     return CLEAN
 
 

@@ -22,10 +22,10 @@ _MOST_BYTES = 32
 _ORDER = ("offset", "size", "event", "message", "sender", "form", "parts", "fields")
 
 
-def json_line(event: Any) -> str:
-    """Return the event as one line of JSON."""
+def json_line(event: Any, **facts: Any) -> str:
+    """Return the event as one line of JSON, with `facts` such as its time in front."""
     line = event.as_json()
-    ordered = {key: line.pop(key) for key in _ORDER if key in line}
+    ordered = facts | {key: line.pop(key) for key in _ORDER if key in line}
     return json.dumps({**ordered, **line}, ensure_ascii=False)
 
 

@@ -11,6 +11,7 @@ run.pgrec, any other file   a recording, at its own pace
 
 from __future__ import annotations
 
+import re
 import stat
 from enum import StrEnum
 from pathlib import Path
@@ -35,6 +36,8 @@ class PortKind(StrEnum):
     RECORDING = "recording"
 
 
+_LOST_SLASHES = re.compile("(?i)(?!com)[a-z][a-z0-9]+:[^/]*")
+"""`udp:9`: serialx would take it for a scheme."""
 _SCHEMES = {
     "socket": PortKind.SOCKET,
     "rfc2217": PortKind.RFC2217,
@@ -60,6 +63,8 @@ def parse_address(text: str) -> Address:
         return Address(text, PortKind.PSEUDO_TERMINAL)
     if "://" in text:
         return _network(text)
+    if not text or _LOST_SLASHES.fullmatch(text):
+        raise PortError(f"`{text}` is no port" if text else "no port is named", _HINT)
     return Address(text, PortKind.RECORDING if _is_file(text) else PortKind.SERIAL)
 
 

@@ -51,6 +51,16 @@ class LastingPort(Port):
             await self._lose(self._port, error)
             raise
 
+    async def pass_on(self, data: bytes) -> int:
+        """Send bytes; they are lost while the port is gone."""
+        if self._port is None:
+            return 0
+        try:
+            return await self._port.pass_on(data)
+        except PortLostError as error:
+            await self._lose(self._port, error)
+            return 0
+
     async def close(self) -> None:
         """Give the port back."""
         if self._port is not None:

@@ -6,7 +6,7 @@ import asyncio
 import time
 
 from protogen.link.ports.address import Address
-from protogen.link.ports.port import MOST_READ, Arrival, Port, PortError
+from protogen.link.ports.port import MOST_READ, PATIENCE, Arrival, Port, PortError, emptied
 
 _MOST_WAITING = 1 << 12
 """So many bytes wait for one who does not read; what comes then is lost."""
@@ -19,6 +19,8 @@ class ListeningPort(Port):
         super().__init__(name)
         self._server: asyncio.Server | None = None
         self._joined = asyncio.Event()
+        self._is_stuck = False
+        """True while nobody takes what is passed on."""
         self._streams: tuple[asyncio.StreamReader, asyncio.StreamWriter] | None = None
 
     async def listen(self, host: str, number: int) -> None:
@@ -65,6 +67,18 @@ class ListeningPort(Port):
         except OSError:
             self._leave(writer)
 
+    async def pass_on(self, data: bytes) -> int:
+        """Send bytes to whoever is connected, and wait for one who reads; else they are lost."""
+        if self._streams is None or self._is_stuck:
+            self._is_stuck = not await self.offer(data)
+            return 0 if self._is_stuck else len(data)
+        try:
+            async with asyncio.timeout(PATIENCE):
+                await self.write(data)
+        except TimeoutError:
+            self._is_stuck = True  # These bytes wait for it still.
+        return len(data)
+
     async def offer(self, data: bytes) -> bool:
         """Send bytes to whoever is connected and reads; to others they are lost."""
         if self._streams is None:
@@ -74,6 +88,17 @@ class ListeningPort(Port):
             return False
         writer.write(data)
         return True
+
+    async def joined(self) -> None:
+        """Wait until somebody has connected."""
+        await self._joined.wait()
+
+    async def taken(self) -> bool:
+        """Wait until the system has taken all for who is connected; False if it takes no more."""
+        if self._streams is None:
+            return False
+        transport = self._streams[1].transport
+        return await emptied(transport.get_write_buffer_size)
 
     def _leave(self, writer: asyncio.StreamWriter) -> None:
         """Let one go, so that the next can come."""

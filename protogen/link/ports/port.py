@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import abc
+import asyncio
+import time
+from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
@@ -12,6 +15,14 @@ from protogen.errors import UserError
 
 MOST_READ = 1 << 16
 """The most bytes that a port reads at once."""
+
+
+PATIENCE = 2.0
+"""Seconds in which one who reads a port takes something."""
+
+
+_LOOK = 0.02
+"""Seconds from one look to the next, where nothing tells."""
 
 
 class PortError(UserError):
@@ -32,6 +43,21 @@ class Arrival(msgspec.Struct, frozen=True):
     when: int
     source: str = ""
     """Who sent them, as far as a recording says it."""
+
+
+async def emptied(waiting: Callable[[], int]) -> bool:
+    """Wait until no bytes wait to be read any more; False if nobody has taken any for so long."""
+    left, since = 1, time.monotonic()
+    while True:
+        await asyncio.sleep(_LOOK)
+        now = waiting()
+        if not now and not left:  # At two looks: the system passes them on a moment later.
+            return True
+        if now < left:
+            since = time.monotonic()
+        elif time.monotonic() - since > PATIENCE:
+            return False
+        left = now
 
 
 class Port(abc.ABC):
@@ -58,6 +84,26 @@ class Port(abc.ABC):
         Where nobody takes them, they are lost. Raises PortLostError or PortError.
         """
         await self.write(data)
+        return True
+
+    async def pass_on(self, data: bytes) -> int:
+        """Send bytes that another end has sent, and return how many of them are on their way.
+
+        Who reads slowly is waited for. What nobody has taken for `PATIENCE` seconds is lost, and so
+        is what comes then, until something is taken again: the line does not stand still for it.
+        """
+        await self.write(data)
+        return len(data)
+
+    async def joined(self) -> None:
+        """Wait until somebody is at the other end of a port that this program has made."""
+        return
+
+    async def taken(self) -> bool:
+        """Wait until the other end has read what was written, as far as that can be known.
+
+        False if it has stopped to read.
+        """
         return True
 
     @abc.abstractmethod
