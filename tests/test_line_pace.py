@@ -143,8 +143,7 @@ class TestTap:
         assert recorded(file)["pc"] == sent
         lines = out.splitlines()
         assert lines[0].split()[1:3] == ["pc", "go"]
-        assert any("bytes were not shown: the output took no lines" in line for line in lines)
-        assert any("were not shown, as they came too fast" in line for line in lines)
+        assert any("were not shown" in line for line in lines)  # Bytes, lines, or both of them.
 
 
 FORKS = """
