@@ -35,7 +35,7 @@ export const PowerCode = {
 };
 
 function readSonar(r) {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "sonar", data };
 }
 
@@ -47,7 +47,7 @@ function writeSonar(w, m) {
 export const planOfSonar = /* @__PURE__ */ rt.plan("sonar", [[[83, 83]]], [0, 128, 1], readSonar, writeSonar);
 
 function readGps(r) {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "gps", data };
 }
 
@@ -59,7 +59,7 @@ function writeGps(w, m) {
 export const planOfGps = /* @__PURE__ */ rt.plan("gps", [[[71, 71]]], [0, 128, 1], readGps, writeGps);
 
 function readBump(r) {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "bump", data };
 }
 
@@ -71,7 +71,7 @@ function writeBump(w, m) {
 export const planOfBump = /* @__PURE__ */ rt.plan("bump", [[[66, 66]]], [0, 128, 1], readBump, writeBump);
 
 function readOdometry(r) {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "odometry", data };
 }
 
@@ -83,7 +83,7 @@ function writeOdometry(w, m) {
 export const planOfOdometry = /* @__PURE__ */ rt.plan("odometry", [[[79, 79]]], [0, 128, 1], readOdometry, writeOdometry);
 
 function readSpeed(r) {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "speed", data };
 }
 
@@ -95,7 +95,7 @@ function writeSpeed(w, m) {
 export const planOfSpeed = /* @__PURE__ */ rt.plan("speed", [[[79, 79]]], [0, 128, 1], readSpeed, writeSpeed);
 
 function readWheelSlip(r) {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "wheel_slip", data };
 }
 
@@ -107,7 +107,7 @@ function writeWheelSlip(w, m) {
 export const planOfWheelSlip = /* @__PURE__ */ rt.plan("wheel_slip", [[[87, 87]]], [0, 128, 1], readWheelSlip, writeWheelSlip);
 
 function readBattery(r) {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "battery", data };
 }
 
@@ -119,7 +119,7 @@ function writeBattery(w, m) {
 export const planOfBattery = /* @__PURE__ */ rt.plan("battery", [[[98, 98]]], [0, 128, 1], readBattery, writeBattery);
 
 function readReflexSettings(r) {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "reflex_settings", data };
 }
 
@@ -131,7 +131,7 @@ function writeReflexSettings(w, m) {
 export const planOfReflexSettings = /* @__PURE__ */ rt.plan("reflex_settings", [[[82, 82]]], [0, 128, 1], readReflexSettings, writeReflexSettings);
 
 function readHardwareStatus(r) {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "hardware_status", data };
 }
 
@@ -225,7 +225,7 @@ function writeLaser(w, m) {
 export const planOfLaser = /* @__PURE__ */ rt.plan("laser", [[[76, 76]]], [0, 512, 1], readLaser, writeLaser);
 
 function readCommand(r) {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "command", data };
 }
 

@@ -49,7 +49,7 @@ function writeSonar(w, m) {
 export const planOfSonar = /* @__PURE__ */ rt.plan("sonar", [[[83, 83]]], [5], readSonar, writeSonar);
 
 function readGps(r) {
-  const nmea = rt.latin1(r.rest(0, 126, false, "nmea"));
+  const nmea = r.latin1(r.rest(0, 126, "nmea"), false, "nmea");
   return { message: "gps", nmea };
 }
 
@@ -273,6 +273,17 @@ function hostFrame() {
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
+    whole: (f, at) => {
+      if (!f.begin(0, 1)) return null;
+      const { content: view } = f;
+      const id = view.getUint8(0);
+      const values = [id];
+      const size = f.sizeOf(values);
+      if (size < 0) return null;
+      const end = size + 1;
+      if (!f.fill(end)) return null;
+      return f.event(values, 1, end);
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -317,6 +328,17 @@ function robotFrame() {
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
+    whole: (f, at) => {
+      if (!f.begin(0, 1)) return null;
+      const { content: view } = f;
+      const id = view.getUint8(0);
+      const values = [id];
+      const size = f.sizeOf(values);
+      if (size < 0) return null;
+      const end = size + 1;
+      if (!f.fill(end)) return null;
+      return f.event(values, 1, end);
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,

@@ -185,7 +185,7 @@ function writeStatus(w, m) {
 export const planOfStatus = /* @__PURE__ */ rt.plan("status", [[[73, 73]]], [18], readStatus, writeStatus);
 
 function readGps(r) {
-  const nmea = rt.latin1(r.rest(0, 121, false, "nmea"));
+  const nmea = r.latin1(r.rest(0, 121, "nmea"), false, "nmea");
   return { message: "gps", nmea };
 }
 
@@ -252,6 +252,18 @@ function pcFrame() {
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
     payloadIndex: 4,
+    whole: (f, at) => {
+      if (!f.begin(1, 5)) return null;
+      const { content: view } = f;
+      if (view.getUint8(0) !== 85) return null;
+      const length = view.getUint8(1);
+      if (length < 2 || length > 123) return null;
+      const counter = view.getUint8(2);
+      const command = view.getUint8(3);
+      const end = length + 2;
+      if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 1, end)) return null;
+      return f.event([counter, command, length], 4, end);
+    },
     slots: 3,
     identity: [1],
     lastIdentity: 1,
@@ -305,6 +317,18 @@ function espFrame() {
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
     payloadIndex: 4,
+    whole: (f, at) => {
+      if (!f.begin(1, 5)) return null;
+      const { content: view } = f;
+      if (view.getUint8(0) !== 85) return null;
+      const length = view.getUint8(1);
+      if (length < 2 || length > 123) return null;
+      const counter = view.getUint8(2);
+      const command = view.getUint8(3);
+      const end = length + 2;
+      if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 1, end)) return null;
+      return f.event([counter, command, length], 4, end);
+    },
     slots: 3,
     identity: [1],
     lastIdentity: 1,

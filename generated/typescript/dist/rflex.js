@@ -446,6 +446,18 @@ function linuxFrame() {
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
     payloadIndex: 5,
+    whole: (f, at) => {
+      if (!f.begin(2, 7)) return null;
+      const { content: view } = f;
+      if (view.getUint8(0) !== 27 || view.getUint8(1) !== 2) return null;
+      const class_ = view.getUint8(2);
+      const number_ = view.getUint8(3);
+      const subclass = view.getUint8(4);
+      const length = view.getUint8(5);
+      const end = length + 6;
+      if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 6, end)) return null;
+      return f.event([class_, number_, subclass, length], 6, end);
+    },
     slots: 4,
     identity: [0, 2],
     lastIdentity: 2,
@@ -505,6 +517,18 @@ function flexFrame() {
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
     payloadIndex: 5,
+    whole: (f, at) => {
+      if (!f.begin(2, 7)) return null;
+      const { content: view } = f;
+      if (view.getUint8(0) !== 27 || view.getUint8(1) !== 2) return null;
+      const class_ = view.getUint8(2);
+      const number_ = view.getUint8(3);
+      const subclass = view.getUint8(4);
+      const length = view.getUint8(5);
+      const end = length + 6;
+      if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 6, end)) return null;
+      return f.event([class_, number_, subclass, length], 6, end);
+    },
     slots: 4,
     identity: [0, 2],
     lastIdentity: 2,

@@ -77,8 +77,8 @@ function writeMoveManual(w, m) {
 export const planOfMoveManual = /* @__PURE__ */ rt.plan("move_manual", [[[128, 128]]], [2], readMoveManual, writeMoveManual);
 
 function readMoveRelativeTwostep(r) {
-  const angle = r.sint(2, 14, true, 128, "angle");
-  const forward = r.sint(2, 14, true, 128, "forward");
+  const angle = r.i14("angle");
+  const forward = r.i14("forward");
   return { message: "move_relative_twostep", angle, forward };
 }
 
@@ -91,8 +91,8 @@ function writeMoveRelativeTwostep(w, m) {
 export const planOfMoveRelativeTwostep = /* @__PURE__ */ rt.plan("move_relative_twostep", [[[129, 129]]], [4], readMoveRelativeTwostep, writeMoveRelativeTwostep);
 
 function readMoveRelativeArc(r) {
-  const angle = r.sint(2, 14, true, 128, "angle");
-  const forward = r.sint(2, 14, true, 128, "forward");
+  const angle = r.i14("angle");
+  const forward = r.i14("forward");
   return { message: "move_relative_arc", angle, forward };
 }
 
@@ -136,7 +136,7 @@ function readMaintenance(r) {
     argument = run_motor_controller_flasher;
   }
   else {
-    argument = r.rest(0, 3, true, "argument");
+    argument = r.octets(r.rest(0, 3, "argument"), true, "argument");
   }
   return { message: "maintenance", magic: magic_, operation, argument };
 }
@@ -180,9 +180,9 @@ export const planOfMaintenance = /* @__PURE__ */ rt.plan("maintenance", [[[254, 
 
 function readGyro(r) {
   const status = r.uint(1, 7, true, 128, "status");
-  const int_x = r.sint(2, 14, true, 128, "int_x");
-  const int_y = r.sint(2, 14, true, 128, "int_y");
-  const int_z = r.sint(2, 14, true, 128, "int_z");
+  const int_x = r.i14("int_x");
+  const int_y = r.i14("int_y");
+  const int_z = r.i14("int_z");
   return { message: "gyro", status, int_x, int_y, int_z };
 }
 
@@ -198,9 +198,9 @@ export const planOfGyro = /* @__PURE__ */ rt.plan("gyro", [[[128, 128]]], [7], r
 
 function readXcel(r) {
   const status = r.uint(1, 7, true, 128, "status");
-  const int_x = r.sint(2, 14, true, 128, "int_x");
-  const int_y = r.sint(2, 14, true, 128, "int_y");
-  const int_z = r.sint(2, 14, true, 128, "int_z");
+  const int_x = r.i14("int_x");
+  const int_y = r.i14("int_y");
+  const int_z = r.i14("int_z");
   return { message: "xcel", status, int_x, int_y, int_z };
 }
 
@@ -216,9 +216,9 @@ export const planOfXcel = /* @__PURE__ */ rt.plan("xcel", [[[129, 129]]], [7], r
 
 function readCompass(r) {
   const status = r.uint(1, 7, true, 128, "status");
-  const avg_x = r.sint(2, 14, true, 128, "avg_x");
-  const avg_y = r.sint(2, 14, true, 128, "avg_y");
-  const avg_z = r.sint(2, 14, true, 128, "avg_z");
+  const avg_x = r.i14("avg_x");
+  const avg_y = r.i14("avg_y");
+  const avg_z = r.i14("avg_z");
   return { message: "compass", status, avg_x, avg_y, avg_z };
 }
 
@@ -234,8 +234,8 @@ export const planOfCompass = /* @__PURE__ */ rt.plan("compass", [[[130, 130]]], 
 
 function readOptflow(r) {
   const status = r.uint(1, 7, true, 128, "status");
-  const dx = r.sint(2, 14, true, 128, "dx");
-  const dy = r.sint(2, 14, true, 128, "dy");
+  const dx = r.i14("dx");
+  const dy = r.i14("dy");
   const q = r.uint(1, 7, true, 128, "q");
   return { message: "optflow", status, dx, dy, q };
 }
@@ -255,7 +255,7 @@ function readLidar(r) {
   const distances = [];
   r.enter("distances");
   for (let i = 0; i < 360; i++) {
-    distances.push(r.uint(2, 14, true, 128, i));
+    distances.push(r.u14(i));
   }
   r.leave();
   return { message: "lidar", status, distances };
@@ -279,7 +279,7 @@ function readSonar(r) {
   const distances = [];
   r.enter("distances");
   for (let i = 0; i < 7; i++) {
-    distances.push(r.uint(2, 14, true, 128, i));
+    distances.push(r.u14(i));
   }
   r.leave();
   return { message: "sonar", status, distances };
@@ -300,8 +300,8 @@ export const planOfSonar = /* @__PURE__ */ rt.plan("sonar", [[[133, 133]]], [15]
 
 function readFacing(r) {
   const status = r.uint(1, 7, true, 128, "status");
-  const heading = r.uint(2, 14, true, 128, "heading");
-  const speed = r.sint(2, 14, true, 128, "speed");
+  const heading = r.u14("heading");
+  const speed = r.i14("speed");
   return { message: "facing", status, heading, speed };
 }
 
@@ -358,6 +358,17 @@ function hostFrame() {
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
+    whole: (f, at) => {
+      if (!f.reach(at + 3)) return null;
+      const { view } = f;
+      const start = view.getUint8(at);
+      const values = [start];
+      const size = f.sizeOf(values);
+      if (size < 0) return null;
+      const end = at + size + 1;
+      if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
+      return f.event(values, at + 1, end);
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -400,6 +411,17 @@ function brainFrame() {
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
+    whole: (f, at) => {
+      if (!f.reach(at + 6)) return null;
+      const { view } = f;
+      const start = view.getUint8(at);
+      const values = [start];
+      const size = f.sizeOf(values);
+      if (size < 0) return null;
+      const end = at + size + 1;
+      if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
+      return f.event(values, at + 1, end);
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,

@@ -128,7 +128,7 @@ function readMaintenance(r) {
     argument = run_motor_controller_flasher;
   }
   else {
-    argument = r.rest(0, 1, true, "argument");
+    argument = r.octets(r.rest(0, 1, "argument"), true, "argument");
   }
   return { message: "maintenance", magic: magic_, operation, argument };
 }
@@ -163,9 +163,9 @@ export const planOfMaintenance = /* @__PURE__ */ rt.plan("maintenance", [[[254, 
 
 function readGyro(r) {
   const status = r.uint(1, 7, true, 128, "status");
-  const int_x = r.sint(2, 14, true, 128, "int_x");
-  const int_y = r.sint(2, 14, true, 128, "int_y");
-  const int_z = r.sint(2, 14, true, 128, "int_z");
+  const int_x = r.i14("int_x");
+  const int_y = r.i14("int_y");
+  const int_z = r.i14("int_z");
   return { message: "gyro", status, int_x, int_y, int_z };
 }
 
@@ -181,9 +181,9 @@ export const planOfGyro = /* @__PURE__ */ rt.plan("gyro", [[[128, 128]]], [7], r
 
 function readXcel(r) {
   const status = r.uint(1, 7, true, 128, "status");
-  const int_x = r.sint(2, 14, true, 128, "int_x");
-  const int_y = r.sint(2, 14, true, 128, "int_y");
-  const int_z = r.sint(2, 14, true, 128, "int_z");
+  const int_x = r.i14("int_x");
+  const int_y = r.i14("int_y");
+  const int_z = r.i14("int_z");
   return { message: "xcel", status, int_x, int_y, int_z };
 }
 
@@ -199,9 +199,9 @@ export const planOfXcel = /* @__PURE__ */ rt.plan("xcel", [[[129, 129]]], [7], r
 
 function readCompass(r) {
   const status = r.uint(1, 7, true, 128, "status");
-  const avg_x = r.sint(2, 14, true, 128, "avg_x");
-  const avg_y = r.sint(2, 14, true, 128, "avg_y");
-  const avg_z = r.sint(2, 14, true, 128, "avg_z");
+  const avg_x = r.i14("avg_x");
+  const avg_y = r.i14("avg_y");
+  const avg_z = r.i14("avg_z");
   return { message: "compass", status, avg_x, avg_y, avg_z };
 }
 
@@ -220,7 +220,7 @@ function readLidar(r) {
   const distances = [];
   r.enter("distances");
   for (let i = 0; i < 360; i++) {
-    distances.push(r.uint(2, 14, true, 128, i));
+    distances.push(r.u14(i));
   }
   r.leave();
   return { message: "lidar", status, distances };
@@ -244,7 +244,7 @@ function readSonar(r) {
   const distances = [];
   r.enter("distances");
   for (let i = 0; i < 3; i++) {
-    distances.push(r.uint(2, 14, true, 128, i));
+    distances.push(r.u14(i));
   }
   r.leave();
   return { message: "sonar", status, distances };
@@ -265,8 +265,8 @@ export const planOfSonar = /* @__PURE__ */ rt.plan("sonar", [[[133, 133]]], [7],
 
 function readFacing(r) {
   const status = r.uint(1, 7, true, 128, "status");
-  const heading = r.sint(2, 14, true, 128, "heading");
-  const speed = r.sint(2, 14, true, 128, "speed");
+  const heading = r.i14("heading");
+  const speed = r.i14("speed");
   return { message: "facing", status, heading, speed };
 }
 
@@ -359,6 +359,17 @@ function hostFrame() {
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
+    whole: (f, at) => {
+      if (!f.reach(at + 2)) return null;
+      const { view } = f;
+      const start = view.getUint8(at);
+      const values = [start];
+      const size = f.sizeOf(values);
+      if (size < 0) return null;
+      const end = at + size + 1;
+      if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
+      return f.event(values, at + 1, end);
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -402,6 +413,17 @@ function brainFrame() {
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
+    whole: (f, at) => {
+      if (!f.reach(at + 3)) return null;
+      const { view } = f;
+      const start = view.getUint8(at);
+      const values = [start];
+      const size = f.sizeOf(values);
+      if (size < 0) return null;
+      const end = at + size + 1;
+      if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
+      return f.event(values, at + 1, end);
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,

@@ -237,7 +237,7 @@ export interface GivenParts {
 }
 
 function readSonar(r: rt.Reader): Sonar {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "sonar", data };
 }
 
@@ -249,7 +249,7 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
 export const planOfSonar: rt.MessagePlan<Sonar> = /* @__PURE__ */ rt.plan("sonar", [[[83, 83]]], [0, 128, 1], readSonar, writeSonar);
 
 function readGps(r: rt.Reader): Gps {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "gps", data };
 }
 
@@ -261,7 +261,7 @@ function writeGps(w: rt.Writer, m: Gps): void {
 export const planOfGps: rt.MessagePlan<Gps> = /* @__PURE__ */ rt.plan("gps", [[[71, 71]]], [0, 128, 1], readGps, writeGps);
 
 function readBump(r: rt.Reader): Bump {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "bump", data };
 }
 
@@ -273,7 +273,7 @@ function writeBump(w: rt.Writer, m: Bump): void {
 export const planOfBump: rt.MessagePlan<Bump> = /* @__PURE__ */ rt.plan("bump", [[[66, 66]]], [0, 128, 1], readBump, writeBump);
 
 function readOdometry(r: rt.Reader): Odometry {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "odometry", data };
 }
 
@@ -285,7 +285,7 @@ function writeOdometry(w: rt.Writer, m: Odometry): void {
 export const planOfOdometry: rt.MessagePlan<Odometry> = /* @__PURE__ */ rt.plan("odometry", [[[79, 79]]], [0, 128, 1], readOdometry, writeOdometry);
 
 function readSpeed(r: rt.Reader): Speed {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "speed", data };
 }
 
@@ -297,7 +297,7 @@ function writeSpeed(w: rt.Writer, m: Speed): void {
 export const planOfSpeed: rt.MessagePlan<Speed> = /* @__PURE__ */ rt.plan("speed", [[[79, 79]]], [0, 128, 1], readSpeed, writeSpeed);
 
 function readWheelSlip(r: rt.Reader): WheelSlip {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "wheel_slip", data };
 }
 
@@ -309,7 +309,7 @@ function writeWheelSlip(w: rt.Writer, m: WheelSlip): void {
 export const planOfWheelSlip: rt.MessagePlan<WheelSlip> = /* @__PURE__ */ rt.plan("wheel_slip", [[[87, 87]]], [0, 128, 1], readWheelSlip, writeWheelSlip);
 
 function readBattery(r: rt.Reader): Battery {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "battery", data };
 }
 
@@ -321,7 +321,7 @@ function writeBattery(w: rt.Writer, m: Battery): void {
 export const planOfBattery: rt.MessagePlan<Battery> = /* @__PURE__ */ rt.plan("battery", [[[98, 98]]], [0, 128, 1], readBattery, writeBattery);
 
 function readReflexSettings(r: rt.Reader): ReflexSettings {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "reflex_settings", data };
 }
 
@@ -333,7 +333,7 @@ function writeReflexSettings(w: rt.Writer, m: ReflexSettings): void {
 export const planOfReflexSettings: rt.MessagePlan<ReflexSettings> = /* @__PURE__ */ rt.plan("reflex_settings", [[[82, 82]]], [0, 128, 1], readReflexSettings, writeReflexSettings);
 
 function readHardwareStatus(r: rt.Reader): HardwareStatus {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "hardware_status", data };
 }
 
@@ -427,7 +427,7 @@ function writeLaser(w: rt.Writer, m: Laser): void {
 export const planOfLaser: rt.MessagePlan<Laser> = /* @__PURE__ */ rt.plan("laser", [[[76, 76]]], [0, 512, 1], readLaser, writeLaser);
 
 function readCommand(r: rt.Reader): Command {
-  const data = r.rest(0, 128, false, "data");
+  const data = r.octets(r.rest(0, 128, "data"), false, "data");
   return { message: "command", data };
 }
 

@@ -324,7 +324,7 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
 export const planOfSonar: rt.MessagePlan<Sonar> = /* @__PURE__ */ rt.plan("sonar", [[[83, 83]]], [5], readSonar, writeSonar);
 
 function readGps(r: rt.Reader): Gps {
-  const nmea = rt.latin1(r.rest(0, 126, false, "nmea"));
+  const nmea = r.latin1(r.rest(0, 126, "nmea"), false, "nmea");
   return { message: "gps", nmea };
 }
 
@@ -548,6 +548,17 @@ function hostFrame(): rt.Frame {
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
+    whole: (f, at) => {
+      if (!f.begin(0, 1)) return null;
+      const { content: view } = f;
+      const id = view.getUint8(0);
+      const values = [id];
+      const size = f.sizeOf(values);
+      if (size < 0) return null;
+      const end = size + 1;
+      if (!f.fill(end)) return null;
+      return f.event(values, 1, end);
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -592,6 +603,17 @@ function robotFrame(): rt.Frame {
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
+    whole: (f, at) => {
+      if (!f.begin(0, 1)) return null;
+      const { content: view } = f;
+      const id = view.getUint8(0);
+      const values = [id];
+      const size = f.sizeOf(values);
+      if (size < 0) return null;
+      const end = size + 1;
+      if (!f.fill(end)) return null;
+      return f.event(values, 1, end);
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,

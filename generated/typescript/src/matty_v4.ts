@@ -436,7 +436,7 @@ function writeStatus(w: rt.Writer, m: Status): void {
 export const planOfStatus: rt.MessagePlan<Status> = /* @__PURE__ */ rt.plan("status", [[[73, 73]]], [24], readStatus, writeStatus);
 
 function readGps(r: rt.Reader): Gps {
-  const nmea = rt.latin1(r.rest(0, 121, false, "nmea"));
+  const nmea = r.latin1(r.rest(0, 121, "nmea"), false, "nmea");
   return { message: "gps", nmea };
 }
 
@@ -547,6 +547,18 @@ function pcFrame(): rt.Frame {
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
     payloadIndex: 4,
+    whole: (f, at) => {
+      if (!f.begin(1, 5)) return null;
+      const { content: view } = f;
+      if (view.getUint8(0) !== 85) return null;
+      const length = view.getUint8(1);
+      if (length < 2 || length > 124) return null;
+      const counter = view.getUint8(2);
+      const command = view.getUint8(3);
+      const end = length + 2;
+      if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 1, end)) return null;
+      return f.event([counter, command, length], 4, end);
+    },
     slots: 3,
     identity: [1],
     lastIdentity: 1,
@@ -602,6 +614,18 @@ function espFrame(): rt.Frame {
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
     payloadIndex: 4,
+    whole: (f, at) => {
+      if (!f.begin(1, 5)) return null;
+      const { content: view } = f;
+      if (view.getUint8(0) !== 85) return null;
+      const length = view.getUint8(1);
+      if (length < 2 || length > 124) return null;
+      const counter = view.getUint8(2);
+      const command = view.getUint8(3);
+      const end = length + 2;
+      if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 1, end)) return null;
+      return f.event([counter, command, length], 4, end);
+    },
     slots: 3,
     identity: [1],
     lastIdentity: 1,

@@ -471,7 +471,7 @@ function readMaintenance(r: rt.Reader): Maintenance {
     argument = run_motor_controller_flasher;
   }
   else {
-    argument = r.rest(0, 1, true, "argument");
+    argument = r.octets(r.rest(0, 1, "argument"), true, "argument");
   }
   return { message: "maintenance", magic: magic_, operation, argument };
 }
@@ -506,9 +506,9 @@ export const planOfMaintenance: rt.MessagePlan<Maintenance> = /* @__PURE__ */ rt
 
 function readGyro(r: rt.Reader): Gyro {
   const status = r.uint(1, 7, true, 128, "status");
-  const int_x = r.sint(2, 14, true, 128, "int_x");
-  const int_y = r.sint(2, 14, true, 128, "int_y");
-  const int_z = r.sint(2, 14, true, 128, "int_z");
+  const int_x = r.i14("int_x");
+  const int_y = r.i14("int_y");
+  const int_z = r.i14("int_z");
   return { message: "gyro", status, int_x, int_y, int_z };
 }
 
@@ -524,9 +524,9 @@ export const planOfGyro: rt.MessagePlan<Gyro> = /* @__PURE__ */ rt.plan("gyro", 
 
 function readXcel(r: rt.Reader): Xcel {
   const status = r.uint(1, 7, true, 128, "status");
-  const int_x = r.sint(2, 14, true, 128, "int_x");
-  const int_y = r.sint(2, 14, true, 128, "int_y");
-  const int_z = r.sint(2, 14, true, 128, "int_z");
+  const int_x = r.i14("int_x");
+  const int_y = r.i14("int_y");
+  const int_z = r.i14("int_z");
   return { message: "xcel", status, int_x, int_y, int_z };
 }
 
@@ -542,9 +542,9 @@ export const planOfXcel: rt.MessagePlan<Xcel> = /* @__PURE__ */ rt.plan("xcel", 
 
 function readCompass(r: rt.Reader): Compass {
   const status = r.uint(1, 7, true, 128, "status");
-  const avg_x = r.sint(2, 14, true, 128, "avg_x");
-  const avg_y = r.sint(2, 14, true, 128, "avg_y");
-  const avg_z = r.sint(2, 14, true, 128, "avg_z");
+  const avg_x = r.i14("avg_x");
+  const avg_y = r.i14("avg_y");
+  const avg_z = r.i14("avg_z");
   return { message: "compass", status, avg_x, avg_y, avg_z };
 }
 
@@ -563,7 +563,7 @@ function readLidar(r: rt.Reader): Lidar {
   const distances = [];
   r.enter("distances");
   for (let i = 0; i < 360; i++) {
-    distances.push(r.uint(2, 14, true, 128, i));
+    distances.push(r.u14(i));
   }
   r.leave();
   return { message: "lidar", status, distances };
@@ -587,7 +587,7 @@ function readSonar(r: rt.Reader): Sonar {
   const distances = [];
   r.enter("distances");
   for (let i = 0; i < 3; i++) {
-    distances.push(r.uint(2, 14, true, 128, i));
+    distances.push(r.u14(i));
   }
   r.leave();
   return { message: "sonar", status, distances };
@@ -608,8 +608,8 @@ export const planOfSonar: rt.MessagePlan<Sonar> = /* @__PURE__ */ rt.plan("sonar
 
 function readFacing(r: rt.Reader): Facing {
   const status = r.uint(1, 7, true, 128, "status");
-  const heading = r.sint(2, 14, true, 128, "heading");
-  const speed = r.sint(2, 14, true, 128, "speed");
+  const heading = r.i14("heading");
+  const speed = r.i14("speed");
   return { message: "facing", status, heading, speed };
 }
 
@@ -702,6 +702,17 @@ function hostFrame(): rt.Frame {
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
+    whole: (f, at) => {
+      if (!f.reach(at + 2)) return null;
+      const { view } = f;
+      const start = view.getUint8(at);
+      const values = [start];
+      const size = f.sizeOf(values);
+      if (size < 0) return null;
+      const end = at + size + 1;
+      if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
+      return f.event(values, at + 1, end);
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -745,6 +756,17 @@ function brainFrame(): rt.Frame {
       { kind: "payload", name: "payload", size: 0 },
     ],
     payloadIndex: 1,
+    whole: (f, at) => {
+      if (!f.reach(at + 3)) return null;
+      const { view } = f;
+      const start = view.getUint8(at);
+      const values = [start];
+      const size = f.sizeOf(values);
+      if (size < 0) return null;
+      const end = at + size + 1;
+      if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
+      return f.event(values, at + 1, end);
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,

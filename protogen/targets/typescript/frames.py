@@ -31,6 +31,7 @@ from protogen.model.parts import (
 )
 from protogen.model.protocol import Sender
 from protogen.model.transparency import Base16, Cobs, Escape, Insertion, Substitution
+from protogen.targets.typescript.at_once import AtOnce, is_taken_at_once
 from protogen.targets.typescript.literals import (
     Code,
     Data,
@@ -85,6 +86,7 @@ class FramePrinter:
             "end": plan.end_bytes,
             "parts": _lines(map(self._part, content)),
             "payloadIndex": content.index(frame.payload),
+            "whole": self._whole(),
             "slots": len(self._slots),
             "identity": [self._slots[item.name] for item in frame.identity],
             "lastIdentity": self._slots[sent[-1].name] if sent else -1,
@@ -103,6 +105,11 @@ class FramePrinter:
             "encodeOnly": _lines(map(self._plan_name, self._sender.encode_only)),
         }
         return call("rt.frame", lines({k: it for k, it in facts.items() if not _is_usual(it)}))
+
+    def _whole(self) -> Code | None:
+        if not is_taken_at_once(self._plan):
+            return None
+        return AtOnce(self._sender, self._slots).text()
 
     def _plan_name(self, message: Message) -> Code:
         return Code(self._names.functions[message.name][2])

@@ -22,6 +22,8 @@ from protogen.targets.typescript.literals import (
 from protogen.targets.typescript.scope import Scope
 
 _PLAIN = (8, 16, 32, 64)
+_SEVEN = 14
+"""Bits of two bytes of 7 bits."""
 
 
 def is_bigint(type_: Integer) -> bool:
@@ -64,6 +66,11 @@ def _plain(type_: Integer) -> str:
     if is_seven(type_) or type_.bits not in _PLAIN:
         return ""
     return f"{type_.bits}{'' if is_little(type_) or type_.size == 1 else 'be'}"
+
+
+def _seven(type_: Integer) -> str:
+    """The same for all bits of two bytes of 7 bits, which are only read so."""
+    return "14" if is_seven(type_) and is_little(type_) and type_.bits == _SEVEN else ""
 
 
 def closed(by: str, type_: Integer, found: str, at: str, scope: Scope) -> Code:
@@ -140,7 +147,7 @@ def _call(by: str, type_: Integer | Float, *around: Code) -> Code:
             name, how = "float7", [type_.bits, *how]
     elif type_.role == "bool":
         name = "bool"
-    elif plain := _plain(type_):
+    elif plain := _plain(type_) or (_seven(type_) if by == "r" else ""):
         name = f"{'i' if type_.signed else 'u'}{plain}"
     else:
         name = f"{'s' if type_.signed else 'u'}{'big' if is_bigint(type_) else 'int'}"

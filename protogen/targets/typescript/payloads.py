@@ -197,13 +197,12 @@ class PayloadFunction:
         if not self._reads:
             name = "latin1" if isinstance(type_, Text) else "octets"
             return self._transfer(name, value, least, greatest, seven, at, count.until)
+        is_text = isinstance(type_, Text)
         if count.until is not None:
             found = self._call("until", count.until, least, greatest, seven, at)
-        elif count.fills:
-            found = self._call("rest", least, greatest, seven, at)
-        else:
-            found = self._call("octets", self._size(count, at), seven, at)
-        return call("rt.latin1", found) if isinstance(type_, Text) else found
+            return call("rt.latin1", found) if is_text else found
+        size = self._call("rest", least, greatest, at) if count.fills else self._size(count, at)
+        return self._call("latin1" if is_text else "octets", size, seven, at)
 
     def _size(self, count: Count, at: Code) -> Code:
         """A number of elements or bytes; a reader holds it to its bounds."""
@@ -361,8 +360,9 @@ class PayloadFunction:
             if not self._reads:
                 self._do("nothing", held, at)
         elif isinstance(step, RestStep):
-            ends = (0, step.count.greatest, is_seven(step.type), at)
-            found = self._transfer("rest" if self._reads else "octets", held, *ends)
+            ends = (0, step.count.greatest)
+            sizes = (self._call("rest", *ends, at),) if self._reads else ends
+            found = self._transfer("octets", held, *sizes, is_seven(step.type), at)
         else:
             found = self._value(step, held, at, level)
         if self._reads:

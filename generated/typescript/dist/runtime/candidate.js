@@ -361,8 +361,8 @@ export function dueOf(sum, result) {
 /** True if the bytes at a place are those of a checksum with this result. */
 export function sumIsRight(sum, result, bytes, place) {
     const due = dueOf(sum, result);
-    if (sum.size === 1 && !sum.isBits && sum.number.isPlain)
-        return bytes[place] === due;
+    if (!sum.isBits && sum.number.isPlain)
+        return sum.number.decode(bytes, place) === due;
     const found = bytes.subarray(place, place + sum.size);
     if (sum.isBits)
         return BigInt(sum.number.decode(found, 0)) === BigInt(due);

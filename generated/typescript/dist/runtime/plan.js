@@ -38,6 +38,7 @@ const USUAL = {
     sevenBit: false,
     rescans: false,
     takesWhole: false,
+    whole: null,
     cutAmbiguous: false,
     isBounded: false,
     isCut: false,

@@ -68,6 +68,10 @@ export declare class Reader {
     u64be(step: Step): bigint;
     i64(step: Step): bigint;
     i64be(step: Step): bigint;
+    /** An unsigned integer of 14 bits, 7 in each byte, the least significant ones first. */
+    u14(step: Step): number;
+    /** The same, signed. */
+    i14(step: Step): number;
     /** An unsigned integer of up to 53 bits in bytes of 8 bits or, if `base` is 128, of 7. */
     uint(size: number, bits: number, little: boolean, base: 128 | 256, step: Step): number;
     /** A signed integer of up to 53 bits; two's complement in its bits. */
@@ -93,8 +97,10 @@ export declare class Reader {
     noCase(value: number | bigint, by: string, step: Step): Fault;
     /** So many bytes, which are copied; with `sevenBit` each is at most 7F. */
     octets(size: number, sevenBit: boolean, step: Step): Uint8Array;
-    /** All bytes that are left. */
-    rest(least: number, greatest: number, sevenBit: boolean, step: Step): Uint8Array;
+    /** So many bytes as a text, one character each. */
+    latin1(size: number, sevenBit: boolean, step: Step): string;
+    /** The number of bytes that are left. */
+    rest(least: number, greatest: number, step: Step): number;
     /** Bytes in front of a terminator, which is taken, too. */
     until(byte: number, least: number, greatest: number, sevenBit: boolean, step: Step): Uint8Array;
     /** A text in front of a separator or of the end; with `leads` a separator stands in front. */

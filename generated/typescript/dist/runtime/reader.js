@@ -129,6 +129,19 @@ export class Reader {
     i64be(step) {
         return BigInt.asIntN(64, this.u64be(step));
     }
+    /** An unsigned integer of 14 bits, 7 in each byte, the least significant ones first. */
+    u14(step) {
+        const at = this.take(2, step);
+        const low = this.bytes[at];
+        const high = this.bytes[at + 1];
+        if ((low | high) > 0x7f)
+            throw this.eighthBit(high > 0x7f ? high : low, step);
+        return low | (high << 7);
+    }
+    /** The same, signed. */
+    i14(step) {
+        return (this.u14(step) << 18) >> 18;
+    }
     /** An unsigned integer of up to 53 bits in bytes of 8 bits or, if `base` is 128, of 7. */
     uint(size, bits, little, base, step) {
         const start = this.take(size, step);
@@ -238,13 +251,26 @@ export class Reader {
                     throw this.eighthBit(byte, step);
         return found;
     }
-    /** All bytes that are left. */
-    rest(least, greatest, sevenBit, step) {
+    /** So many bytes as a text, one character each. */
+    latin1(size, sevenBit, step) {
+        const at = this.take(size, step);
+        const { bytes } = this;
+        let text = "";
+        for (let place = at; place < at + size; place++) {
+            const byte = bytes[place];
+            if (sevenBit && byte > 0x7f)
+                throw this.eighthBit(byte, step);
+            text += String.fromCharCode(byte);
+        }
+        return text;
+    }
+    /** The number of bytes that are left. */
+    rest(least, greatest, step) {
         const size = this.left;
         if (size < least || size > greatest) {
             throw this.fault(step, "size", `has ${size} bytes, and not ${least} to ${greatest}`);
         }
-        return this.octets(size, sevenBit, step);
+        return size;
     }
     /** Bytes in front of a terminator, which is taken, too. */
     until(byte, least, greatest, sevenBit, step) {
@@ -278,7 +304,7 @@ export class Reader {
                 throw this.fault(step, "value", `${wrong} is no character of it`);
             }
         }
-        return latin1(this.octets(size, false, step));
+        return this.latin1(size, false, step);
     }
     separator(separator, step) {
         if (this.at >= this.end)

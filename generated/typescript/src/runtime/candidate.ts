@@ -380,7 +380,7 @@ export function sumIsRight(
   place: number,
 ): boolean {
   const due = dueOf(sum, result);
-  if (sum.size === 1 && !sum.isBits && sum.number.isPlain) return bytes[place] === due;
+  if (!sum.isBits && sum.number.isPlain) return sum.number.decode(bytes, place) === due;
   const found = bytes.subarray(place, place + sum.size);
   if (sum.isBits) return BigInt(sum.number.decode(found, 0)) === BigInt(due);
   const right = new Uint8Array(sum.size);

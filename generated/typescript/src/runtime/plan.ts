@@ -1,6 +1,8 @@
 /** What a generated module says of a sender: its frame, as the compiler worked it out. */
 
+import type { AtOnce } from "./at_once.js";
 import type { Checksum } from "./checksums.js";
+import type { Framed } from "./events.js";
 import type { PartNumber, Value } from "./numbers.js";
 import type { Reader } from "./reader.js";
 import type { Transparency } from "./transparency.js";
@@ -246,6 +248,9 @@ export function group(
   return { identities, messages, fixed: isFixed ? least : null, greatest, carried };
 }
 
+/** Takes the frame that stands at a place; null where it is not plainly one. Throws a Fault. */
+export type TakeWhole = (frames: AtOnce, at: number) => Framed | null;
+
 /** A sender's frame. Sizes are in bytes; content is what is there before any stuffing. */
 export interface Frame {
   /** The endpoint. */
@@ -296,6 +301,8 @@ export interface Frame {
   readonly rescans: boolean;
   /** True if a frame that stands in the input can be taken as a whole. */
   readonly takesWhole: boolean;
+  /** What takes a frame that is there as a whole; null where nothing is generated for that. */
+  readonly whole: TakeWhole | null;
   readonly cutAmbiguous: boolean;
   readonly isBounded: boolean;
   /** Bytes that stay, at least, where zeros at the payload's end are left out; else null. */
@@ -317,6 +324,7 @@ const USUAL = {
   sevenBit: false,
   rescans: false,
   takesWhole: false,
+  whole: null,
   cutAmbiguous: false,
   isBounded: false,
   isCut: false,

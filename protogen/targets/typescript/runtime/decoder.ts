@@ -1,5 +1,6 @@
 /** The decoder: bytes in any portions -> events. */
 
+import { AtOnce } from "./at_once.js";
 import { Cut, Failure, type Verdict } from "./candidate.js";
 import { Fault, type Reason } from "./errors.js";
 import { framed, Framed, Invalid, type AnyEvent, type Event } from "./events.js";
@@ -22,6 +23,8 @@ export class Decoder<Message = unknown, Parts = unknown> {
   private readonly name: string;
   /** Takes what is plain; null where only candidates do. */
   private readonly whole: WholeFrames | null;
+  /** Takes what is there as a whole; null where nothing is generated for that. */
+  private readonly atOnce: AtOnce | null;
   private readonly shares: boolean;
   private readonly greatest: number;
   private readonly isAnywhere: boolean;
@@ -55,6 +58,8 @@ export class Decoder<Message = unknown, Parts = unknown> {
     this.name = names.size === 1 ? first.frame.sender : "";
     this.search = new Search(senders);
     this.whole = senders.length === 1 ? WholeFrames.of(first) : null;
+    const { whole } = first.frame;
+    this.atOnce = whole && senders.length === 1 ? new AtOnce(first, whole) : null;
     this.shares = first.frame.sharesDelimiter;
     this.greatest = Math.max(...senders.map((sender) => sender.frame.greatest));
     this.isAnywhere = first.frame.start === "anywhere";
@@ -175,12 +180,20 @@ export class Decoder<Message = unknown, Parts = unknown> {
     this.isFresh = false;
     if (!this.isAnywhere) this.noise(start, true);
     this.scan = this.pushed = start;
+    if (this.atOnce && this.takeAtOnce(this.atOnce)) return true;
     if (this.whole) {
       this.whole.begin();
       return this.takeWhole(this.whole, final);
     }
     this.candidate = this.begin(this.beganFresh);
     return true;
+  }
+
+  /** Take the frames that are there, one behind another. False: there is none. */
+  private takeAtOnce(atOnce: AtOnce): boolean {
+    const { data, size, scan, offset, events } = this;
+    this.done = this.scan = atOnce.take(data, size, scan, offset, events);
+    return this.scan > scan;
   }
 
   /** Take the frame there if it is plainly one, or as much of it as has come. */

@@ -5,6 +5,7 @@
  * So what is waited for here, a candidate would wait for as well.
  */
 
+import { marksOf } from "./at_once.js";
 import { concatenated, equal, hasHighBit, NO_BYTES, standsAt } from "./bytes.js";
 import { Cut, sumIsRight } from "./candidate.js";
 import { mayBe } from "./content.js";
@@ -92,8 +93,7 @@ export class WholeFrames {
     this.runs = frame.sums.map(({ covers: [first, ...more] }) =>
       first && "from" in first && !more.length ? first : undefined,
     );
-    this.marks = frame.startIsUnique ? sender.completesStart.slice() : new Uint8Array(256);
-    if (frame.endIsUnique) this.marks[frame.end[frame.end.length - 1]!] = 1;
+    this.marks = marksOf(sender);
     if (frame.sevenBit) this.marks.fill(1, 128);
   }
 

@@ -14,6 +14,8 @@ export declare class Decoder<Message = unknown, Parts = unknown> {
     private readonly name;
     /** Takes what is plain; null where only candidates do. */
     private readonly whole;
+    /** Takes what is there as a whole; null where nothing is generated for that. */
+    private readonly atOnce;
     private readonly shares;
     private readonly greatest;
     private readonly isAnywhere;
@@ -71,6 +73,8 @@ export declare class Decoder<Message = unknown, Parts = unknown> {
     private nextStart;
     /** Begin at a possible start. */
     private open;
+    /** Take the frames that are there, one behind another. False: there is none. */
+    private takeAtOnce;
     /** Take the frame there if it is plainly one, or as much of it as has come. */
     private takeWhole;
     private begin;

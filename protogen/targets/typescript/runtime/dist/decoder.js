@@ -1,4 +1,5 @@
 /** The decoder: bytes in any portions -> events. */
+import { AtOnce } from "./at_once.js";
 import { Cut, Failure } from "./candidate.js";
 import { Fault } from "./errors.js";
 import { framed, Framed, Invalid } from "./events.js";
@@ -40,6 +41,8 @@ export class Decoder {
         this.name = names.size === 1 ? first.frame.sender : "";
         this.search = new Search(senders);
         this.whole = senders.length === 1 ? WholeFrames.of(first) : null;
+        const { whole } = first.frame;
+        this.atOnce = whole && senders.length === 1 ? new AtOnce(first, whole) : null;
         this.shares = first.frame.sharesDelimiter;
         this.greatest = Math.max(...senders.map((sender) => sender.frame.greatest));
         this.isAnywhere = first.frame.start === "anywhere";
@@ -155,12 +158,20 @@ export class Decoder {
         if (!this.isAnywhere)
             this.noise(start, true);
         this.scan = this.pushed = start;
+        if (this.atOnce && this.takeAtOnce(this.atOnce))
+            return true;
         if (this.whole) {
             this.whole.begin();
             return this.takeWhole(this.whole, final);
         }
         this.candidate = this.begin(this.beganFresh);
         return true;
+    }
+    /** Take the frames that are there, one behind another. False: there is none. */
+    takeAtOnce(atOnce) {
+        const { data, size, scan, offset, events } = this;
+        this.done = this.scan = atOnce.take(data, size, scan, offset, events);
+        return this.scan > scan;
     }
     /** Take the frame there if it is plainly one, or as much of it as has come. */
     takeWhole(whole, final) {
