@@ -14,11 +14,12 @@ from typing import Any
 
 import pytest
 
+from protogen.link.intake import Intake
 from protogen.link.ports import pseudo_terminal
 from protogen.link.ports.address import PortKind, parse_address
 from protogen.link.ports.lasting import LastingPort
 from protogen.link.ports.opening import open_port
-from protogen.link.ports.port import Port, PortError, PortLostError
+from protogen.link.ports.port import Arrival, Port, PortError, PortLostError
 from protogen.link.ports.pseudo_terminal import PseudoTerminal, make_pseudo_terminal
 from protogen.link.ports.settings import LineSettings
 from protogen.recording import Recorder
@@ -382,3 +383,52 @@ class TestPassingOn:
             assert "waiting for it" in news[0]
 
         asyncio.run(asyncio.wait_for(passed_on(), 30))
+
+
+class Portions(Port):
+    """A port that has portions of these sizes, and notes where bytes were left to gather."""
+
+    def __init__(self, *sizes: int) -> None:
+        super().__init__("portions")
+        self.left = list(sizes)
+        self.steps: list[str] = []
+
+    async def read(self) -> Arrival:
+        size = self.left.pop(0) if self.left else 0
+        self.steps.append(f"read {size}")
+        return Arrival(bytes(size), 0)
+
+    async def gather(self, seconds: float) -> None:
+        assert 0 < seconds < 0.01
+        self.steps.append("gather")
+
+    async def write(self, data: bytes) -> None:
+        raise AssertionError("nothing is sent")
+
+    async def close(self) -> None:
+        return
+
+
+@pytest.mark.parametrize("silence", [None, 0.02])
+def test_bytes_gather_behind_large_portions_only(silence: float | None) -> None:
+    port = Portions(10, 100, 200, 5)
+    intake = Intake(port)
+
+    async def read() -> list[int]:
+        arrivals = [await intake.next(silence) for _ in range(5)]
+        return [-1 if item is None else len(item.data) for item in arrivals]
+
+    assert asyncio.run(read()) == [10, 100, 200, 5, 0]
+    assert port.steps == ["read 10", "read 100", "gather", "read 200", "gather", "read 5", "read 0"]
+
+
+def test_bytes_do_not_gather_where_a_short_silence_ends_frames() -> None:
+    port = Portions(100, 100)
+    intake = Intake(port)
+
+    async def read() -> None:
+        for _ in range(2):
+            await intake.next(0.002)
+
+    asyncio.run(read())
+    assert port.steps == ["read 100", "read 100"]

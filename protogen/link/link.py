@@ -14,8 +14,9 @@ import msgspec
 from protogen.errors import UserError
 from protogen.link.counts import LinkCounts, name_of
 from protogen.link.errors import LinkClosedError, LinkError, NoReplyError
+from protogen.link.intake import Intake
 from protogen.link.line import LineDecoders
-from protogen.link.ports.port import Arrival, Port, PortLostError
+from protogen.link.ports.port import Port, PortLostError
 from protogen.link.requests import Requests
 from protogen.link.streams import DEFAULT_LIMIT, Heard, Overflow, Queue, Stream
 from protogen.runtime.codec import Encoder
@@ -91,7 +92,7 @@ class Link(Generic[SentT, ReceivedT]):
             self._requests = Requests(
                 codec.exchanges, forms, self._encoder, self._write, self.counts
             )
-        self._reading: asyncio.Task[Arrival] | None = None
+        self._intake = Intake(port)
         self._reader = asyncio.create_task(self._read())
 
     # --- what comes in ----------------------------------------------------------------------------
@@ -267,22 +268,9 @@ class Link(Generic[SentT, ReceivedT]):
         else:
             self._end(None)
 
-    async def _next(self) -> Arrival | None:
-        """What comes next; None: there was a silence in which nothing did."""
-        silence = self._line.silence if self._line.pending else None
-        if self._reading is None and silence is None:
-            return await self.port.read()
-        if self._reading is None:
-            self._reading = asyncio.create_task(self.port.read())
-        done, _ = await asyncio.wait({self._reading}, timeout=silence)
-        if not done:
-            return None
-        reading, self._reading = self._reading, None
-        return reading.result()
-
     async def _read_all(self) -> None:
         while True:
-            arrival = await self._next()
+            arrival = await self._intake.next(self._line.silence if self._line.pending else None)
             if arrival is None:
                 await self._give(self._line.idle(self._source), time.time_ns())
                 continue
@@ -328,11 +316,12 @@ class Link(Generic[SentT, ReceivedT]):
 
     async def close(self) -> None:
         """Give the port back. Streams end, and requests fail with LinkClosedError."""
-        owned = (self._reader, self._reading, self._written)
+        owned = (self._reader, self._written)
         tasks = [task for task in owned if task is not None]
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
+        await self._intake.close()
         if not self._has_ended:
             self._end(None)
         await self.port.close()

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
 from protogen.errors import UserError
+from protogen.link.intake import Intake
 from protogen.link.line import LineDecoders
 from protogen.link.ports.opening import open_lasting_port
 from protogen.link.ports.port import Port, PortError
@@ -93,14 +94,18 @@ class LineReader:
             self._decode(sender, data, time.time_ns())
 
     async def _read(self, source: str, port: Port) -> None:
+        intake = Intake(port)
+        try:
+            await self._take(source, intake)
+        finally:
+            await intake.close()
+
+    async def _take(self, source: str, intake: Intake) -> None:
         silence = self._silence(source)
         seen = {source}
         while True:
-            try:
-                # wait_for of Python 3.11 may take a cancellation for a read that has just ended.
-                async with asyncio.timeout(silence):
-                    arrival = await port.read()
-            except TimeoutError:
+            arrival = await intake.next(silence)
+            if arrival is None:
                 for name in seen:
                     self._listener.take_events(name, self._decoders.idle(name), time.time_ns())
                 silence = None  # It has ended what it could.

@@ -112,9 +112,14 @@ class Queue(Generic[ItemT]):
         """The same of the first alone."""
         if not self._items:
             await self._wait()
+        return self.first_now()
+
+    def first_now(self) -> list[ItemT]:
+        """The first of those that wait by now, in the event loop's thread."""
         with self._taking:
             items = [self._items.popleft()] if self._items else []
-        self._room.set()
+        if self.waits:
+            self._room.set()
         return items
 
     async def _wait(self) -> None:
@@ -169,7 +174,7 @@ class Stream(Generic[ItemT]):
         return self
 
     async def __anext__(self) -> ItemT:
-        items = await self.queue.take_one()
+        items = self.queue.first_now() or await self.queue.take_one()
         if not items:
             raise StopAsyncIteration
         return items[0]

@@ -41,6 +41,11 @@ class LastingPort(Port):
             except PortLostError as error:
                 await self._lose(port, error)
 
+    async def gather(self, seconds: float) -> None:
+        """Let bytes gather, where the port is there."""
+        if self._port is not None:
+            await self._port.gather(seconds)
+
     async def write(self, data: bytes) -> None:
         """Send bytes. Raises PortLostError while the port is gone."""
         if self._port is None:

@@ -74,6 +74,10 @@ class Port(abc.ABC):
         Raises PortLostError.
         """
 
+    async def gather(self, seconds: float) -> None:
+        """Let bytes gather for a while, for the next read to take them together."""
+        await asyncio.sleep(seconds)
+
     @abc.abstractmethod
     async def write(self, data: bytes) -> None:
         """Send bytes; waits while the port takes no more. Raises PortLostError or PortError."""

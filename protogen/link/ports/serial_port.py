@@ -6,6 +6,7 @@ release is of 2020, and its asynchronous part never came to Windows.
 
 from __future__ import annotations
 
+import asyncio
 import errno
 import time
 from importlib import import_module
@@ -47,6 +48,18 @@ class SerialPort(Port):
         if not data:
             raise PortLostError(f"{self.name} is gone: the other end has closed it")
         return Arrival(data, time.time_ns())
+
+    async def gather(self, seconds: float) -> None:
+        """Let bytes gather where the system keeps them, which wakes nobody."""
+        if not self._opened.is_open:
+            return
+        transport = self._opened.transport
+        transport.pause_reading()
+        try:
+            await asyncio.sleep(seconds)
+        finally:
+            if self._opened.is_open:
+                transport.resume_reading()
 
     async def write(self, data: bytes) -> None:
         """Send bytes. Raises PortLostError."""
