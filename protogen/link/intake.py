@@ -9,7 +9,7 @@ from protogen.link.ports.port import Arrival, Port
 _MANY = 64
 """Bytes of a portion behind which more are gathered: at 1 Mbaud they come in 0.6 ms, and at 115200
 baud in 6, so that only a fast line that is busy is affected."""
-_GATHERED_FOR = 0.004
+_GATHERED_FOR = 0.005
 """Seconds. Each portion costs, however few bytes it has, and each millisecond brings one."""
 
 
