@@ -396,10 +396,11 @@ class Portions(Port):
     async def read(self) -> Arrival:
         size = self.left.pop(0) if self.left else 0
         self.steps.append(f"read {size}")
+        await asyncio.sleep(0.001)
         return Arrival(bytes(size), 0)
 
     async def gather(self, seconds: float) -> None:
-        assert 0 < seconds < 0.01
+        assert 0.0005 < seconds < 0.01
         self.steps.append("gather")
 
     async def write(self, data: bytes) -> None:

@@ -9,8 +9,10 @@ from protogen.link.ports.port import Arrival, Port
 _MANY = 64
 """Bytes of a portion behind which more are gathered: at 1 Mbaud they come in 0.6 ms, and at 115200
 baud in 6, so that only a fast line that is busy is affected."""
+_GATHERED = 1024
+"""Bytes to wait for, at most: systems hold 4096 for a program that does not read."""
 _GATHERED_FOR = 0.005
-"""Seconds. Each portion costs, however few bytes it has, and each millisecond brings one."""
+"""Seconds, at most. Each portion costs, however short it is, and each millisecond brings one."""
 
 
 class Intake:
@@ -19,18 +21,27 @@ class Intake:
     def __init__(self, port: Port) -> None:
         self._port = port
         self._reading: asyncio.Task[Arrival] | None = None
-        self._is_busy = False
+        self._came = 0.0
+        """When the last portion came, in seconds of the event loop."""
+        self._pause = 0.0
+        """Seconds for which bytes gather now."""
 
     async def next(self, silence: float | None) -> Arrival | None:
         """What comes next; None where nothing did for so many seconds.
 
         Bytes without data are the end. Raises PortLostError.
         """
-        if self._is_busy and (silence is None or silence > 2 * _GATHERED_FOR):
-            await self._port.gather(_GATHERED_FOR)
+        if self._pause and (silence is None or silence > 2 * _GATHERED_FOR):
+            await self._port.gather(self._pause)
         arrival = await self._next(silence)
-        self._is_busy = arrival is not None and len(arrival.data) >= _MANY
+        self._pause = 0.0 if arrival is None else self._pause_behind(len(arrival.data))
         return arrival
+
+    def _pause_behind(self, size: int) -> float:
+        """How long bytes gather behind a portion of so many: not at all on a slow line."""
+        now = asyncio.get_running_loop().time()
+        lasted, self._came = now - self._came, now
+        return min(_GATHERED_FOR, lasted * _GATHERED / size) if size >= _MANY else 0.0
 
     async def _next(self, silence: float | None) -> Arrival | None:
         if self._reading is None and silence is None:
