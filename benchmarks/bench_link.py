@@ -248,8 +248,8 @@ fast adapter does. Each program has a process of its own. *Busy* is its time of 
 core, from the first message to the last one, median and in brackets the best of the rounds; *idle*
 is that of a silent line behind it. *Latency* is the time from the write of a frame's last byte
 until the program has the message, in ms. The aim: at most 15 % of a core. On a fast line that is
-busy, protogen leaves bytes to gather for up to 5 ms, as each portion costs; after a portion of less than
-64 bytes it takes them at once.
+busy, protogen leaves bytes to gather for up to 5 ms, as each portion costs; behind a portion of
+less than 64 bytes it takes them at once.
 
 ## Programs that take messages
 

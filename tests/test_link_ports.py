@@ -412,15 +412,16 @@ class Portions(Port):
 
 @pytest.mark.parametrize("silence", [None, 0.02])
 def test_bytes_gather_behind_large_portions_only(silence: float | None) -> None:
-    port = Portions(10, 100, 200, 5)
+    port = Portions(10, 100, 200, 5000, 5)
     intake = Intake(port)
 
     async def read() -> list[int]:
-        arrivals = [await intake.next(silence) for _ in range(5)]
+        arrivals = [await intake.next(silence) for _ in range(6)]
         return [-1 if item is None else len(item.data) for item in arrivals]
 
-    assert asyncio.run(read()) == [10, 100, 200, 5, 0]
-    assert port.steps == ["read 10", "read 100", "gather", "read 200", "gather", "read 5", "read 0"]
+    assert asyncio.run(read()) == [10, 100, 200, 5000, 5, 0]
+    gathered = ["read 100", "gather", "read 200", "gather", "read 5000"]  # Of which more may wait.
+    assert port.steps == ["read 10", *gathered, "read 5", "read 0"]
 
 
 def test_bytes_do_not_gather_where_a_short_silence_ends_frames() -> None:

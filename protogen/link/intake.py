@@ -10,7 +10,8 @@ _MANY = 64
 """Bytes of a portion behind which more are gathered: at 1 Mbaud they come in 0.6 ms, and at 115200
 baud in 6, so that only a fast line that is busy is affected."""
 _GATHERED = 1024
-"""Bytes to wait for, at most: systems hold 4096 for a program that does not read."""
+"""Bytes to wait for, at most: systems hold 4096 for a program that does not read. Behind a portion
+that is much longer, more may be there already."""
 _GATHERED_FOR = 0.005
 """Seconds, at most. Each portion costs, however short it is, and each millisecond brings one."""
 
@@ -38,10 +39,15 @@ class Intake:
         return arrival
 
     def _pause_behind(self, size: int) -> float:
-        """How long bytes gather behind a portion of so many: not at all on a slow line."""
+        """How long bytes gather behind a portion of so many.
+
+        Not at all on a slow line, nor where the reader is the slower one.
+        """
         now = asyncio.get_running_loop().time()
         lasted, self._came = now - self._came, now
-        return min(_GATHERED_FOR, lasted * _GATHERED / size) if size >= _MANY else 0.0
+        if not _MANY <= size <= 4 * _GATHERED:
+            return 0.0
+        return min(_GATHERED_FOR, lasted * _GATHERED / size)
 
     async def _next(self, silence: float | None) -> Arrival | None:
         if self._reading is None and silence is None:

@@ -75,7 +75,10 @@ class Port(abc.ABC):
         """
 
     async def gather(self, seconds: float) -> None:
-        """Let bytes gather for a while, for the next read to take them together."""
+        """Let bytes gather for a while, for the next read to take them together.
+
+        Only for a reader that has just taken all that was there.
+        """
         await asyncio.sleep(seconds)
 
     @abc.abstractmethod
