@@ -83,8 +83,8 @@ function readMoveRelativeTwostep(r) {
 }
 
 function writeMoveRelativeTwostep(w, m) {
-  w.sint(m.angle, 2, 14, true, 128, "angle");
-  w.sint(m.forward, 2, 14, true, 128, "forward");
+  w.i14(m.angle, "angle");
+  w.i14(m.forward, "forward");
 }
 
 /** Plan of MoveRelativeTwostep, for `readPayload` and `writePayload` of the runtime. */
@@ -97,8 +97,8 @@ function readMoveRelativeArc(r) {
 }
 
 function writeMoveRelativeArc(w, m) {
-  w.sint(m.angle, 2, 14, true, 128, "angle");
-  w.sint(m.forward, 2, 14, true, 128, "forward");
+  w.i14(m.angle, "angle");
+  w.i14(m.forward, "forward");
 }
 
 /** Plan of MoveRelativeArc, for `readPayload` and `writePayload` of the runtime. */
@@ -145,11 +145,11 @@ function writeMaintenance(w, m) {
   const items = w.list(w.constant(m.magic, [66, 17, 122], "magic"), 3, 3, "magic");
   w.enter("magic");
   for (let i = 0; i < items.length; i++) {
-    w.uint(items[i], 1, 7, true, 128, i);
+    w.u7(items[i], i);
   }
   w.leave();
   const operation = w.int(m.operation, 0, 127, "operation");
-  w.uint(operation, 1, 7, true, 128, "operation");
+  w.u7(operation, "operation");
   const argument = m.argument;
   const selector = operation;
   if (selector === 65) {
@@ -167,7 +167,7 @@ function writeMaintenance(w, m) {
   else if (selector === 83) {
     const run_motor_controller_flasher = w.record(argument, "argument");
     w.enter("argument");
-    w.uint(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), 1, 7, true, 128, "motor_controller");
+    w.u7(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), "motor_controller");
     w.leave();
   }
   else {
@@ -187,10 +187,10 @@ function readGyro(r) {
 }
 
 function writeGyro(w, m) {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.int_x, 2, 14, true, 128, "int_x");
-  w.sint(m.int_y, 2, 14, true, 128, "int_y");
-  w.sint(m.int_z, 2, 14, true, 128, "int_z");
+  w.u7(m.status, "status");
+  w.i14(m.int_x, "int_x");
+  w.i14(m.int_y, "int_y");
+  w.i14(m.int_z, "int_z");
 }
 
 /** Plan of Gyro, for `readPayload` and `writePayload` of the runtime. */
@@ -205,10 +205,10 @@ function readXcel(r) {
 }
 
 function writeXcel(w, m) {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.int_x, 2, 14, true, 128, "int_x");
-  w.sint(m.int_y, 2, 14, true, 128, "int_y");
-  w.sint(m.int_z, 2, 14, true, 128, "int_z");
+  w.u7(m.status, "status");
+  w.i14(m.int_x, "int_x");
+  w.i14(m.int_y, "int_y");
+  w.i14(m.int_z, "int_z");
 }
 
 /** Plan of Xcel, for `readPayload` and `writePayload` of the runtime. */
@@ -223,10 +223,10 @@ function readCompass(r) {
 }
 
 function writeCompass(w, m) {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.avg_x, 2, 14, true, 128, "avg_x");
-  w.sint(m.avg_y, 2, 14, true, 128, "avg_y");
-  w.sint(m.avg_z, 2, 14, true, 128, "avg_z");
+  w.u7(m.status, "status");
+  w.i14(m.avg_x, "avg_x");
+  w.i14(m.avg_y, "avg_y");
+  w.i14(m.avg_z, "avg_z");
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
@@ -241,10 +241,10 @@ function readOptflow(r) {
 }
 
 function writeOptflow(w, m) {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.dx, 2, 14, true, 128, "dx");
-  w.sint(m.dy, 2, 14, true, 128, "dy");
-  w.uint(m.q, 1, 7, true, 128, "q");
+  w.u7(m.status, "status");
+  w.i14(m.dx, "dx");
+  w.i14(m.dy, "dy");
+  w.u7(m.q, "q");
 }
 
 /** Plan of Optflow, for `readPayload` and `writePayload` of the runtime. */
@@ -262,11 +262,11 @@ function readLidar(r) {
 }
 
 function writeLidar(w, m) {
-  w.uint(m.status, 1, 7, true, 128, "status");
+  w.u7(m.status, "status");
   const items = w.list(m.distances, 360, 360, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.uint(items[i], 2, 14, true, 128, i);
+    w.u14(items[i], i);
   }
   w.leave();
 }
@@ -286,11 +286,11 @@ function readSonar(r) {
 }
 
 function writeSonar(w, m) {
-  w.uint(m.status, 1, 7, true, 128, "status");
+  w.u7(m.status, "status");
   const items = w.list(m.distances, 7, 7, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.uint(items[i], 2, 14, true, 128, i);
+    w.u14(items[i], i);
   }
   w.leave();
 }
@@ -306,9 +306,9 @@ function readFacing(r) {
 }
 
 function writeFacing(w, m) {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.uint(m.heading, 2, 14, true, 128, "heading");
-  w.sint(m.speed, 2, 14, true, 128, "speed");
+  w.u7(m.status, "status");
+  w.u14(m.heading, "heading");
+  w.i14(m.speed, "speed");
 }
 
 /** Plan of Facing, for `readPayload` and `writePayload` of the runtime. */

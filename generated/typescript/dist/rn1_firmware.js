@@ -88,7 +88,7 @@ function readDecreasePhaseAngle(r) {
 }
 
 function writeDecreasePhaseAngle(w, m) {
-  w.uint(m.ignored ?? 0, 1, 7, true, 128, "ignored");
+  w.u7(m.ignored ?? 0, "ignored");
 }
 
 /** Plan of DecreasePhaseAngle, for `readPayload` and `writePayload` of the runtime. */
@@ -100,7 +100,7 @@ function readIncreasePhaseAngle(r) {
 }
 
 function writeIncreasePhaseAngle(w, m) {
-  w.uint(m.ignored ?? 0, 1, 7, true, 128, "ignored");
+  w.u7(m.ignored ?? 0, "ignored");
 }
 
 /** Plan of IncreasePhaseAngle, for `readPayload` and `writePayload` of the runtime. */
@@ -137,11 +137,11 @@ function writeMaintenance(w, m) {
   const items = w.list(w.constant(m.magic, [66, 17, 122], "magic"), 3, 3, "magic");
   w.enter("magic");
   for (let i = 0; i < items.length; i++) {
-    w.uint(items[i], 1, 7, true, 128, i);
+    w.u7(items[i], i);
   }
   w.leave();
   const operation = w.int(m.operation, 0, 127, "operation");
-  w.uint(operation, 1, 7, true, 128, "operation");
+  w.u7(operation, "operation");
   const argument = m.argument;
   const selector = operation;
   if (selector === 82) {
@@ -150,7 +150,7 @@ function writeMaintenance(w, m) {
   else if (selector === 83) {
     const run_motor_controller_flasher = w.record(argument, "argument");
     w.enter("argument");
-    w.uint(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), 1, 7, true, 128, "motor_controller");
+    w.u7(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), "motor_controller");
     w.leave();
   }
   else {
@@ -170,10 +170,10 @@ function readGyro(r) {
 }
 
 function writeGyro(w, m) {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.int_x, 2, 14, true, 128, "int_x");
-  w.sint(m.int_y, 2, 14, true, 128, "int_y");
-  w.sint(m.int_z, 2, 14, true, 128, "int_z");
+  w.u7(m.status, "status");
+  w.i14(m.int_x, "int_x");
+  w.i14(m.int_y, "int_y");
+  w.i14(m.int_z, "int_z");
 }
 
 /** Plan of Gyro, for `readPayload` and `writePayload` of the runtime. */
@@ -188,10 +188,10 @@ function readXcel(r) {
 }
 
 function writeXcel(w, m) {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.int_x, 2, 14, true, 128, "int_x");
-  w.sint(m.int_y, 2, 14, true, 128, "int_y");
-  w.sint(m.int_z, 2, 14, true, 128, "int_z");
+  w.u7(m.status, "status");
+  w.i14(m.int_x, "int_x");
+  w.i14(m.int_y, "int_y");
+  w.i14(m.int_z, "int_z");
 }
 
 /** Plan of Xcel, for `readPayload` and `writePayload` of the runtime. */
@@ -206,10 +206,10 @@ function readCompass(r) {
 }
 
 function writeCompass(w, m) {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.avg_x, 2, 14, true, 128, "avg_x");
-  w.sint(m.avg_y, 2, 14, true, 128, "avg_y");
-  w.sint(m.avg_z, 2, 14, true, 128, "avg_z");
+  w.u7(m.status, "status");
+  w.i14(m.avg_x, "avg_x");
+  w.i14(m.avg_y, "avg_y");
+  w.i14(m.avg_z, "avg_z");
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
@@ -227,11 +227,11 @@ function readLidar(r) {
 }
 
 function writeLidar(w, m) {
-  w.uint(m.status, 1, 7, true, 128, "status");
+  w.u7(m.status, "status");
   const items = w.list(m.distances, 360, 360, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.uint(items[i], 2, 14, true, 128, i);
+    w.u14(items[i], i);
   }
   w.leave();
 }
@@ -251,11 +251,11 @@ function readSonar(r) {
 }
 
 function writeSonar(w, m) {
-  w.uint(m.status, 1, 7, true, 128, "status");
+  w.u7(m.status, "status");
   const items = w.list(m.distances, 3, 3, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.uint(items[i], 2, 14, true, 128, i);
+    w.u14(items[i], i);
   }
   w.leave();
 }
@@ -271,9 +271,9 @@ function readFacing(r) {
 }
 
 function writeFacing(w, m) {
-  w.uint(m.status ?? 1, 1, 7, true, 128, "status");
-  w.sint(m.heading, 2, 14, true, 128, "heading");
-  w.sint(m.speed ?? 0, 2, 14, true, 128, "speed");
+  w.u7(m.status ?? 1, "status");
+  w.i14(m.heading, "heading");
+  w.i14(m.speed ?? 0, "speed");
 }
 
 /** Plan of Facing, for `readPayload` and `writePayload` of the runtime. */
@@ -287,7 +287,7 @@ function readOptflowIntegral(r) {
 }
 
 function writeOptflowIntegral(w, m) {
-  w.uint(m.status ?? 1, 1, 7, true, 128, "status");
+  w.u7(m.status ?? 1, "status");
   w.sint(m.int_x, 2, 14, false, 128, "int_x");
   w.sint(m.int_y, 2, 14, false, 128, "int_y");
 }

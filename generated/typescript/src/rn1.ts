@@ -295,8 +295,8 @@ function readMoveRelativeTwostep(r: rt.Reader): MoveRelativeTwostep {
 }
 
 function writeMoveRelativeTwostep(w: rt.Writer, m: MoveRelativeTwostep): void {
-  w.sint(m.angle, 2, 14, true, 128, "angle");
-  w.sint(m.forward, 2, 14, true, 128, "forward");
+  w.i14(m.angle, "angle");
+  w.i14(m.forward, "forward");
 }
 
 /** Plan of MoveRelativeTwostep, for `readPayload` and `writePayload` of the runtime. */
@@ -309,8 +309,8 @@ function readMoveRelativeArc(r: rt.Reader): MoveRelativeArc {
 }
 
 function writeMoveRelativeArc(w: rt.Writer, m: MoveRelativeArc): void {
-  w.sint(m.angle, 2, 14, true, 128, "angle");
-  w.sint(m.forward, 2, 14, true, 128, "forward");
+  w.i14(m.angle, "angle");
+  w.i14(m.forward, "forward");
 }
 
 /** Plan of MoveRelativeArc, for `readPayload` and `writePayload` of the runtime. */
@@ -357,11 +357,11 @@ function writeMaintenance(w: rt.Writer, m: MaintenanceInput): void {
   const items = w.list(w.constant(m.magic, [66, 17, 122], "magic"), 3, 3, "magic");
   w.enter("magic");
   for (let i = 0; i < items.length; i++) {
-    w.uint(items[i], 1, 7, true, 128, i);
+    w.u7(items[i], i);
   }
   w.leave();
   const operation = w.int(m.operation, 0, 127, "operation");
-  w.uint(operation, 1, 7, true, 128, "operation");
+  w.u7(operation, "operation");
   const argument = m.argument;
   const selector = operation;
   if (selector === 65) {
@@ -379,7 +379,7 @@ function writeMaintenance(w: rt.Writer, m: MaintenanceInput): void {
   else if (selector === 83) {
     const run_motor_controller_flasher = w.record(argument, "argument");
     w.enter("argument");
-    w.uint(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), 1, 7, true, 128, "motor_controller");
+    w.u7(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), "motor_controller");
     w.leave();
   }
   else {
@@ -399,10 +399,10 @@ function readGyro(r: rt.Reader): Gyro {
 }
 
 function writeGyro(w: rt.Writer, m: Gyro): void {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.int_x, 2, 14, true, 128, "int_x");
-  w.sint(m.int_y, 2, 14, true, 128, "int_y");
-  w.sint(m.int_z, 2, 14, true, 128, "int_z");
+  w.u7(m.status, "status");
+  w.i14(m.int_x, "int_x");
+  w.i14(m.int_y, "int_y");
+  w.i14(m.int_z, "int_z");
 }
 
 /** Plan of Gyro, for `readPayload` and `writePayload` of the runtime. */
@@ -417,10 +417,10 @@ function readXcel(r: rt.Reader): Xcel {
 }
 
 function writeXcel(w: rt.Writer, m: Xcel): void {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.int_x, 2, 14, true, 128, "int_x");
-  w.sint(m.int_y, 2, 14, true, 128, "int_y");
-  w.sint(m.int_z, 2, 14, true, 128, "int_z");
+  w.u7(m.status, "status");
+  w.i14(m.int_x, "int_x");
+  w.i14(m.int_y, "int_y");
+  w.i14(m.int_z, "int_z");
 }
 
 /** Plan of Xcel, for `readPayload` and `writePayload` of the runtime. */
@@ -435,10 +435,10 @@ function readCompass(r: rt.Reader): Compass {
 }
 
 function writeCompass(w: rt.Writer, m: Compass): void {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.avg_x, 2, 14, true, 128, "avg_x");
-  w.sint(m.avg_y, 2, 14, true, 128, "avg_y");
-  w.sint(m.avg_z, 2, 14, true, 128, "avg_z");
+  w.u7(m.status, "status");
+  w.i14(m.avg_x, "avg_x");
+  w.i14(m.avg_y, "avg_y");
+  w.i14(m.avg_z, "avg_z");
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
@@ -453,10 +453,10 @@ function readOptflow(r: rt.Reader): Optflow {
 }
 
 function writeOptflow(w: rt.Writer, m: Optflow): void {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.dx, 2, 14, true, 128, "dx");
-  w.sint(m.dy, 2, 14, true, 128, "dy");
-  w.uint(m.q, 1, 7, true, 128, "q");
+  w.u7(m.status, "status");
+  w.i14(m.dx, "dx");
+  w.i14(m.dy, "dy");
+  w.u7(m.q, "q");
 }
 
 /** Plan of Optflow, for `readPayload` and `writePayload` of the runtime. */
@@ -474,11 +474,11 @@ function readLidar(r: rt.Reader): Lidar {
 }
 
 function writeLidar(w: rt.Writer, m: Lidar): void {
-  w.uint(m.status, 1, 7, true, 128, "status");
+  w.u7(m.status, "status");
   const items = w.list(m.distances, 360, 360, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.uint(items[i], 2, 14, true, 128, i);
+    w.u14(items[i], i);
   }
   w.leave();
 }
@@ -498,11 +498,11 @@ function readSonar(r: rt.Reader): Sonar {
 }
 
 function writeSonar(w: rt.Writer, m: Sonar): void {
-  w.uint(m.status, 1, 7, true, 128, "status");
+  w.u7(m.status, "status");
   const items = w.list(m.distances, 7, 7, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.uint(items[i], 2, 14, true, 128, i);
+    w.u14(items[i], i);
   }
   w.leave();
 }
@@ -518,9 +518,9 @@ function readFacing(r: rt.Reader): Facing {
 }
 
 function writeFacing(w: rt.Writer, m: Facing): void {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.uint(m.heading, 2, 14, true, 128, "heading");
-  w.sint(m.speed, 2, 14, true, 128, "speed");
+  w.u7(m.status, "status");
+  w.u14(m.heading, "heading");
+  w.i14(m.speed, "speed");
 }
 
 /** Plan of Facing, for `readPayload` and `writePayload` of the runtime. */

@@ -431,7 +431,7 @@ function readDecreasePhaseAngle(r: rt.Reader): DecreasePhaseAngle {
 }
 
 function writeDecreasePhaseAngle(w: rt.Writer, m: DecreasePhaseAngleInput): void {
-  w.uint(m.ignored ?? 0, 1, 7, true, 128, "ignored");
+  w.u7(m.ignored ?? 0, "ignored");
 }
 
 /** Plan of DecreasePhaseAngle, for `readPayload` and `writePayload` of the runtime. */
@@ -443,7 +443,7 @@ function readIncreasePhaseAngle(r: rt.Reader): IncreasePhaseAngle {
 }
 
 function writeIncreasePhaseAngle(w: rt.Writer, m: IncreasePhaseAngleInput): void {
-  w.uint(m.ignored ?? 0, 1, 7, true, 128, "ignored");
+  w.u7(m.ignored ?? 0, "ignored");
 }
 
 /** Plan of IncreasePhaseAngle, for `readPayload` and `writePayload` of the runtime. */
@@ -480,11 +480,11 @@ function writeMaintenance(w: rt.Writer, m: MaintenanceInput): void {
   const items = w.list(w.constant(m.magic, [66, 17, 122], "magic"), 3, 3, "magic");
   w.enter("magic");
   for (let i = 0; i < items.length; i++) {
-    w.uint(items[i], 1, 7, true, 128, i);
+    w.u7(items[i], i);
   }
   w.leave();
   const operation = w.int(m.operation, 0, 127, "operation");
-  w.uint(operation, 1, 7, true, 128, "operation");
+  w.u7(operation, "operation");
   const argument = m.argument;
   const selector = operation;
   if (selector === 82) {
@@ -493,7 +493,7 @@ function writeMaintenance(w: rt.Writer, m: MaintenanceInput): void {
   else if (selector === 83) {
     const run_motor_controller_flasher = w.record(argument, "argument");
     w.enter("argument");
-    w.uint(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), 1, 7, true, 128, "motor_controller");
+    w.u7(w.ranged(w.int(run_motor_controller_flasher.motor_controller, 0, 127, "motor_controller"), 1, 4, [], "motor_controller"), "motor_controller");
     w.leave();
   }
   else {
@@ -513,10 +513,10 @@ function readGyro(r: rt.Reader): Gyro {
 }
 
 function writeGyro(w: rt.Writer, m: Gyro): void {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.int_x, 2, 14, true, 128, "int_x");
-  w.sint(m.int_y, 2, 14, true, 128, "int_y");
-  w.sint(m.int_z, 2, 14, true, 128, "int_z");
+  w.u7(m.status, "status");
+  w.i14(m.int_x, "int_x");
+  w.i14(m.int_y, "int_y");
+  w.i14(m.int_z, "int_z");
 }
 
 /** Plan of Gyro, for `readPayload` and `writePayload` of the runtime. */
@@ -531,10 +531,10 @@ function readXcel(r: rt.Reader): Xcel {
 }
 
 function writeXcel(w: rt.Writer, m: Xcel): void {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.int_x, 2, 14, true, 128, "int_x");
-  w.sint(m.int_y, 2, 14, true, 128, "int_y");
-  w.sint(m.int_z, 2, 14, true, 128, "int_z");
+  w.u7(m.status, "status");
+  w.i14(m.int_x, "int_x");
+  w.i14(m.int_y, "int_y");
+  w.i14(m.int_z, "int_z");
 }
 
 /** Plan of Xcel, for `readPayload` and `writePayload` of the runtime. */
@@ -549,10 +549,10 @@ function readCompass(r: rt.Reader): Compass {
 }
 
 function writeCompass(w: rt.Writer, m: Compass): void {
-  w.uint(m.status, 1, 7, true, 128, "status");
-  w.sint(m.avg_x, 2, 14, true, 128, "avg_x");
-  w.sint(m.avg_y, 2, 14, true, 128, "avg_y");
-  w.sint(m.avg_z, 2, 14, true, 128, "avg_z");
+  w.u7(m.status, "status");
+  w.i14(m.avg_x, "avg_x");
+  w.i14(m.avg_y, "avg_y");
+  w.i14(m.avg_z, "avg_z");
 }
 
 /** Plan of Compass, for `readPayload` and `writePayload` of the runtime. */
@@ -570,11 +570,11 @@ function readLidar(r: rt.Reader): Lidar {
 }
 
 function writeLidar(w: rt.Writer, m: Lidar): void {
-  w.uint(m.status, 1, 7, true, 128, "status");
+  w.u7(m.status, "status");
   const items = w.list(m.distances, 360, 360, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.uint(items[i], 2, 14, true, 128, i);
+    w.u14(items[i], i);
   }
   w.leave();
 }
@@ -594,11 +594,11 @@ function readSonar(r: rt.Reader): Sonar {
 }
 
 function writeSonar(w: rt.Writer, m: Sonar): void {
-  w.uint(m.status, 1, 7, true, 128, "status");
+  w.u7(m.status, "status");
   const items = w.list(m.distances, 3, 3, "distances");
   w.enter("distances");
   for (let i = 0; i < items.length; i++) {
-    w.uint(items[i], 2, 14, true, 128, i);
+    w.u14(items[i], i);
   }
   w.leave();
 }
@@ -614,9 +614,9 @@ function readFacing(r: rt.Reader): Facing {
 }
 
 function writeFacing(w: rt.Writer, m: FacingInput): void {
-  w.uint(m.status ?? 1, 1, 7, true, 128, "status");
-  w.sint(m.heading, 2, 14, true, 128, "heading");
-  w.sint(m.speed ?? 0, 2, 14, true, 128, "speed");
+  w.u7(m.status ?? 1, "status");
+  w.i14(m.heading, "heading");
+  w.i14(m.speed ?? 0, "speed");
 }
 
 /** Plan of Facing, for `readPayload` and `writePayload` of the runtime. */
@@ -630,7 +630,7 @@ function readOptflowIntegral(r: rt.Reader): OptflowIntegral {
 }
 
 function writeOptflowIntegral(w: rt.Writer, m: OptflowIntegralInput): void {
-  w.uint(m.status ?? 1, 1, 7, true, 128, "status");
+  w.u7(m.status ?? 1, "status");
   w.sint(m.int_x, 2, 14, false, 128, "int_x");
   w.sint(m.int_y, 2, 14, false, 128, "int_y");
 }

@@ -68,9 +68,13 @@ def _plain(type_: Integer) -> str:
     return f"{type_.bits}{'' if is_little(type_) or type_.size == 1 else 'be'}"
 
 
-def _seven(type_: Integer) -> str:
-    """The same for all bits of two bytes of 7 bits, which are only read so."""
-    return "14" if is_seven(type_) and is_little(type_) and type_.bits == _SEVEN else ""
+def _seven(type_: Integer, by: str) -> str:
+    """The same for all bits of two bytes of 7 bits; an unsigned one is written so as well."""
+    if not is_seven(type_):
+        return ""
+    if by == "w" and type_.bits == _SEVEN // 2 and not type_.signed:
+        return "7"
+    return "14" if is_little(type_) and type_.bits == _SEVEN else ""
 
 
 def closed(by: str, type_: Integer, found: str, at: str, scope: Scope) -> Code:
@@ -147,7 +151,7 @@ def _call(by: str, type_: Integer | Float, *around: Code) -> Code:
             name, how = "float7", [type_.bits, *how]
     elif type_.role == "bool":
         name = "bool"
-    elif plain := _plain(type_) or (_seven(type_) if by == "r" else ""):
+    elif plain := _plain(type_) or _seven(type_, by):
         name = f"{'i' if type_.signed else 'u'}{plain}"
     else:
         name = f"{'s' if type_.signed else 'u'}{'big' if is_bigint(type_) else 'int'}"

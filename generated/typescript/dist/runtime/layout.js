@@ -89,6 +89,9 @@ export class Layout {
         this.sender = sender;
         this.isEmpty = isEmpty;
         this.steps = [];
+        /** A length that is a byte in front of the payload, ahead of all steps, and its place. */
+        this.sent = null;
+        this.sentAt = 0;
         this.isPlanned = [];
         const { frame } = sender;
         const { parts, headSize, end } = frame;
@@ -131,6 +134,8 @@ export class Layout {
             const slot = slots[index];
             bytes[index] = slot < 0 ? head[index] : values[slot];
         }
+        if (this.sent)
+            bytes[this.sentAt] = this.sent.of(payload);
         for (let index = 0; index < tail.length; index++)
             bytes[behind + index] = tail[index];
         for (let index = 0; index < steps.length; index++) {
@@ -169,8 +174,13 @@ export class Layout {
             return;
         const [{ name, number }, source] = this.numbered(part);
         const spot = this.spots[index];
-        if (source.slot >= 0 && isByte(number) && !spot.moves)
+        const isInHead = isByte(number) && !spot.moves;
+        if (isInHead && source.slot >= 0)
             this.slots[spot.offset] = source.slot;
+        else if (isInHead && source.length && !this.sent && !this.steps.length) {
+            this.sent = source.length;
+            this.sentAt = spot.offset;
+        }
         else
             this.steps.push(new Step(name, number, source, spot));
     }

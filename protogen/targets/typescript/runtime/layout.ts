@@ -70,7 +70,7 @@ interface RunSum {
 class Source {
   constructor(
     readonly slot: number,
-    private readonly length: Length | null = null,
+    readonly length: Length | null = null,
     private readonly sum: RunSum | null = null,
     private readonly other: ValueOf | null = null,
   ) {}
@@ -147,6 +147,9 @@ export class Layout {
   /** What is stuffed; null where nothing is. */
   private readonly region: readonly [Spot, Spot] | null;
   private readonly steps: Step[] = [];
+  /** A length that is a byte in front of the payload, ahead of all steps, and its place. */
+  private sent: Length | null = null;
+  private sentAt = 0;
   /** The length that a receiver is told. */
   private readonly told: Length | null;
   private readonly isPlanned: boolean[] = [];
@@ -196,6 +199,7 @@ export class Layout {
       const slot = slots[index]!;
       bytes[index] = slot < 0 ? head[index]! : (values[slot] as number);
     }
+    if (this.sent) bytes[this.sentAt] = this.sent.of(payload);
     for (let index = 0; index < tail.length; index++) bytes[behind + index] = tail[index]!;
     for (let index = 0; index < steps.length; index++) {
       steps[index]!.make(bytes, payload, values);
@@ -232,8 +236,12 @@ export class Layout {
     if (part.kind === "literal" || part.kind === "payload") return;
     const [{ name, number }, source] = this.numbered(part);
     const spot = this.spots[index]!;
-    if (source.slot >= 0 && isByte(number) && !spot.moves) this.slots[spot.offset] = source.slot;
-    else this.steps.push(new Step(name, number, source, spot));
+    const isInHead = isByte(number) && !spot.moves;
+    if (isInHead && source.slot >= 0) this.slots[spot.offset] = source.slot;
+    else if (isInHead && source.length && !this.sent && !this.steps.length) {
+      this.sent = source.length;
+      this.sentAt = spot.offset;
+    } else this.steps.push(new Step(name, number, source, spot));
   }
 
   /** Plan all parts of a run of content. */

@@ -48,6 +48,9 @@ function putBy(encode: Transparency["encode"]): Transparency["put"] {
   };
 }
 
+/** As many bytes are copied one by one at most, which is faster than a call for so few. */
+const COPIED = 16;
+
 /** Each byte by its value, as what a byte releases. */
 const BYTES: readonly Uint8Array[] = Array.from({ length: 256 }, (_, byte) => Uint8Array.of(byte));
 
@@ -200,7 +203,7 @@ export function substitution(
   const put: Transparency["put"] = (bytes, size, from, to) => {
     words ??= wordsOf(codes);
     const more = added(words.more, bytes, from, to);
-    if (!more) return bytes.slice(0, size);
+    if (!more && size > COPIED) return bytes.slice(0, size);
     return replaced(bytes, from, to, words.words, new Uint8Array(size + more));
   };
   return {

@@ -145,6 +145,44 @@ export class Writer extends Checks {
     bytes[at + 1] = value;
   }
 
+  /** All bits of a byte of 7 bits. */
+  u7(value: unknown, step: Step): void {
+    if (typeof value !== "number" || value !== (value & 0x7f)) {
+      throw this.noInteger(value, 0, 0x7f, step);
+    }
+    const at = this.size;
+    this.size = at + 1;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value;
+  }
+
+  /** All bits of two bytes of 7 bits, the least significant byte first. */
+  u14(value: unknown, step: Step): void {
+    if (typeof value !== "number" || value !== (value & 0x3fff)) {
+      throw this.noInteger(value, 0, 0x3fff, step);
+    }
+    const at = this.size;
+    this.size = at + 2;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value & 0x7f;
+    bytes[at + 1] = value >> 7;
+  }
+
+  /** The same of a signed one. */
+  i14(value: unknown, step: Step): void {
+    if (typeof value !== "number" || value !== (value << 18) >> 18) {
+      throw this.noInteger(value, -0x2000, 0x1fff, step);
+    }
+    const at = this.size;
+    this.size = at + 2;
+    if (this.size > this.bytes.length) this.grow();
+    const { bytes } = this;
+    bytes[at] = value & 0x7f;
+    bytes[at + 1] = (value >> 7) & 0x7f;
+  }
+
   u32(value: unknown, step: Step): void {
     if (typeof value !== "number" || value !== value >>> 0) {
       throw this.noInteger(value, 0, 0xffffffff, step);
@@ -359,12 +397,21 @@ export class Writer extends Checks {
     step: Step,
     until = -1,
   ): void {
-    const text = this.characters(value, step);
-    this.count(text.length, least, greatest, "characters", step);
-    const at = this.room(text.length);
+    const text = typeof value === "string" ? value : this.characters(value, step);
+    const size = text.length;
+    const at = this.size;
+    if (size >= least && size <= greatest) this.room(size);
     const { bytes } = this;
-    for (let index = 0; index < text.length; index++) bytes[at + index] = text.charCodeAt(index);
-    this.ended(at, sevenBit, until, step);
+    let bits = 0;
+    for (let index = 0; index < size; index++) {
+      const character = text.charCodeAt(index);
+      bits |= character;
+      bytes[at + index] = character;
+    }
+    // Only a text with a wrong character is looked at again.
+    if (bits > (this.strict ? 0x7f : 0xff)) this.characters(text, step);
+    this.count(size, least, greatest, "characters", step);
+    if (sevenBit || until >= 0) this.ended(at, sevenBit, until, step);
   }
 
   /** A text among separators. */

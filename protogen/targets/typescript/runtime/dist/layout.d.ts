@@ -22,6 +22,9 @@ export declare class Layout {
     /** What is stuffed; null where nothing is. */
     private readonly region;
     private readonly steps;
+    /** A length that is a byte in front of the payload, ahead of all steps, and its place. */
+    private sent;
+    private sentAt;
     /** The length that a receiver is told. */
     private readonly told;
     private readonly isPlanned;

@@ -28,6 +28,8 @@ function putBy(encode) {
         return wire;
     };
 }
+/** As many bytes are copied one by one at most, which is faster than a call for so few. */
+const COPIED = 16;
 /** Each byte by its value, as what a byte releases. */
 const BYTES = Array.from({ length: 256 }, (_, byte) => Uint8Array.of(byte));
 function cutSequence(held) {
@@ -164,7 +166,7 @@ export function substitution(codes, lenient = false) {
     const put = (bytes, size, from, to) => {
         words ?? (words = wordsOf(codes));
         const more = added(words.more, bytes, from, to);
-        if (!more)
+        if (!more && size > COPIED)
             return bytes.slice(0, size);
         return replaced(bytes, from, to, words.words, new Uint8Array(size + more));
     };

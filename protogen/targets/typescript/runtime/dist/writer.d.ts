@@ -37,6 +37,12 @@ export declare class Writer extends Checks {
     i16(value: unknown, step: Step): void;
     u16be(value: unknown, step: Step): void;
     i16be(value: unknown, step: Step): void;
+    /** All bits of a byte of 7 bits. */
+    u7(value: unknown, step: Step): void;
+    /** All bits of two bytes of 7 bits, the least significant byte first. */
+    u14(value: unknown, step: Step): void;
+    /** The same of a signed one. */
+    i14(value: unknown, step: Step): void;
     u32(value: unknown, step: Step): void;
     i32(value: unknown, step: Step): void;
     u32be(value: unknown, step: Step): void;
