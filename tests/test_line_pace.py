@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 import tty
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from random import Random
@@ -91,10 +91,10 @@ def stopped(process: subprocess.Popen[str]) -> str:
     return out
 
 
-def recorded(file: Path) -> dict[str, bytes]:
-    """What each source sent, in a recording that is whole."""
+def recorded(file: Path, complain: Callable[[str], object] = pytest.fail) -> dict[str, bytes]:
+    """What each source sent, in a recording that is whole, unless `complain` stands it."""
     found = {name: bytearray() for name in ENDS}
-    for record in records([file.read_bytes()], pytest.fail):
+    for record in records([file.read_bytes()], complain):
         found[record.source] += record.data
     return {name: bytes(data) for name, data in found.items()}
 
@@ -217,7 +217,10 @@ def test_a_recording_has_what_came_out_of_a_tap_that_was_killed(
             kill(process)
             for way in ways:
                 way.read()
-        found = recorded(file)
+        # The system itself may break off a write; that record had not been passed on.
+        torn = list[str]()
+        found = recorded(file, torn.append)
+        assert all(text.startswith("ends inside") for text in torn)
         for name, way in zip(ENDS, ways, strict=True):
             assert sent[name].startswith(found[name])
             assert found[name].startswith(way.got)
