@@ -22,8 +22,6 @@ from protogen.targets.typescript.literals import (
 from protogen.targets.typescript.scope import Scope
 
 _PLAIN = (8, 16, 32, 64)
-_SEVEN = 14
-"""Bits of two bytes of 7 bits."""
 
 
 def is_bigint(type_: Integer) -> bool:
@@ -69,8 +67,10 @@ def _plain(type_: Integer) -> str:
 
 
 def _seven(type_: Integer) -> str:
-    """The same for all bits of two bytes of 7 bits, which are only read so."""
-    return "14" if is_seven(type_) and is_little(type_) and type_.bits == _SEVEN else ""
+    """The same for all bits of one or two bytes of 7 bits, which are only read so."""
+    is_one = type_.bits == 7 and not type_.signed
+    is_two = type_.bits == 14 and is_little(type_)
+    return str(type_.bits) if is_seven(type_) and (is_one or is_two) else ""
 
 
 def closed(by: str, type_: Integer, found: str, at: str, scope: Scope) -> Code:
