@@ -27,10 +27,10 @@ export const PowerCode = {
 };
 
 function readSonar(r) {
-  const distances = [];
+  const distances = new Array(5);
   r.enter("distances");
   for (let i = 0; i < 5; i++) {
-    distances.push(r.u8(i));
+    distances[i] = r.u8(i);
   }
   r.leave();
   return { message: "sonar", distances };
@@ -278,11 +278,11 @@ function hostFrame() {
       const { content: view } = f;
       const id = view.getUint8(0);
       const values = [id];
-      const size = f.sizeOf(values);
-      if (size < 0) return null;
-      const end = size + 1;
+      const group = f.group(values);
+      if (group === undefined || group.fixed === null) return null;
+      const end = group.fixed + 1;
       if (!f.fill(end)) return null;
-      return f.event(values, 1, end);
+      return f.event(values, group, 1, end);
     },
     slots: 1,
     identity: [0],
@@ -333,11 +333,11 @@ function robotFrame() {
       const { content: view } = f;
       const id = view.getUint8(0);
       const values = [id];
-      const size = f.sizeOf(values);
-      if (size < 0) return null;
-      const end = size + 1;
+      const group = f.group(values);
+      if (group === undefined || group.fixed === null) return null;
+      const end = group.fixed + 1;
       if (!f.fill(end)) return null;
-      return f.event(values, 1, end);
+      return f.event(values, group, 1, end);
     },
     slots: 1,
     identity: [0],

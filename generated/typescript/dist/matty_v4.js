@@ -348,9 +348,11 @@ function pcFrame() {
       if (length < 2 || length > 124) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
+      const values = [counter, command, length];
+      const group = f.group(values);
       const end = length + 2;
       if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 1, end)) return null;
-      return f.event([counter, command, length], 4, end);
+      return f.event(values, group, 4, end);
     },
     slots: 3,
     identity: [1],
@@ -415,9 +417,11 @@ function espFrame() {
       if (length < 2 || length > 124) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
+      const values = [counter, command, length];
+      const group = f.group(values);
       const end = length + 2;
       if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 1, end)) return null;
-      return f.event([counter, command, length], 4, end);
+      return f.event(values, group, 4, end);
     },
     slots: 3,
     identity: [1],

@@ -454,9 +454,11 @@ function linuxFrame() {
       const number_ = view.getUint8(3);
       const subclass = view.getUint8(4);
       const length = view.getUint8(5);
+      const values = [class_, number_, subclass, length];
+      const group = f.group(values);
       const end = length + 6;
       if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 6, end)) return null;
-      return f.event([class_, number_, subclass, length], 6, end);
+      return f.event(values, group, 6, end);
     },
     slots: 4,
     identity: [0, 2],
@@ -525,9 +527,11 @@ function flexFrame() {
       const number_ = view.getUint8(3);
       const subclass = view.getUint8(4);
       const length = view.getUint8(5);
+      const values = [class_, number_, subclass, length];
+      const group = f.group(values);
       const end = length + 6;
       if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 6, end)) return null;
-      return f.event([class_, number_, subclass, length], 6, end);
+      return f.event(values, group, 6, end);
     },
     slots: 4,
     identity: [0, 2],

@@ -105,14 +105,14 @@ function writeMoveRelativeArc(w, m) {
 export const planOfMoveRelativeArc = /* @__PURE__ */ rt.plan("move_relative_arc", [[[130, 130]]], [4], readMoveRelativeArc, writeMoveRelativeArc);
 
 function readMaintenance(r) {
-  const magic = [];
+  const magic = new Array(3);
   r.enter("magic");
   for (let i = 0; i < 3; i++) {
-    magic.push(r.uint(1, 7, true, 128, i));
+    magic[i] = r.u7(i);
   }
   r.leave();
   const magic_ = r.constant(magic, [66, 17, 122], "magic");
-  const operation = r.uint(1, 7, true, 128, "operation");
+  const operation = r.u7("operation");
   let argument;
   const selector = operation;
   if (selector === 65) {
@@ -130,7 +130,7 @@ function readMaintenance(r) {
   }
   else if (selector === 83) {
     r.enter("argument");
-    const motor_controller = r.uint(1, 7, true, 128, "motor_controller");
+    const motor_controller = r.u7("motor_controller");
     const run_motor_controller_flasher = { motor_controller };
     r.leave();
     argument = run_motor_controller_flasher;
@@ -179,7 +179,7 @@ function writeMaintenance(w, m) {
 export const planOfMaintenance = /* @__PURE__ */ rt.plan("maintenance", [[[254, 254]]], [4, 7, 1], readMaintenance, writeMaintenance);
 
 function readGyro(r) {
-  const status = r.uint(1, 7, true, 128, "status");
+  const status = r.u7("status");
   const int_x = r.i14("int_x");
   const int_y = r.i14("int_y");
   const int_z = r.i14("int_z");
@@ -197,7 +197,7 @@ function writeGyro(w, m) {
 export const planOfGyro = /* @__PURE__ */ rt.plan("gyro", [[[128, 128]]], [7], readGyro, writeGyro);
 
 function readXcel(r) {
-  const status = r.uint(1, 7, true, 128, "status");
+  const status = r.u7("status");
   const int_x = r.i14("int_x");
   const int_y = r.i14("int_y");
   const int_z = r.i14("int_z");
@@ -215,7 +215,7 @@ function writeXcel(w, m) {
 export const planOfXcel = /* @__PURE__ */ rt.plan("xcel", [[[129, 129]]], [7], readXcel, writeXcel);
 
 function readCompass(r) {
-  const status = r.uint(1, 7, true, 128, "status");
+  const status = r.u7("status");
   const avg_x = r.i14("avg_x");
   const avg_y = r.i14("avg_y");
   const avg_z = r.i14("avg_z");
@@ -233,10 +233,10 @@ function writeCompass(w, m) {
 export const planOfCompass = /* @__PURE__ */ rt.plan("compass", [[[130, 130]]], [7], readCompass, writeCompass);
 
 function readOptflow(r) {
-  const status = r.uint(1, 7, true, 128, "status");
+  const status = r.u7("status");
   const dx = r.i14("dx");
   const dy = r.i14("dy");
-  const q = r.uint(1, 7, true, 128, "q");
+  const q = r.u7("q");
   return { message: "optflow", status, dx, dy, q };
 }
 
@@ -251,11 +251,11 @@ function writeOptflow(w, m) {
 export const planOfOptflow = /* @__PURE__ */ rt.plan("optflow", [[[131, 131]]], [6], readOptflow, writeOptflow);
 
 function readLidar(r) {
-  const status = r.uint(1, 7, true, 128, "status");
-  const distances = [];
+  const status = r.u7("status");
+  const distances = new Array(360);
   r.enter("distances");
   for (let i = 0; i < 360; i++) {
-    distances.push(r.u14(i));
+    distances[i] = r.u14(i);
   }
   r.leave();
   return { message: "lidar", status, distances };
@@ -275,11 +275,11 @@ function writeLidar(w, m) {
 export const planOfLidar = /* @__PURE__ */ rt.plan("lidar", [[[132, 132]]], [721], readLidar, writeLidar);
 
 function readSonar(r) {
-  const status = r.uint(1, 7, true, 128, "status");
-  const distances = [];
+  const status = r.u7("status");
+  const distances = new Array(7);
   r.enter("distances");
   for (let i = 0; i < 7; i++) {
-    distances.push(r.u14(i));
+    distances[i] = r.u14(i);
   }
   r.leave();
   return { message: "sonar", status, distances };
@@ -299,7 +299,7 @@ function writeSonar(w, m) {
 export const planOfSonar = /* @__PURE__ */ rt.plan("sonar", [[[133, 133]]], [15], readSonar, writeSonar);
 
 function readFacing(r) {
-  const status = r.uint(1, 7, true, 128, "status");
+  const status = r.u7("status");
   const heading = r.u14("heading");
   const speed = r.i14("speed");
   return { message: "facing", status, heading, speed };
@@ -363,11 +363,11 @@ function hostFrame() {
       const { view } = f;
       const start = view.getUint8(at);
       const values = [start];
-      const size = f.sizeOf(values);
-      if (size < 0) return null;
-      const end = at + size + 1;
+      const group = f.group(values);
+      if (group === undefined || group.fixed === null) return null;
+      const end = at + group.fixed + 1;
       if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
-      return f.event(values, at + 1, end);
+      return f.event(values, group, at + 1, end);
     },
     slots: 1,
     identity: [0],
@@ -416,11 +416,11 @@ function brainFrame() {
       const { view } = f;
       const start = view.getUint8(at);
       const values = [start];
-      const size = f.sizeOf(values);
-      if (size < 0) return null;
-      const end = at + size + 1;
+      const group = f.group(values);
+      if (group === undefined || group.fixed === null) return null;
+      const end = at + group.fixed + 1;
       if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
-      return f.event(values, at + 1, end);
+      return f.event(values, group, at + 1, end);
     },
     slots: 1,
     identity: [0],

@@ -29,10 +29,10 @@ export const MotorsServosLedsLeds = {
 function readMotorsServosLeds(r) {
   const motor_1 = r.i16be("motor_1");
   const motor_2 = r.i16be("motor_2");
-  const servos = [];
+  const servos = new Array(8);
   r.enter("servos");
   for (let i = 0; i < 8; i++) {
-    servos.push(r.u16be(i));
+    servos[i] = r.u16be(i);
   }
   r.leave();
   const leds = r.u8("leds");
@@ -57,10 +57,10 @@ export const planOfMotorsServosLeds = /* @__PURE__ */ rt.plan("motors_servos_led
 function readMotorsTwoServos(r) {
   const motor_1 = r.i16be("motor_1");
   const motor_2 = r.i16be("motor_2");
-  const servos = [];
+  const servos = new Array(2);
   r.enter("servos");
   for (let i = 0; i < 2; i++) {
-    servos.push(r.u16be(i));
+    servos[i] = r.u16be(i);
   }
   r.leave();
   return { message: "motors_two_servos", motor_1, motor_2, servos };

@@ -33,10 +33,10 @@ export const MotorsServosLedsLeds = {
 function readMotorsServosLeds(r) {
   const right_motor = r.i16be("right_motor");
   const left_motor = r.i16be("left_motor");
-  const servos = [];
+  const servos = new Array(8);
   r.enter("servos");
   for (let i = 0; i < 8; i++) {
-    servos.push(r.u16be(i));
+    servos[i] = r.u16be(i);
   }
   r.leave();
   const leds = r.u8("leds");

@@ -302,10 +302,10 @@ export interface GivenParts {
 }
 
 function readSonar(r: rt.Reader): Sonar {
-  const distances = [];
+  const distances = new Array(5);
   r.enter("distances");
   for (let i = 0; i < 5; i++) {
-    distances.push(r.u8(i));
+    distances[i] = r.u8(i);
   }
   r.leave();
   return { message: "sonar", distances };
@@ -553,11 +553,11 @@ function hostFrame(): rt.Frame {
       const { content: view } = f;
       const id = view.getUint8(0);
       const values = [id];
-      const size = f.sizeOf(values);
-      if (size < 0) return null;
-      const end = size + 1;
+      const group = f.group(values);
+      if (group === undefined || group.fixed === null) return null;
+      const end = group.fixed + 1;
       if (!f.fill(end)) return null;
-      return f.event(values, 1, end);
+      return f.event(values, group, 1, end);
     },
     slots: 1,
     identity: [0],
@@ -608,11 +608,11 @@ function robotFrame(): rt.Frame {
       const { content: view } = f;
       const id = view.getUint8(0);
       const values = [id];
-      const size = f.sizeOf(values);
-      if (size < 0) return null;
-      const end = size + 1;
+      const group = f.group(values);
+      if (group === undefined || group.fixed === null) return null;
+      const end = group.fixed + 1;
       if (!f.fill(end)) return null;
-      return f.event(values, 1, end);
+      return f.event(values, group, 1, end);
     },
     slots: 1,
     identity: [0],

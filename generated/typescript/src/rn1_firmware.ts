@@ -426,7 +426,7 @@ function writeMoveRelativeTwostep(w: rt.Writer, m: MoveRelativeTwostep): void {
 export const planOfMoveRelativeTwostep: rt.MessagePlan<MoveRelativeTwostep> = /* @__PURE__ */ rt.plan("move_relative_twostep", [[[129, 129]]], [4], readMoveRelativeTwostep, writeMoveRelativeTwostep);
 
 function readDecreasePhaseAngle(r: rt.Reader): DecreasePhaseAngle {
-  const ignored = r.uint(1, 7, true, 128, "ignored");
+  const ignored = r.u7("ignored");
   return { message: "decrease_phase_angle", ignored };
 }
 
@@ -438,7 +438,7 @@ function writeDecreasePhaseAngle(w: rt.Writer, m: DecreasePhaseAngleInput): void
 export const planOfDecreasePhaseAngle: rt.MessagePlan<DecreasePhaseAngle> = /* @__PURE__ */ rt.plan("decrease_phase_angle", [[[209, 209]]], [1], readDecreasePhaseAngle, writeDecreasePhaseAngle);
 
 function readIncreasePhaseAngle(r: rt.Reader): IncreasePhaseAngle {
-  const ignored = r.uint(1, 7, true, 128, "ignored");
+  const ignored = r.u7("ignored");
   return { message: "increase_phase_angle", ignored };
 }
 
@@ -450,14 +450,14 @@ function writeIncreasePhaseAngle(w: rt.Writer, m: IncreasePhaseAngleInput): void
 export const planOfIncreasePhaseAngle: rt.MessagePlan<IncreasePhaseAngle> = /* @__PURE__ */ rt.plan("increase_phase_angle", [[[210, 210]]], [1], readIncreasePhaseAngle, writeIncreasePhaseAngle);
 
 function readMaintenance(r: rt.Reader): Maintenance {
-  const magic = [];
+  const magic = new Array(3);
   r.enter("magic");
   for (let i = 0; i < 3; i++) {
-    magic.push(r.uint(1, 7, true, 128, i));
+    magic[i] = r.u7(i);
   }
   r.leave();
   const magic_ = r.constant(magic, [66, 17, 122], "magic");
-  const operation = r.uint(1, 7, true, 128, "operation");
+  const operation = r.u7("operation");
   let argument;
   const selector = operation;
   if (selector === 82) {
@@ -465,7 +465,7 @@ function readMaintenance(r: rt.Reader): Maintenance {
   }
   else if (selector === 83) {
     r.enter("argument");
-    const motor_controller = r.uint(1, 7, true, 128, "motor_controller");
+    const motor_controller = r.u7("motor_controller");
     const run_motor_controller_flasher = { motor_controller };
     r.leave();
     argument = run_motor_controller_flasher;
@@ -505,7 +505,7 @@ function writeMaintenance(w: rt.Writer, m: MaintenanceInput): void {
 export const planOfMaintenance: rt.MessagePlan<Maintenance> = /* @__PURE__ */ rt.plan("maintenance", [[[254, 254]]], [4, 5, 1], readMaintenance, writeMaintenance);
 
 function readGyro(r: rt.Reader): Gyro {
-  const status = r.uint(1, 7, true, 128, "status");
+  const status = r.u7("status");
   const int_x = r.i14("int_x");
   const int_y = r.i14("int_y");
   const int_z = r.i14("int_z");
@@ -523,7 +523,7 @@ function writeGyro(w: rt.Writer, m: Gyro): void {
 export const planOfGyro: rt.MessagePlan<Gyro> = /* @__PURE__ */ rt.plan("gyro", [[[128, 128]]], [7], readGyro, writeGyro);
 
 function readXcel(r: rt.Reader): Xcel {
-  const status = r.uint(1, 7, true, 128, "status");
+  const status = r.u7("status");
   const int_x = r.i14("int_x");
   const int_y = r.i14("int_y");
   const int_z = r.i14("int_z");
@@ -541,7 +541,7 @@ function writeXcel(w: rt.Writer, m: Xcel): void {
 export const planOfXcel: rt.MessagePlan<Xcel> = /* @__PURE__ */ rt.plan("xcel", [[[129, 129]]], [7], readXcel, writeXcel);
 
 function readCompass(r: rt.Reader): Compass {
-  const status = r.uint(1, 7, true, 128, "status");
+  const status = r.u7("status");
   const avg_x = r.i14("avg_x");
   const avg_y = r.i14("avg_y");
   const avg_z = r.i14("avg_z");
@@ -559,11 +559,11 @@ function writeCompass(w: rt.Writer, m: Compass): void {
 export const planOfCompass: rt.MessagePlan<Compass> = /* @__PURE__ */ rt.plan("compass", [[[130, 130]]], [7], readCompass, writeCompass);
 
 function readLidar(r: rt.Reader): Lidar {
-  const status = r.uint(1, 7, true, 128, "status");
-  const distances = [];
+  const status = r.u7("status");
+  const distances = new Array(360);
   r.enter("distances");
   for (let i = 0; i < 360; i++) {
-    distances.push(r.u14(i));
+    distances[i] = r.u14(i);
   }
   r.leave();
   return { message: "lidar", status, distances };
@@ -583,11 +583,11 @@ function writeLidar(w: rt.Writer, m: Lidar): void {
 export const planOfLidar: rt.MessagePlan<Lidar> = /* @__PURE__ */ rt.plan("lidar", [[[132, 132]]], [721], readLidar, writeLidar);
 
 function readSonar(r: rt.Reader): Sonar {
-  const status = r.uint(1, 7, true, 128, "status");
-  const distances = [];
+  const status = r.u7("status");
+  const distances = new Array(3);
   r.enter("distances");
   for (let i = 0; i < 3; i++) {
-    distances.push(r.u14(i));
+    distances[i] = r.u14(i);
   }
   r.leave();
   return { message: "sonar", status, distances };
@@ -607,7 +607,7 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
 export const planOfSonar: rt.MessagePlan<Sonar> = /* @__PURE__ */ rt.plan("sonar", [[[133, 133]]], [7], readSonar, writeSonar);
 
 function readFacing(r: rt.Reader): Facing {
-  const status = r.uint(1, 7, true, 128, "status");
+  const status = r.u7("status");
   const heading = r.i14("heading");
   const speed = r.i14("speed");
   return { message: "facing", status, heading, speed };
@@ -623,7 +623,7 @@ function writeFacing(w: rt.Writer, m: FacingInput): void {
 export const planOfFacing: rt.MessagePlan<Facing> = /* @__PURE__ */ rt.plan("facing", [[[160, 160]]], [5], readFacing, writeFacing);
 
 function readOptflowIntegral(r: rt.Reader): OptflowIntegral {
-  const status = r.uint(1, 7, true, 128, "status");
+  const status = r.u7("status");
   const int_x = r.sint(2, 14, false, 128, "int_x");
   const int_y = r.sint(2, 14, false, 128, "int_y");
   return { message: "optflow_integral", status, int_x, int_y };
@@ -707,11 +707,11 @@ function hostFrame(): rt.Frame {
       const { view } = f;
       const start = view.getUint8(at);
       const values = [start];
-      const size = f.sizeOf(values);
-      if (size < 0) return null;
-      const end = at + size + 1;
+      const group = f.group(values);
+      if (group === undefined || group.fixed === null) return null;
+      const end = at + group.fixed + 1;
       if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
-      return f.event(values, at + 1, end);
+      return f.event(values, group, at + 1, end);
     },
     slots: 1,
     identity: [0],
@@ -761,11 +761,11 @@ function brainFrame(): rt.Frame {
       const { view } = f;
       const start = view.getUint8(at);
       const values = [start];
-      const size = f.sizeOf(values);
-      if (size < 0) return null;
-      const end = at + size + 1;
+      const group = f.group(values);
+      if (group === undefined || group.fixed === null) return null;
+      const end = at + group.fixed + 1;
       if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
-      return f.event(values, at + 1, end);
+      return f.event(values, group, at + 1, end);
     },
     slots: 1,
     identity: [0],

@@ -106,10 +106,10 @@ export interface GivenParts {
 function readMotorsServosLeds(r: rt.Reader): MotorsServosLeds {
   const motor_1 = r.i16be("motor_1");
   const motor_2 = r.i16be("motor_2");
-  const servos = [];
+  const servos = new Array(8);
   r.enter("servos");
   for (let i = 0; i < 8; i++) {
-    servos.push(r.u16be(i));
+    servos[i] = r.u16be(i);
   }
   r.leave();
   const leds = r.u8("leds");
@@ -134,10 +134,10 @@ export const planOfMotorsServosLeds: rt.MessagePlan<MotorsServosLeds> = /* @__PU
 function readMotorsTwoServos(r: rt.Reader): MotorsTwoServos {
   const motor_1 = r.i16be("motor_1");
   const motor_2 = r.i16be("motor_2");
-  const servos = [];
+  const servos = new Array(2);
   r.enter("servos");
   for (let i = 0; i < 2; i++) {
-    servos.push(r.u16be(i));
+    servos[i] = r.u16be(i);
   }
   r.leave();
   return { message: "motors_two_servos", motor_1, motor_2, servos };

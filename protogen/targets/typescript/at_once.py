@@ -85,10 +85,10 @@ class AtOnce:
                 self._number(item)
         names = sorted(self._slots, key=self._slots.__getitem__)
         values = f"[{', '.join(self._values[name] for name in names)}]"
-        self._end(values)
+        self._lines.add(f"const values = {values};", "const group = f.group(values);")
+        self._end()
         self._check()
-        values = values if plan.length else "values"
-        self._lines.add(f"return f.event({values}, {self._place(plan.head_size)}, end);")
+        self._lines.add(f"return f.event(values, group, {self._place(plan.head_size)}, end);")
         return Code("\n".join(["(f, at) => {", *self._lines.lines, "  }"]))
 
     def _begin(self) -> None:
@@ -101,15 +101,14 @@ class AtOnce:
             self._refuse(f"!f.begin({region.before}, {least})")
         self._lines.add(f"const {{ {'view' if region is None else 'content: view'} }} = f;")
 
-    def _end(self, values: str) -> None:
+    def _end(self) -> None:
         """Print the place behind the payload."""
         plan, length = self._plan, self._plan.length
         if length is not None:
             size, start = self._values[length.part.name], plan.head_size - length.base
         else:
-            self._lines.add(f"const values = {values};", "const size = f.sizeOf(values);")
-            self._refuse("size < 0")
-            size, start = "size", plan.head_size
+            self._refuse("group === undefined", "group.fixed === null")
+            size, start = "group.fixed", plan.head_size
         self._lines.add(f"const end = {self._place(start, size)};")
 
     def _check(self) -> None:

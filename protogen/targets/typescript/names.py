@@ -33,7 +33,7 @@ decoderStream encode events jsonLine rt protocol
 """
 """What a module has itself."""
 
-_LOCALS = "r w m rt at f view values size end"
+_LOCALS = "r w m rt at f view values group end"
 """What generated functions have themselves."""
 
 

@@ -22,8 +22,6 @@ from protogen.targets.typescript.literals import (
 from protogen.targets.typescript.scope import Scope
 
 _PLAIN = (8, 16, 32, 64)
-_SEVEN = 14
-"""Bits of two bytes of 7 bits."""
 
 
 def is_bigint(type_: Integer) -> bool:
@@ -68,13 +66,11 @@ def _plain(type_: Integer) -> str:
     return f"{type_.bits}{'' if is_little(type_) or type_.size == 1 else 'be'}"
 
 
-def _seven(type_: Integer, by: str) -> str:
-    """The same for all bits of two bytes of 7 bits; an unsigned one is written so as well."""
-    if not is_seven(type_):
-        return ""
-    if by == "w" and type_.bits == _SEVEN // 2 and not type_.signed:
-        return "7"
-    return "14" if is_little(type_) and type_.bits == _SEVEN else ""
+def _seven(type_: Integer) -> str:
+    """The same for all bits of one or two bytes of 7 bits."""
+    is_one = type_.bits == 7 and not type_.signed
+    is_two = type_.bits == 14 and is_little(type_)
+    return str(type_.bits) if is_seven(type_) and (is_one or is_two) else ""
 
 
 def closed(by: str, type_: Integer, found: str, at: str, scope: Scope) -> Code:
@@ -151,7 +147,7 @@ def _call(by: str, type_: Integer | Float, *around: Code) -> Code:
             name, how = "float7", [type_.bits, *how]
     elif type_.role == "bool":
         name = "bool"
-    elif plain := _plain(type_) or _seven(type_, by):
+    elif plain := _plain(type_) or _seven(type_):
         name = f"{'i' if type_.signed else 'u'}{plain}"
     else:
         name = f"{'s' if type_.signed else 'u'}{'big' if is_bigint(type_) else 'int'}"

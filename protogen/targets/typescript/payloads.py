@@ -265,7 +265,9 @@ class PayloadFunction:
         with scope.block(f"for (let {index} = 0{more}; {index}++)"):
             value = self._value(step.element, Code(f"{items}[{index}]"), index, level)
             if self._reads:
-                scope.add(f"{items}.push({value});")
+                is_known = step.count.known is not None
+                put = f"{items}[{index}] = {value};" if is_known else f"{items}.push({value});"
+                scope.add(put)
             if mark is not None and self._reads:
                 scope.add(f"isLast = {condition(mark, scope.look)};")
             elif mark is not None:
@@ -290,11 +292,11 @@ class PayloadFunction:
         return f"; {index} < {size if count.known is not None else self._let('count', size)}"
 
     def _none_of(self, step: RepeatStep) -> Code:
-        """No elements; of a closed enum they have the type of its values."""
+        """No elements, with room for as many as are known; of a closed enum with its type."""
         type_ = step.element.type
         if isinstance(type_, Integer) and type_.is_closed:
             return call("rt.noneOf", values_of(type_, self._scope))
-        return Code("[]")
+        return Code("[]") if step.count.known is None else call("new Array", step.count.known)
 
     # --- what is there or not, or one of several --------------------------------------------------
 

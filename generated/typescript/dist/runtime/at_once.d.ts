@@ -6,7 +6,7 @@
  */
 import { Framed } from "./events.js";
 import type { Value } from "./numbers.js";
-import type { TakeWhole } from "./plan.js";
+import type { Group, TakeWhole } from "./plan.js";
 import type { Sender } from "./sender.js";
 /** A place in some input, for a generated function. Its methods say if all is well so far. */
 export declare class AtOnce {
@@ -47,10 +47,10 @@ export declare class AtOnce {
     isSevenBit(from: number, to: number): boolean;
     /** The checksum of bytes. */
     sum(index: number, from: number, to: number): number | bigint;
-    /** The size of the payload of frames with these values; -1 where it varies or none is known. */
-    sizeOf(values: readonly Value[]): number;
+    /** The messages of frames with these values; undefined where there are none. */
+    group(values: readonly Value[]): Group | undefined;
     /** The event of the frame with these values and such a payload. Throws a Fault. */
-    event(values: Value[], from: number, to: number): Framed | null;
+    event(values: Value[], group: Group | undefined, from: number, to: number): Framed | null;
 }
 /** The bytes that may end a start or an end inside a frame. */
 export declare function marksOf({ frame, completesStart }: Sender): Uint8Array;

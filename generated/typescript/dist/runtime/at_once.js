@@ -103,20 +103,21 @@ export class AtOnce {
     sum(index, from, to) {
         return this.frame.sums[index].algorithm.compute(this.bytes, from, to);
     }
-    /** The size of the payload of frames with these values; -1 where it varies or none is known. */
-    sizeOf(values) {
-        return this.sender.group(values)?.fixed ?? -1;
+    /** The messages of frames with these values; undefined where there are none. */
+    group(values) {
+        return this.sender.group(values);
     }
     /** The event of the frame with these values and such a payload. Throws a Fault. */
-    event(values, from, to) {
+    event(values, group, from, to) {
         const { sender, data, at, frame, place } = this;
-        const group = sender.group(values);
         if (!group || group.messages.length > 1)
             return null;
         const plan = group.messages[0];
         const sizes = group.carried[0];
         const payload = to - from;
-        if (!holds(sizes, payload) || !holds(plan.sizes, payload))
+        if (!holds(plan.sizes, payload))
+            return null;
+        if (sizes !== plan.sizes && !holds(sizes, payload))
             return null;
         const { end } = frame;
         const size = place + end.length - at;

@@ -10,7 +10,7 @@ import { Fault } from "./errors.js";
 import { Framed } from "./events.js";
 import type { Value } from "./numbers.js";
 import { holds } from "./plan.js";
-import type { Frame, TakeWhole } from "./plan.js";
+import type { Frame, Group, TakeWhole } from "./plan.js";
 import { Reader } from "./reader.js";
 import type { Sender } from "./sender.js";
 
@@ -122,20 +122,20 @@ export class AtOnce {
     return this.frame.sums[index]!.algorithm.compute(this.bytes, from, to);
   }
 
-  /** The size of the payload of frames with these values; -1 where it varies or none is known. */
-  sizeOf(values: readonly Value[]): number {
-    return this.sender.group(values)?.fixed ?? -1;
+  /** The messages of frames with these values; undefined where there are none. */
+  group(values: readonly Value[]): Group | undefined {
+    return this.sender.group(values);
   }
 
   /** The event of the frame with these values and such a payload. Throws a Fault. */
-  event(values: Value[], from: number, to: number): Framed | null {
+  event(values: Value[], group: Group | undefined, from: number, to: number): Framed | null {
     const { sender, data, at, frame, place } = this;
-    const group = sender.group(values);
     if (!group || group.messages.length > 1) return null;
     const plan = group.messages[0]!;
     const sizes = group.carried[0]!;
     const payload = to - from;
-    if (!holds(sizes, payload) || !holds(plan.sizes, payload)) return null;
+    if (!holds(plan.sizes, payload)) return null;
+    if (sizes !== plan.sizes && !holds(sizes, payload)) return null;
     const { end } = frame;
     const size = place + end.length - at;
     if (size > frame.givenUpAt || !standsAt(data, this.size, place, end)) return null;

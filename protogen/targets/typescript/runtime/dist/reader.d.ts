@@ -68,9 +68,10 @@ export declare class Reader {
     u64be(step: Step): bigint;
     i64(step: Step): bigint;
     i64be(step: Step): bigint;
-    /** An unsigned integer of 14 bits, 7 in each byte, the least significant ones first. */
+    /** An unsigned integer of 7 bits. */
+    u7(step: Step): number;
+    /** One of 14 bits, 7 in each byte, the least significant ones first. */
     u14(step: Step): number;
-    /** The same, signed. */
     i14(step: Step): number;
     /** An unsigned integer of up to 53 bits in bytes of 8 bits or, if `base` is 128, of 7. */
     uint(size: number, bits: number, little: boolean, base: 128 | 256, step: Step): number;

@@ -129,7 +129,14 @@ export class Reader {
     i64be(step) {
         return BigInt.asIntN(64, this.u64be(step));
     }
-    /** An unsigned integer of 14 bits, 7 in each byte, the least significant ones first. */
+    /** An unsigned integer of 7 bits. */
+    u7(step) {
+        const found = this.u8(step);
+        if (found > 0x7f)
+            throw this.eighthBit(found, step);
+        return found;
+    }
+    /** One of 14 bits, 7 in each byte, the least significant ones first. */
     u14(step) {
         const at = this.take(2, step);
         const low = this.bytes[at];
@@ -138,7 +145,6 @@ export class Reader {
             throw this.eighthBit(high > 0x7f ? high : low, step);
         return low | (high << 7);
     }
-    /** The same, signed. */
     i14(step) {
         return (this.u14(step) << 18) >> 18;
     }
