@@ -260,7 +260,7 @@ def test_a_torrent_of_noise_fills_no_memory(path: Path) -> None:
             decoder.feed(portion)
 
     # Once unmeasured: the interpreter keeps what it learns about code that runs for the first time.
-    feed_all(portions[:40])
+    feed_all(portions)
     tracemalloc.start()
     feed_all(portions)
     _, peak = tracemalloc.get_traced_memory()

@@ -66,6 +66,13 @@ class Needed:
     given: set[str] = field(default_factory=set)
     """Of what it exports, and what else others take of it."""
 
+    declared: dict[str, list[Statement]] = field(default_factory=dict)
+    """The statements that declare each name."""
+
+    def __post_init__(self) -> None:
+        for item in self.module.statements:
+            self.declared.setdefault(item.name, []).append(item)
+
     def statements(self) -> Iterator[Statement]:
         """The statements that are needed, in their order."""
         for item in self.module.statements:
@@ -128,9 +135,8 @@ class _Marking:
             own.names.add(name)
             if imported:
                 self.give(imported.path, imported.name)
-            for item in own.module.statements:
-                if item.name == name:
-                    self.reach(path, item)
+            for item in own.declared.get(name, ()):
+                self.reach(path, item)
 
     def members(self, name: str, text: str, path: str) -> None:
         """Mark what the text takes of a module that is imported whole."""
@@ -144,10 +150,10 @@ class _Marking:
 
     def reach(self, path: str, statement: Statement) -> None:
         """Mark all that a statement names."""
-        module = self.of(path).module
-        declared = {item.name for item in module.statements}
-        for word in statement.words & (declared | module.imports.keys()):
-            self.mark(path, word, statement.text)
+        own = self.of(path)
+        for word in statement.words:
+            if word in own.declared or word in own.module.imports:
+                self.mark(path, word, statement.text)
 
 
 def _arrange(
