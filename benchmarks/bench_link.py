@@ -17,7 +17,6 @@ import subprocess
 import sys
 import tty
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from importlib.metadata import version
 from itertools import accumulate
 from pathlib import Path
@@ -30,7 +29,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "benchmarks")]
 
 from peers.line_programs import PROGRAMS  # noqa: E402
 from peers.line_streams import frames_of  # noqa: E402
-from peers.pacing import MEGABAUD, Way, carry, delays  # noqa: E402
+from peers.pacing import MEGABAUD, Way, carry, delays, device  # noqa: E402
 
 from protogen.recording import records  # noqa: E402
 from protogen.version import VERSION  # noqa: E402
@@ -50,18 +49,6 @@ class Found(NamedTuple):
     """Share of a core while none do."""
     delays: list[float]
     """Milliseconds from a frame's last byte to its message."""
-
-
-@contextmanager
-def device() -> Iterator[tuple[int, str]]:
-    """Our end of a pseudo-terminal, and the name of the other one."""
-    own, other = os.openpty()
-    tty.setraw(other)
-    try:
-        yield own, os.ttyname(other)
-    finally:
-        os.close(own)
-        os.close(other)
 
 
 # --- programs that take messages ------------------------------------------------------------------

@@ -22,8 +22,8 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "benchmarks")]
 
-from bench_link import ENDS, MATTY, device, streams  # noqa: E402
-from peers.pacing import MEGABAUD, Way, carry  # noqa: E402
+from bench_link import ENDS, MATTY, streams  # noqa: E402
+from peers.pacing import MEGABAUD, Way, carry, device  # noqa: E402
 
 OUT = Path(__file__).with_name("line_memory.md")
 HOUR = 3600 * MEGABAUD

@@ -12,7 +12,6 @@ import subprocess
 import sys
 import termios
 import time
-import tty
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -23,6 +22,10 @@ from cli_support import PATIENCE, ROOT, run
 
 from protogen.cli.line.recorders import AnyRecorder
 from protogen.recording import Record, Recorder, RecordKind, records
+
+sys.path.append(str(ROOT / "benchmarks"))
+
+from peers.pacing import device
 
 pytest.importorskip("serialx")
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals are of POSIX")
@@ -68,18 +71,6 @@ def stopped(process: subprocess.Popen[str]) -> tuple[str, str]:
     out, error = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, error
     return out, error
-
-
-@contextmanager
-def device() -> Iterator[tuple[int, str]]:
-    """Our end of a pseudo-terminal, and the name of the other one."""
-    own, other = os.openpty()
-    tty.setraw(other)
-    try:
-        yield own, os.ttyname(other)
-    finally:
-        os.close(own)
-        os.close(other)
 
 
 @contextmanager

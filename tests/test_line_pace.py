@@ -9,7 +9,6 @@ import signal
 import subprocess
 import sys
 import time
-import tty
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -23,7 +22,7 @@ from protogen.recording import records
 
 sys.path.append(str(ROOT / "benchmarks"))
 
-from peers.pacing import Way, carry
+from peers.pacing import Way, carry, device
 
 pytest.importorskip("serialx")
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals are of POSIX")
@@ -48,18 +47,6 @@ def stream(sender: str, size: int) -> bytes:
         found += frame
         number += 1
     return bytes(found[:size])
-
-
-@contextmanager
-def device() -> Iterator[tuple[int, str]]:
-    """Our end of a pseudo-terminal, and the name of the other one."""
-    own, other = os.openpty()
-    tty.setraw(other)
-    try:
-        yield own, os.ttyname(other)
-    finally:
-        os.close(own)
-        os.close(other)
 
 
 @contextmanager

@@ -8,8 +8,10 @@ from __future__ import annotations
 import os
 import select
 import time
+import tty
 from bisect import bisect_left
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 MEGABAUD = 100_000
@@ -60,6 +62,18 @@ class Way:
     def latencies(self) -> list[float]:
         """Milliseconds from write to read of the last byte of each piece that came out."""
         return delays(self.written, self.came)
+
+
+@contextmanager
+def device() -> Iterator[tuple[int, str]]:
+    """Our end of a pseudo-terminal, and the name of the other one."""
+    own, other = os.openpty()
+    tty.setraw(other)
+    try:
+        yield own, os.ttyname(other)
+    finally:
+        os.close(own)
+        os.close(other)
 
 
 def delays(written: Sequence[tuple[int, int]], came: Sequence[tuple[int, int]]) -> list[float]:
