@@ -7,9 +7,9 @@ and a declaration has no effect besides its name. So one that is not needed can 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from posixpath import dirname, join, normpath
 
 _IMPORT = re.compile(
@@ -55,6 +55,14 @@ class Module:
     statements: tuple[Statement, ...]
     exports: frozenset[str]
 
+    @cached_property
+    def declared(self) -> Mapping[str, Sequence[Statement]]:
+        """The statements that declare each name."""
+        found: dict[str, list[Statement]] = {}
+        for item in self.statements:
+            found.setdefault(item.name, []).append(item)
+        return found
+
 
 @dataclass
 class Needed:
@@ -65,13 +73,6 @@ class Needed:
     """Of what it declares and imports."""
     given: set[str] = field(default_factory=set)
     """Of what it exports, and what else others take of it."""
-
-    declared: dict[str, list[Statement]] = field(default_factory=dict)
-    """The statements that declare each name."""
-
-    def __post_init__(self) -> None:
-        for item in self.module.statements:
-            self.declared.setdefault(item.name, []).append(item)
 
     def statements(self) -> Iterator[Statement]:
         """The statements that are needed, in their order."""
@@ -135,7 +136,7 @@ class _Marking:
             own.names.add(name)
             if imported:
                 self.give(imported.path, imported.name)
-            for item in own.declared.get(name, ()):
+            for item in own.module.declared.get(name, ()):
                 self.reach(path, item)
 
     def members(self, name: str, text: str, path: str) -> None:
@@ -150,9 +151,9 @@ class _Marking:
 
     def reach(self, path: str, statement: Statement) -> None:
         """Mark all that a statement names."""
-        own = self.of(path)
+        module = self.of(path).module
         for word in statement.words:
-            if word in own.declared or word in own.module.imports:
+            if word in module.declared or word in module.imports:
                 self.mark(path, word, statement.text)
 
 
