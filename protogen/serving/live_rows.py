@@ -9,6 +9,7 @@ import msgspec
 
 from protogen.convert.columns.batches import row_of, table_of
 from protogen.convert.columns.tables import Table, Tables, tables_of
+from protogen.convert.columns.topics import topic_of
 from protogen.convert.inputs.chunks import Chunk, Clock
 from protogen.model.protocol import Protocol
 
@@ -25,11 +26,6 @@ class Topic(msgspec.Struct, frozen=True, eq=False):
     def name(self) -> str:
         """The name, as Foxglove has it, and as MCAP files of `convert` do: `/rover/board/state`."""
         return topic_of(self.protocol, *self.path)
-
-
-def topic_of(protocol: str, *path: str) -> str:
-    """The name of a topic."""
-    return "".join(f"/{step}" for step in (protocol, *path))
 
 
 class LiveRow(msgspec.Struct, frozen=True):

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from protogen.cli.wire.given import given_message
+from protogen.convert.columns.topics import topic_of
 from protogen.errors import UserError
 from protogen.runtime.codec import Encoder
-from protogen.serving.live_rows import topic_of
 
 if TYPE_CHECKING:
     from protogen.cli.wire.codec import Codec

@@ -15,6 +15,7 @@ from protogen.convert.columns.batches import Batch, Messages
 from protogen.convert.columns.python_values import as_list
 from protogen.convert.columns.rows import Rows
 from protogen.convert.columns.tables import Table, Tables
+from protogen.convert.columns.topics import topic_of
 from protogen.convert.errors import needed
 from protogen.convert.writers.mcap_encodings import Encoding
 from protogen.convert.writers.mcap_file import McapFile
@@ -89,6 +90,6 @@ class McapWriter:
 
     def _open(self, number: int, table: Table) -> None:
         facts = table.facts
-        topic = f"/{facts['protogen.protocol']}/{facts['protogen.sender']}/{table.name}"
+        topic = topic_of(facts["protogen.protocol"], facts["protogen.sender"], table.name)
         self._mcap.add_schema(number, *self._encoding.schema(table))
         self._mcap.add_channel(number, topic, facts)
