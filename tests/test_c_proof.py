@@ -206,18 +206,15 @@ def test_a_buffer_that_a_polled_decoder_writes_behind_is_found(tmp_path: Path) -
 
 def test_an_event_that_is_not_filled_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(MATTY), tmp_path, COptions(events="messages"))
-    assert made.source is not None
-    changed(made.source, r"    event->payload = .*;\n", "")
-    report = prove(made, push_driver(made.protocol, made.header.read_text(encoding="utf-8")))
+    header = changed(made.header, r"    event->payload = .*;\n", "")
+    report = prove(made, push_driver(made.protocol, header))
     assert any("uninitialized" in found for found in report.found)
 
 
 def test_more_payload_than_was_received_is_found(tmp_path: Path) -> None:
     """It is in the buffer all right, but from an earlier frame, or from nowhere."""
     made = generate(protocol_of(MATTY), tmp_path, COptions(events="messages"))
-    assert made.source is not None
-    changed(made.source, r"(event->payload_size = payload);", r"\1 + 2U;")
-    header = made.header.read_text(encoding="utf-8")
+    header = changed(made.header, r"(event->payload_size = payload);", r"\1 + 2U;")
     assert prove(made, push_driver(made.protocol, header)).found == ()
     report = prove(made, first_driver(made.protocol, header))
     assert any("event->payload + i" in found for found in report.found), report.found

@@ -2,6 +2,24 @@
 /* SPDX-License-Identifier: 0BSD */
 #include "dagny.h"
 
+/*
+ * What a function of the header needs is put into it, so that it is short and fast also where no
+ * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
+ * the function that calls it: define DAGNY_APART as `static` with -flto, or in one source.
+ */
+#if defined(__GNUC__)
+#define DAGNY_INLINE static inline __attribute__((always_inline))
+#else
+#define DAGNY_INLINE static inline
+#endif
+#ifndef DAGNY_APART
+#if defined(__GNUC__)
+#define DAGNY_APART static __attribute__((noinline))
+#else
+#define DAGNY_APART static
+#endif
+#endif
+
 static void dagny_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
@@ -19,14 +37,14 @@ static size_t dagny_sonar_measure(const struct dagny_sonar *message) {
     return size;
 }
 
-static enum dagny_result dagny_sonar_validate(const struct dagny_sonar *message) {
+DAGNY_INLINE enum dagny_result dagny_sonar_validate(const struct dagny_sonar *message) {
     if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
 }
 
-static void dagny_sonar_store(const struct dagny_sonar *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_sonar_store(const struct dagny_sonar *message, uint8_t *payload) {
     dagny_copy(payload, message->data, message->data_size);
 }
 
@@ -77,14 +95,14 @@ static size_t dagny_gps_measure(const struct dagny_gps *message) {
     return size;
 }
 
-static enum dagny_result dagny_gps_validate(const struct dagny_gps *message) {
+DAGNY_INLINE enum dagny_result dagny_gps_validate(const struct dagny_gps *message) {
     if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
 }
 
-static void dagny_gps_store(const struct dagny_gps *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_gps_store(const struct dagny_gps *message, uint8_t *payload) {
     dagny_copy(payload, message->data, message->data_size);
 }
 
@@ -134,14 +152,14 @@ static size_t dagny_bump_measure(const struct dagny_bump *message) {
     return size;
 }
 
-static enum dagny_result dagny_bump_validate(const struct dagny_bump *message) {
+DAGNY_INLINE enum dagny_result dagny_bump_validate(const struct dagny_bump *message) {
     if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
 }
 
-static void dagny_bump_store(const struct dagny_bump *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_bump_store(const struct dagny_bump *message, uint8_t *payload) {
     dagny_copy(payload, message->data, message->data_size);
 }
 
@@ -192,14 +210,14 @@ static size_t dagny_odometry_measure(const struct dagny_odometry *message) {
     return size;
 }
 
-static enum dagny_result dagny_odometry_validate(const struct dagny_odometry *message) {
+DAGNY_INLINE enum dagny_result dagny_odometry_validate(const struct dagny_odometry *message) {
     if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
 }
 
-static void dagny_odometry_store(const struct dagny_odometry *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_odometry_store(const struct dagny_odometry *message, uint8_t *payload) {
     dagny_copy(payload, message->data, message->data_size);
 }
 
@@ -250,14 +268,14 @@ static size_t dagny_speed_measure(const struct dagny_speed *message) {
     return size;
 }
 
-static enum dagny_result dagny_speed_validate(const struct dagny_speed *message) {
+DAGNY_INLINE enum dagny_result dagny_speed_validate(const struct dagny_speed *message) {
     if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
 }
 
-static void dagny_speed_store(const struct dagny_speed *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_speed_store(const struct dagny_speed *message, uint8_t *payload) {
     dagny_copy(payload, message->data, message->data_size);
 }
 
@@ -308,14 +326,14 @@ static size_t dagny_wheel_slip_measure(const struct dagny_wheel_slip *message) {
     return size;
 }
 
-static enum dagny_result dagny_wheel_slip_validate(const struct dagny_wheel_slip *message) {
+DAGNY_INLINE enum dagny_result dagny_wheel_slip_validate(const struct dagny_wheel_slip *message) {
     if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
 }
 
-static void dagny_wheel_slip_store(const struct dagny_wheel_slip *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_wheel_slip_store(const struct dagny_wheel_slip *message, uint8_t *payload) {
     dagny_copy(payload, message->data, message->data_size);
 }
 
@@ -366,14 +384,14 @@ static size_t dagny_battery_measure(const struct dagny_battery *message) {
     return size;
 }
 
-static enum dagny_result dagny_battery_validate(const struct dagny_battery *message) {
+DAGNY_INLINE enum dagny_result dagny_battery_validate(const struct dagny_battery *message) {
     if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
 }
 
-static void dagny_battery_store(const struct dagny_battery *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_battery_store(const struct dagny_battery *message, uint8_t *payload) {
     dagny_copy(payload, message->data, message->data_size);
 }
 
@@ -424,7 +442,7 @@ static size_t dagny_reflex_settings_measure(const struct dagny_reflex_settings *
     return size;
 }
 
-static enum dagny_result dagny_reflex_settings_validate(
+DAGNY_INLINE enum dagny_result dagny_reflex_settings_validate(
     const struct dagny_reflex_settings *message) {
     if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
@@ -432,8 +450,8 @@ static enum dagny_result dagny_reflex_settings_validate(
     return DAGNY_OK;
 }
 
-static void dagny_reflex_settings_store(const struct dagny_reflex_settings *message,
-                                        uint8_t *payload) {
+DAGNY_INLINE void dagny_reflex_settings_store(const struct dagny_reflex_settings *message,
+                                              uint8_t *payload) {
     dagny_copy(payload, message->data, message->data_size);
 }
 
@@ -486,7 +504,7 @@ static size_t dagny_hardware_status_measure(const struct dagny_hardware_status *
     return size;
 }
 
-static enum dagny_result dagny_hardware_status_validate(
+DAGNY_INLINE enum dagny_result dagny_hardware_status_validate(
     const struct dagny_hardware_status *message) {
     if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
@@ -494,8 +512,8 @@ static enum dagny_result dagny_hardware_status_validate(
     return DAGNY_OK;
 }
 
-static void dagny_hardware_status_store(const struct dagny_hardware_status *message,
-                                        uint8_t *payload) {
+DAGNY_INLINE void dagny_hardware_status_store(const struct dagny_hardware_status *message,
+                                              uint8_t *payload) {
     dagny_copy(payload, message->data, message->data_size);
 }
 
@@ -542,7 +560,7 @@ enum dagny_result dagny_hardware_status_decode(struct dagny_hardware_status *mes
 
 /* --- motor ------------------------------------------------------------------------------------ */
 
-static void dagny_motor_store(const struct dagny_motor *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_motor_store(const struct dagny_motor *message, uint8_t *payload) {
     payload[0] = message->s;
 }
 
@@ -571,7 +589,7 @@ enum dagny_result dagny_motor_decode(struct dagny_motor *message, const uint8_t 
 
 /* --- steering --------------------------------------------------------------------------------- */
 
-static void dagny_steering_store(const struct dagny_steering *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_steering_store(const struct dagny_steering *message, uint8_t *payload) {
     payload[0] = message->s;
 }
 
@@ -600,7 +618,7 @@ enum dagny_result dagny_steering_decode(struct dagny_steering *message, const ui
 
 /* --- reflex ----------------------------------------------------------------------------------- */
 
-static void dagny_reflex_store(const struct dagny_reflex *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_reflex_store(const struct dagny_reflex *message, uint8_t *payload) {
     payload[0] = message->reflex;
 }
 
@@ -629,7 +647,7 @@ enum dagny_result dagny_reflex_decode(struct dagny_reflex *message, const uint8_
 
 /* --- power_down ------------------------------------------------------------------------------- */
 
-static void dagny_power_down_store(const struct dagny_power_down *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_power_down_store(const struct dagny_power_down *message, uint8_t *payload) {
     (void)message;
     payload[0] = 0x03U;
 }
@@ -672,7 +690,7 @@ enum dagny_result dagny_power_down_decode(struct dagny_power_down *message, cons
 
 /* --- power ------------------------------------------------------------------------------------ */
 
-static void dagny_power_store(const struct dagny_power *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_power_store(const struct dagny_power *message, uint8_t *payload) {
     payload[0] = message->code;
 }
 
@@ -707,14 +725,14 @@ static size_t dagny_laser_measure(const struct dagny_laser *message) {
     return size;
 }
 
-static enum dagny_result dagny_laser_validate(const struct dagny_laser *message) {
+DAGNY_INLINE enum dagny_result dagny_laser_validate(const struct dagny_laser *message) {
     if (message->readings_count > 512U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
 }
 
-static void dagny_laser_store(const struct dagny_laser *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_laser_store(const struct dagny_laser *message, uint8_t *payload) {
     dagny_copy(payload, message->readings, message->readings_count);
 }
 
@@ -766,14 +784,14 @@ static size_t dagny_command_measure(const struct dagny_command *message) {
     return size;
 }
 
-static enum dagny_result dagny_command_validate(const struct dagny_command *message) {
+DAGNY_INLINE enum dagny_result dagny_command_validate(const struct dagny_command *message) {
     if (message->data_size > 128U) {
         return DAGNY_ERROR_RANGE;
     }
     return DAGNY_OK;
 }
 
-static void dagny_command_store(const struct dagny_command *message, uint8_t *payload) {
+DAGNY_INLINE void dagny_command_store(const struct dagny_command *message, uint8_t *payload) {
     dagny_copy(payload, message->data, message->data_size);
 }
 
@@ -944,19 +962,21 @@ static void dagny_write(struct dagny_writer *writer, uint8_t byte) {
     dagny_host_write(writer, byte);
 }
 
-static void dagny_motor_put(const struct dagny_motor *message, struct dagny_writer *writer) {
+DAGNY_INLINE void dagny_motor_put(const struct dagny_motor *message, struct dagny_writer *writer) {
     dagny_write(writer, message->s);
 }
 
-static void dagny_steering_put(const struct dagny_steering *message, struct dagny_writer *writer) {
+DAGNY_INLINE void dagny_steering_put(const struct dagny_steering *message,
+                                     struct dagny_writer *writer) {
     dagny_write(writer, message->s);
 }
 
-static void dagny_reflex_put(const struct dagny_reflex *message, struct dagny_writer *writer) {
+DAGNY_INLINE void dagny_reflex_put(const struct dagny_reflex *message,
+                                   struct dagny_writer *writer) {
     dagny_write(writer, message->reflex);
 }
 
-static void dagny_power_put(const struct dagny_power *message, struct dagny_writer *writer) {
+DAGNY_INLINE void dagny_power_put(const struct dagny_power *message, struct dagny_writer *writer) {
     dagny_write(writer, message->code);
 }
 
@@ -2341,7 +2361,7 @@ void dagny_robot_dispatch(void *user, const struct dagny_robot_event *event) {
     }
 }
 
-#if defined(__GNUC__) || defined(__clang__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(DAGNY_NO_WEAK)
 
 __attribute__((weak)) void dagny_on_motor(void *user, const struct dagny_motor *message,
                                           const struct dagny_host_parts *parts) {

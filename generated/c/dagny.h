@@ -20,6 +20,14 @@
 extern "C" {
 #endif
 
+/**
+ * In front of each function that the source defines. Where the one source that calls them includes
+ * `dagny.c`, define this as `static inline`: then the compiler sees all calls.
+ */
+#ifndef DAGNY_API
+#define DAGNY_API
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define DAGNY_SPEC_HASH "1d5a69e6f0daa3cc6de17b9b7bdfa067dee73b6a3f07294530412990adc6f795"
 
@@ -103,11 +111,11 @@ struct dagny_sonar {
     uint8_t data[128];
 };
 
-enum dagny_result dagny_sonar_encode(const struct dagny_sonar *message, uint8_t *payload,
-                                     size_t capacity, size_t *size);
-enum dagny_result dagny_sonar_decode(struct dagny_sonar *message, const uint8_t *payload,
-                                     size_t size);
-void dagny_sonar_load(struct dagny_sonar *message, const uint8_t *payload, size_t size);
+DAGNY_API enum dagny_result dagny_sonar_encode(const struct dagny_sonar *message, uint8_t *payload,
+                                               size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_sonar_decode(struct dagny_sonar *message, const uint8_t *payload,
+                                               size_t size);
+DAGNY_API void dagny_sonar_load(struct dagny_sonar *message, const uint8_t *payload, size_t size);
 
 /* --- gps -------------------------------------------------------------------------------------- */
 
@@ -128,10 +136,11 @@ struct dagny_gps {
     uint8_t data[128];
 };
 
-enum dagny_result dagny_gps_encode(const struct dagny_gps *message, uint8_t *payload,
-                                   size_t capacity, size_t *size);
-enum dagny_result dagny_gps_decode(struct dagny_gps *message, const uint8_t *payload, size_t size);
-void dagny_gps_load(struct dagny_gps *message, const uint8_t *payload, size_t size);
+DAGNY_API enum dagny_result dagny_gps_encode(const struct dagny_gps *message, uint8_t *payload,
+                                             size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_gps_decode(struct dagny_gps *message, const uint8_t *payload,
+                                             size_t size);
+DAGNY_API void dagny_gps_load(struct dagny_gps *message, const uint8_t *payload, size_t size);
 
 /* --- bump ------------------------------------------------------------------------------------- */
 
@@ -148,11 +157,11 @@ struct dagny_bump {
     uint8_t data[128];
 };
 
-enum dagny_result dagny_bump_encode(const struct dagny_bump *message, uint8_t *payload,
-                                    size_t capacity, size_t *size);
-enum dagny_result dagny_bump_decode(struct dagny_bump *message, const uint8_t *payload,
-                                    size_t size);
-void dagny_bump_load(struct dagny_bump *message, const uint8_t *payload, size_t size);
+DAGNY_API enum dagny_result dagny_bump_encode(const struct dagny_bump *message, uint8_t *payload,
+                                              size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_bump_decode(struct dagny_bump *message, const uint8_t *payload,
+                                              size_t size);
+DAGNY_API void dagny_bump_load(struct dagny_bump *message, const uint8_t *payload, size_t size);
 
 /* --- odometry --------------------------------------------------------------------------------- */
 
@@ -169,11 +178,12 @@ struct dagny_odometry {
     uint8_t data[128];
 };
 
-enum dagny_result dagny_odometry_encode(const struct dagny_odometry *message, uint8_t *payload,
-                                        size_t capacity, size_t *size);
-enum dagny_result dagny_odometry_decode(struct dagny_odometry *message, const uint8_t *payload,
-                                        size_t size);
-void dagny_odometry_load(struct dagny_odometry *message, const uint8_t *payload, size_t size);
+DAGNY_API enum dagny_result dagny_odometry_encode(const struct dagny_odometry *message,
+                                                  uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_odometry_decode(struct dagny_odometry *message,
+                                                  const uint8_t *payload, size_t size);
+DAGNY_API void dagny_odometry_load(struct dagny_odometry *message, const uint8_t *payload,
+                                   size_t size);
 
 /* --- speed ------------------------------------------------------------------------------------ */
 
@@ -190,11 +200,11 @@ struct dagny_speed {
     uint8_t data[128];
 };
 
-enum dagny_result dagny_speed_encode(const struct dagny_speed *message, uint8_t *payload,
-                                     size_t capacity, size_t *size);
-enum dagny_result dagny_speed_decode(struct dagny_speed *message, const uint8_t *payload,
-                                     size_t size);
-void dagny_speed_load(struct dagny_speed *message, const uint8_t *payload, size_t size);
+DAGNY_API enum dagny_result dagny_speed_encode(const struct dagny_speed *message, uint8_t *payload,
+                                               size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_speed_decode(struct dagny_speed *message, const uint8_t *payload,
+                                               size_t size);
+DAGNY_API void dagny_speed_load(struct dagny_speed *message, const uint8_t *payload, size_t size);
 
 /* --- wheel_slip ------------------------------------------------------------------------------- */
 
@@ -215,11 +225,13 @@ struct dagny_wheel_slip {
     uint8_t data[128];
 };
 
-enum dagny_result dagny_wheel_slip_encode(const struct dagny_wheel_slip *message, uint8_t *payload,
-                                          size_t capacity, size_t *size);
-enum dagny_result dagny_wheel_slip_decode(struct dagny_wheel_slip *message, const uint8_t *payload,
-                                          size_t size);
-void dagny_wheel_slip_load(struct dagny_wheel_slip *message, const uint8_t *payload, size_t size);
+DAGNY_API enum dagny_result dagny_wheel_slip_encode(const struct dagny_wheel_slip *message,
+                                                    uint8_t *payload, size_t capacity,
+                                                    size_t *size);
+DAGNY_API enum dagny_result dagny_wheel_slip_decode(struct dagny_wheel_slip *message,
+                                                    const uint8_t *payload, size_t size);
+DAGNY_API void dagny_wheel_slip_load(struct dagny_wheel_slip *message, const uint8_t *payload,
+                                     size_t size);
 
 /* --- battery ---------------------------------------------------------------------------------- */
 
@@ -240,11 +252,12 @@ struct dagny_battery {
     uint8_t data[128];
 };
 
-enum dagny_result dagny_battery_encode(const struct dagny_battery *message, uint8_t *payload,
-                                       size_t capacity, size_t *size);
-enum dagny_result dagny_battery_decode(struct dagny_battery *message, const uint8_t *payload,
-                                       size_t size);
-void dagny_battery_load(struct dagny_battery *message, const uint8_t *payload, size_t size);
+DAGNY_API enum dagny_result dagny_battery_encode(const struct dagny_battery *message,
+                                                 uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_battery_decode(struct dagny_battery *message,
+                                                 const uint8_t *payload, size_t size);
+DAGNY_API void dagny_battery_load(struct dagny_battery *message, const uint8_t *payload,
+                                  size_t size);
 
 /* --- reflex_settings -------------------------------------------------------------------------- */
 
@@ -261,12 +274,12 @@ struct dagny_reflex_settings {
     uint8_t data[128];
 };
 
-enum dagny_result dagny_reflex_settings_encode(const struct dagny_reflex_settings *message,
-                                               uint8_t *payload, size_t capacity, size_t *size);
-enum dagny_result dagny_reflex_settings_decode(struct dagny_reflex_settings *message,
-                                               const uint8_t *payload, size_t size);
-void dagny_reflex_settings_load(struct dagny_reflex_settings *message, const uint8_t *payload,
-                                size_t size);
+DAGNY_API enum dagny_result dagny_reflex_settings_encode(
+    const struct dagny_reflex_settings *message, uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_reflex_settings_decode(struct dagny_reflex_settings *message,
+                                                         const uint8_t *payload, size_t size);
+DAGNY_API void dagny_reflex_settings_load(struct dagny_reflex_settings *message,
+                                          const uint8_t *payload, size_t size);
 
 /* --- hardware_status -------------------------------------------------------------------------- */
 
@@ -283,12 +296,12 @@ struct dagny_hardware_status {
     uint8_t data[128];
 };
 
-enum dagny_result dagny_hardware_status_encode(const struct dagny_hardware_status *message,
-                                               uint8_t *payload, size_t capacity, size_t *size);
-enum dagny_result dagny_hardware_status_decode(struct dagny_hardware_status *message,
-                                               const uint8_t *payload, size_t size);
-void dagny_hardware_status_load(struct dagny_hardware_status *message, const uint8_t *payload,
-                                size_t size);
+DAGNY_API enum dagny_result dagny_hardware_status_encode(
+    const struct dagny_hardware_status *message, uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_hardware_status_decode(struct dagny_hardware_status *message,
+                                                         const uint8_t *payload, size_t size);
+DAGNY_API void dagny_hardware_status_load(struct dagny_hardware_status *message,
+                                          const uint8_t *payload, size_t size);
 
 /* --- motor ------------------------------------------------------------------------------------ */
 
@@ -304,11 +317,11 @@ struct dagny_motor {
     uint8_t s;
 };
 
-enum dagny_result dagny_motor_encode(const struct dagny_motor *message, uint8_t *payload,
-                                     size_t capacity, size_t *size);
-enum dagny_result dagny_motor_decode(struct dagny_motor *message, const uint8_t *payload,
-                                     size_t size);
-void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload);
+DAGNY_API enum dagny_result dagny_motor_encode(const struct dagny_motor *message, uint8_t *payload,
+                                               size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_motor_decode(struct dagny_motor *message, const uint8_t *payload,
+                                               size_t size);
+DAGNY_API void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload);
 
 /* --- steering --------------------------------------------------------------------------------- */
 
@@ -324,11 +337,11 @@ struct dagny_steering {
     uint8_t s;
 };
 
-enum dagny_result dagny_steering_encode(const struct dagny_steering *message, uint8_t *payload,
-                                        size_t capacity, size_t *size);
-enum dagny_result dagny_steering_decode(struct dagny_steering *message, const uint8_t *payload,
-                                        size_t size);
-void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload);
+DAGNY_API enum dagny_result dagny_steering_encode(const struct dagny_steering *message,
+                                                  uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_steering_decode(struct dagny_steering *message,
+                                                  const uint8_t *payload, size_t size);
+DAGNY_API void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload);
 
 /* --- reflex ----------------------------------------------------------------------------------- */
 
@@ -349,11 +362,11 @@ struct dagny_reflex {
     uint8_t reflex;
 };
 
-enum dagny_result dagny_reflex_encode(const struct dagny_reflex *message, uint8_t *payload,
-                                      size_t capacity, size_t *size);
-enum dagny_result dagny_reflex_decode(struct dagny_reflex *message, const uint8_t *payload,
-                                      size_t size);
-void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload);
+DAGNY_API enum dagny_result dagny_reflex_encode(const struct dagny_reflex *message,
+                                                uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_reflex_decode(struct dagny_reflex *message,
+                                                const uint8_t *payload, size_t size);
+DAGNY_API void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload);
 
 /** What to do with the reflex; bits 6 to 7 of reflex. */
 #define DAGNY_REFLEX_REFLEX_COMMAND_MASK 0xC0U
@@ -393,11 +406,12 @@ struct dagny_power_down {
     uint8_t unused;
 };
 
-enum dagny_result dagny_power_down_encode(const struct dagny_power_down *message, uint8_t *payload,
-                                          size_t capacity, size_t *size);
-enum dagny_result dagny_power_down_decode(struct dagny_power_down *message, const uint8_t *payload,
-                                          size_t size);
-void dagny_power_down_load(struct dagny_power_down *message, const uint8_t *payload);
+DAGNY_API enum dagny_result dagny_power_down_encode(const struct dagny_power_down *message,
+                                                    uint8_t *payload, size_t capacity,
+                                                    size_t *size);
+DAGNY_API enum dagny_result dagny_power_down_decode(struct dagny_power_down *message,
+                                                    const uint8_t *payload, size_t size);
+DAGNY_API void dagny_power_down_load(struct dagny_power_down *message, const uint8_t *payload);
 
 /* --- power ------------------------------------------------------------------------------------ */
 
@@ -413,11 +427,11 @@ struct dagny_power {
     uint8_t code;
 };
 
-enum dagny_result dagny_power_encode(const struct dagny_power *message, uint8_t *payload,
-                                     size_t capacity, size_t *size);
-enum dagny_result dagny_power_decode(struct dagny_power *message, const uint8_t *payload,
-                                     size_t size);
-void dagny_power_load(struct dagny_power *message, const uint8_t *payload);
+DAGNY_API enum dagny_result dagny_power_encode(const struct dagny_power *message, uint8_t *payload,
+                                               size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_power_decode(struct dagny_power *message, const uint8_t *payload,
+                                               size_t size);
+DAGNY_API void dagny_power_load(struct dagny_power *message, const uint8_t *payload);
 
 /* --- laser ------------------------------------------------------------------------------------ */
 
@@ -442,11 +456,11 @@ struct dagny_laser {
     uint8_t readings[512];
 };
 
-enum dagny_result dagny_laser_encode(const struct dagny_laser *message, uint8_t *payload,
-                                     size_t capacity, size_t *size);
-enum dagny_result dagny_laser_decode(struct dagny_laser *message, const uint8_t *payload,
-                                     size_t size);
-void dagny_laser_load(struct dagny_laser *message, const uint8_t *payload, size_t size);
+DAGNY_API enum dagny_result dagny_laser_encode(const struct dagny_laser *message, uint8_t *payload,
+                                               size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_laser_decode(struct dagny_laser *message, const uint8_t *payload,
+                                               size_t size);
+DAGNY_API void dagny_laser_load(struct dagny_laser *message, const uint8_t *payload, size_t size);
 
 /** Reads readings[index] from a payload that was received, unchecked. */
 static inline uint8_t dagny_laser_readings_at(const uint8_t *payload, size_t index) {
@@ -469,11 +483,12 @@ struct dagny_command {
     uint8_t data[128];
 };
 
-enum dagny_result dagny_command_encode(const struct dagny_command *message, uint8_t *payload,
-                                       size_t capacity, size_t *size);
-enum dagny_result dagny_command_decode(struct dagny_command *message, const uint8_t *payload,
-                                       size_t size);
-void dagny_command_load(struct dagny_command *message, const uint8_t *payload, size_t size);
+DAGNY_API enum dagny_result dagny_command_encode(const struct dagny_command *message,
+                                                 uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_command_decode(struct dagny_command *message,
+                                                 const uint8_t *payload, size_t size);
+DAGNY_API void dagny_command_load(struct dagny_command *message, const uint8_t *payload,
+                                  size_t size);
 
 /* --- frames ----------------------------------------------------------------------------------- */
 
@@ -491,103 +506,108 @@ typedef void (*dagny_put)(void *user, uint8_t byte);
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_SONAR_FRAME_MAX 131U
 #define DAGNY_SONAR_FRAME_ROOM 131U
-enum dagny_result dagny_sonar_frame(const struct dagny_sonar *message, uint8_t *frame,
-                                    size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_sonar_frame(const struct dagny_sonar *message, uint8_t *frame,
+                                              size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_GPS_FRAME_MAX 131U
 #define DAGNY_GPS_FRAME_ROOM 131U
-enum dagny_result dagny_gps_frame(const struct dagny_gps *message, uint8_t *frame, size_t capacity,
-                                  size_t *size);
+DAGNY_API enum dagny_result dagny_gps_frame(const struct dagny_gps *message, uint8_t *frame,
+                                            size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_BUMP_FRAME_MAX 131U
 #define DAGNY_BUMP_FRAME_ROOM 131U
-enum dagny_result dagny_bump_frame(const struct dagny_bump *message, uint8_t *frame,
-                                   size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_bump_frame(const struct dagny_bump *message, uint8_t *frame,
+                                             size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_ODOMETRY_FRAME_MAX 131U
 #define DAGNY_ODOMETRY_FRAME_ROOM 131U
-enum dagny_result dagny_odometry_frame(const struct dagny_odometry *message, uint8_t *frame,
-                                       size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_odometry_frame(const struct dagny_odometry *message,
+                                                 uint8_t *frame, size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_SPEED_FRAME_MAX 131U
 #define DAGNY_SPEED_FRAME_ROOM 131U
-enum dagny_result dagny_speed_frame(const struct dagny_speed *message, uint8_t *frame,
-                                    size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_speed_frame(const struct dagny_speed *message, uint8_t *frame,
+                                              size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_WHEEL_SLIP_FRAME_MAX 131U
 #define DAGNY_WHEEL_SLIP_FRAME_ROOM 131U
-enum dagny_result dagny_wheel_slip_frame(const struct dagny_wheel_slip *message, uint8_t *frame,
-                                         size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_wheel_slip_frame(const struct dagny_wheel_slip *message,
+                                                   uint8_t *frame, size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_BATTERY_FRAME_MAX 131U
 #define DAGNY_BATTERY_FRAME_ROOM 131U
-enum dagny_result dagny_battery_frame(const struct dagny_battery *message, uint8_t *frame,
-                                      size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_battery_frame(const struct dagny_battery *message, uint8_t *frame,
+                                                size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_REFLEX_SETTINGS_FRAME_MAX 131U
 #define DAGNY_REFLEX_SETTINGS_FRAME_ROOM 131U
-enum dagny_result dagny_reflex_settings_frame(const struct dagny_reflex_settings *message,
-                                              uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_reflex_settings_frame(const struct dagny_reflex_settings *message,
+                                                        uint8_t *frame, size_t capacity,
+                                                        size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_HARDWARE_STATUS_FRAME_MAX 131U
 #define DAGNY_HARDWARE_STATUS_FRAME_ROOM 131U
-enum dagny_result dagny_hardware_status_frame(const struct dagny_hardware_status *message,
-                                              uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_hardware_status_frame(const struct dagny_hardware_status *message,
+                                                        uint8_t *frame, size_t capacity,
+                                                        size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_MOTOR_FRAME_MAX 4U
 #define DAGNY_MOTOR_FRAME_ROOM 4U
-enum dagny_result dagny_motor_frame(const struct dagny_motor *message, uint8_t *frame,
-                                    size_t capacity, size_t *size);
-enum dagny_result dagny_motor_send(const struct dagny_motor *message, dagny_put put, void *user);
+DAGNY_API enum dagny_result dagny_motor_frame(const struct dagny_motor *message, uint8_t *frame,
+                                              size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_motor_send(const struct dagny_motor *message, dagny_put put,
+                                             void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_STEERING_FRAME_MAX 4U
 #define DAGNY_STEERING_FRAME_ROOM 4U
-enum dagny_result dagny_steering_frame(const struct dagny_steering *message, uint8_t *frame,
-                                       size_t capacity, size_t *size);
-enum dagny_result dagny_steering_send(const struct dagny_steering *message, dagny_put put,
-                                      void *user);
+DAGNY_API enum dagny_result dagny_steering_frame(const struct dagny_steering *message,
+                                                 uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_steering_send(const struct dagny_steering *message, dagny_put put,
+                                                void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_REFLEX_FRAME_MAX 4U
 #define DAGNY_REFLEX_FRAME_ROOM 4U
-enum dagny_result dagny_reflex_frame(const struct dagny_reflex *message, uint8_t *frame,
-                                     size_t capacity, size_t *size);
-enum dagny_result dagny_reflex_send(const struct dagny_reflex *message, dagny_put put, void *user);
+DAGNY_API enum dagny_result dagny_reflex_frame(const struct dagny_reflex *message, uint8_t *frame,
+                                               size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_reflex_send(const struct dagny_reflex *message, dagny_put put,
+                                              void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_POWER_DOWN_FRAME_MAX 4U
 #define DAGNY_POWER_DOWN_FRAME_ROOM 4U
-enum dagny_result dagny_power_down_frame(const struct dagny_power_down *message, uint8_t *frame,
-                                         size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_power_down_frame(const struct dagny_power_down *message,
+                                                   uint8_t *frame, size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_POWER_FRAME_MAX 4U
 #define DAGNY_POWER_FRAME_ROOM 4U
-enum dagny_result dagny_power_frame(const struct dagny_power *message, uint8_t *frame,
-                                    size_t capacity, size_t *size);
-enum dagny_result dagny_power_send(const struct dagny_power *message, dagny_put put, void *user);
+DAGNY_API enum dagny_result dagny_power_frame(const struct dagny_power *message, uint8_t *frame,
+                                              size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_power_send(const struct dagny_power *message, dagny_put put,
+                                             void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LASER_FRAME_MAX 515U
 #define DAGNY_LASER_FRAME_ROOM 515U
-enum dagny_result dagny_laser_frame(const struct dagny_laser *message, uint8_t *frame,
-                                    size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_laser_frame(const struct dagny_laser *message, uint8_t *frame,
+                                              size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_COMMAND_FRAME_MAX 131U
 #define DAGNY_COMMAND_FRAME_ROOM 131U
-enum dagny_result dagny_command_frame(const struct dagny_command *message, uint8_t *frame,
-                                      size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_command_frame(const struct dagny_command *message, uint8_t *frame,
+                                                size_t capacity, size_t *size);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
 
@@ -686,17 +706,18 @@ struct dagny_host_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void dagny_host_decoder_init(struct dagny_host_decoder *decoder, dagny_host_handler handler,
-                             void *user);
+DAGNY_API void dagny_host_decoder_init(struct dagny_host_decoder *decoder,
+                                       dagny_host_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void dagny_host_decoder_push(struct dagny_host_decoder *decoder, uint8_t byte);
+DAGNY_API void dagny_host_decoder_push(struct dagny_host_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void dagny_host_decoder_feed(struct dagny_host_decoder *decoder, const uint8_t *data, size_t size);
+DAGNY_API void dagny_host_decoder_feed(struct dagny_host_decoder *decoder, const uint8_t *data,
+                                       size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void dagny_host_decoder_flush(struct dagny_host_decoder *decoder);
+DAGNY_API void dagny_host_decoder_flush(struct dagny_host_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define dagny_host_decoder_idle dagny_host_decoder_flush
@@ -776,18 +797,18 @@ struct dagny_robot_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void dagny_robot_decoder_init(struct dagny_robot_decoder *decoder, dagny_robot_handler handler,
-                              void *user);
+DAGNY_API void dagny_robot_decoder_init(struct dagny_robot_decoder *decoder,
+                                        dagny_robot_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void dagny_robot_decoder_push(struct dagny_robot_decoder *decoder, uint8_t byte);
+DAGNY_API void dagny_robot_decoder_push(struct dagny_robot_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void dagny_robot_decoder_feed(struct dagny_robot_decoder *decoder, const uint8_t *data,
-                              size_t size);
+DAGNY_API void dagny_robot_decoder_feed(struct dagny_robot_decoder *decoder, const uint8_t *data,
+                                        size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void dagny_robot_decoder_flush(struct dagny_robot_decoder *decoder);
+DAGNY_API void dagny_robot_decoder_flush(struct dagny_robot_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define dagny_robot_decoder_idle dagny_robot_decoder_flush
@@ -797,8 +818,9 @@ void dagny_robot_decoder_flush(struct dagny_robot_decoder *decoder);
 /*
  * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
  * function with it. Define those that you need; the others do nothing. They are weak where the
- * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
- * by defining DAGNY_NO_HANDLERS for the source.
+ * compiler knows weak functions. For another one, and where yours stand in the source that includes
+ * this one's source, define DAGNY_NO_WEAK and all of them, or leave out the dispatching by
+ * defining DAGNY_NO_HANDLERS for the source.
  */
 
 /** motor came from host. */
@@ -826,7 +848,7 @@ void dagny_on_command_from_host(void *user, const struct dagny_command *message,
                                 const struct dagny_host_parts *parts);
 
 /** Calls the functions above; give it to dagny_host_decoder_init. */
-void dagny_host_dispatch(void *user, const struct dagny_host_event *event);
+DAGNY_API void dagny_host_dispatch(void *user, const struct dagny_host_event *event);
 
 /** sonar came from robot. */
 void dagny_on_sonar(void *user, const struct dagny_sonar *message,
@@ -869,7 +891,7 @@ void dagny_on_command_from_robot(void *user, const struct dagny_command *message
                                  const struct dagny_robot_parts *parts);
 
 /** Calls the functions above; give it to dagny_robot_decoder_init. */
-void dagny_robot_dispatch(void *user, const struct dagny_robot_event *event);
+DAGNY_API void dagny_robot_dispatch(void *user, const struct dagny_robot_event *event);
 
 #ifdef __cplusplus
 }

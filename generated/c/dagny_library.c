@@ -2,6 +2,24 @@
 /* SPDX-License-Identifier: 0BSD */
 #include "dagny_library.h"
 
+/*
+ * What a function of the header needs is put into it, so that it is short and fast also where no
+ * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
+ * the function that calls it: define DAGNY_LIBRARY_APART as `static` with -flto, or in one source.
+ */
+#if defined(__GNUC__)
+#define DAGNY_LIBRARY_INLINE static inline __attribute__((always_inline))
+#else
+#define DAGNY_LIBRARY_INLINE static inline
+#endif
+#ifndef DAGNY_LIBRARY_APART
+#if defined(__GNUC__)
+#define DAGNY_LIBRARY_APART static __attribute__((noinline))
+#else
+#define DAGNY_LIBRARY_APART static
+#endif
+#endif
+
 static void dagny_library_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
@@ -20,7 +38,7 @@ static bool dagny_library_is_seven_bit(const void *at, size_t size) {
     return all <= 0x7FU;
 }
 
-static void dagny_library_store_u16le(uint8_t *at, uint16_t value) {
+DAGNY_LIBRARY_INLINE void dagny_library_store_u16le(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)value;
     at[1] = (uint8_t)(value >> 8);
 }
@@ -43,7 +61,8 @@ static uint32_t dagny_library_load_u32le(const uint8_t *at) {
 
 /* --- sonar ------------------------------------------------------------------------------------ */
 
-static void dagny_library_sonar_store(const struct dagny_library_sonar *message, uint8_t *payload) {
+DAGNY_LIBRARY_INLINE void dagny_library_sonar_store(const struct dagny_library_sonar *message,
+                                                    uint8_t *payload) {
     dagny_library_copy(payload, message->distances, 5U);
 }
 
@@ -79,7 +98,7 @@ static size_t dagny_library_gps_measure(const struct dagny_library_gps *message)
     return size;
 }
 
-static enum dagny_library_result dagny_library_gps_validate(
+DAGNY_LIBRARY_INLINE enum dagny_library_result dagny_library_gps_validate(
     const struct dagny_library_gps *message) {
     if (message->nmea_size > 126U) {
         return DAGNY_LIBRARY_ERROR_RANGE;
@@ -90,7 +109,8 @@ static enum dagny_library_result dagny_library_gps_validate(
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_gps_store(const struct dagny_library_gps *message, uint8_t *payload) {
+DAGNY_LIBRARY_INLINE void dagny_library_gps_store(const struct dagny_library_gps *message,
+                                                  uint8_t *payload) {
     dagny_library_copy(payload, message->nmea, message->nmea_size);
 }
 
@@ -138,8 +158,8 @@ enum dagny_library_result dagny_library_gps_decode(struct dagny_library_gps *mes
 
 /* --- odometry --------------------------------------------------------------------------------- */
 
-static void dagny_library_odometry_store(const struct dagny_library_odometry *message,
-                                         uint8_t *payload) {
+DAGNY_LIBRARY_INLINE void dagny_library_odometry_store(const struct dagny_library_odometry *message,
+                                                       uint8_t *payload) {
     dagny_library_store_u16le(payload, message->right_count);
     dagny_library_store_u16le(payload + 2, message->left_count);
     dagny_library_store_u16le(payload + 4, message->quad_count);
@@ -180,8 +200,8 @@ enum dagny_library_result dagny_library_odometry_decode(struct dagny_library_odo
 
 /* --- battery ---------------------------------------------------------------------------------- */
 
-static void dagny_library_battery_store(const struct dagny_library_battery *message,
-                                        uint8_t *payload) {
+DAGNY_LIBRARY_INLINE void dagny_library_battery_store(const struct dagny_library_battery *message,
+                                                      uint8_t *payload) {
     payload[0] = message->main_battery;
     payload[1] = message->motor_battery;
     dagny_library_store_u32le(payload + 2, (uint32_t)message->idle);
@@ -215,8 +235,8 @@ enum dagny_library_result dagny_library_battery_decode(struct dagny_library_batt
 
 /* --- compass ---------------------------------------------------------------------------------- */
 
-static void dagny_library_compass_store(const struct dagny_library_compass *message,
-                                        uint8_t *payload) {
+DAGNY_LIBRARY_INLINE void dagny_library_compass_store(const struct dagny_library_compass *message,
+                                                      uint8_t *payload) {
     dagny_library_store_u16le(payload, (uint16_t)message->x);
     dagny_library_store_u16le(payload + 2, (uint16_t)message->y);
 }
@@ -248,7 +268,8 @@ enum dagny_library_result dagny_library_compass_decode(struct dagny_library_comp
 
 /* --- motor ------------------------------------------------------------------------------------ */
 
-static void dagny_library_motor_store(const struct dagny_library_motor *message, uint8_t *payload) {
+DAGNY_LIBRARY_INLINE void dagny_library_motor_store(const struct dagny_library_motor *message,
+                                                    uint8_t *payload) {
     payload[0] = (uint8_t)message->speed;
 }
 
@@ -278,7 +299,8 @@ enum dagny_library_result dagny_library_motor_decode(struct dagny_library_motor 
 
 /* --- drive ------------------------------------------------------------------------------------ */
 
-static void dagny_library_drive_store(const struct dagny_library_drive *message, uint8_t *payload) {
+DAGNY_LIBRARY_INLINE void dagny_library_drive_store(const struct dagny_library_drive *message,
+                                                    uint8_t *payload) {
     payload[0] = (uint8_t)message->speed;
     payload[1] = message->steer;
 }
@@ -310,8 +332,8 @@ enum dagny_library_result dagny_library_drive_decode(struct dagny_library_drive 
 
 /* --- steering --------------------------------------------------------------------------------- */
 
-static void dagny_library_steering_store(const struct dagny_library_steering *message,
-                                         uint8_t *payload) {
+DAGNY_LIBRARY_INLINE void dagny_library_steering_store(const struct dagny_library_steering *message,
+                                                       uint8_t *payload) {
     payload[0] = message->position;
 }
 
@@ -340,7 +362,8 @@ enum dagny_library_result dagny_library_steering_decode(struct dagny_library_ste
 
 /* --- power ------------------------------------------------------------------------------------ */
 
-static void dagny_library_power_store(const struct dagny_library_power *message, uint8_t *payload) {
+DAGNY_LIBRARY_INLINE void dagny_library_power_store(const struct dagny_library_power *message,
+                                                    uint8_t *payload) {
     payload[0] = message->code;
 }
 
@@ -370,8 +393,8 @@ enum dagny_library_result dagny_library_power_decode(struct dagny_library_power 
 
 /* --- gps_position ----------------------------------------------------------------------------- */
 
-static void dagny_library_gps_position_store(const struct dagny_library_gps_position *message,
-                                             uint8_t *payload) {
+DAGNY_LIBRARY_INLINE void dagny_library_gps_position_store(
+    const struct dagny_library_gps_position *message, uint8_t *payload) {
     dagny_library_store_u32le(payload, (uint32_t)message->latitude);
     dagny_library_store_u32le(payload + 4, (uint32_t)message->longitude);
 }
@@ -410,7 +433,7 @@ static size_t dagny_library_laser_measure(const struct dagny_library_laser *mess
     return size;
 }
 
-static enum dagny_library_result dagny_library_laser_validate(
+DAGNY_LIBRARY_INLINE enum dagny_library_result dagny_library_laser_validate(
     const struct dagny_library_laser *message) {
     if (message->readings_count > 512U) {
         return DAGNY_LIBRARY_ERROR_RANGE;
@@ -418,7 +441,8 @@ static enum dagny_library_result dagny_library_laser_validate(
     return DAGNY_LIBRARY_OK;
 }
 
-static void dagny_library_laser_store(const struct dagny_library_laser *message, uint8_t *payload) {
+DAGNY_LIBRARY_INLINE void dagny_library_laser_store(const struct dagny_library_laser *message,
+                                                    uint8_t *payload) {
     dagny_library_copy(payload, message->readings, message->readings_count);
 }
 
@@ -467,8 +491,8 @@ enum dagny_library_result dagny_library_laser_decode(struct dagny_library_laser 
 
 /* --- shutdown --------------------------------------------------------------------------------- */
 
-static void dagny_library_shutdown_store(const struct dagny_library_shutdown *message,
-                                         uint8_t *payload) {
+DAGNY_LIBRARY_INLINE void dagny_library_shutdown_store(const struct dagny_library_shutdown *message,
+                                                       uint8_t *payload) {
     (void)message;
     payload[0] = 0x5AU;
     payload[1] = 0x5AU;
@@ -671,18 +695,18 @@ static void dagny_library_write_u32le(struct dagny_library_writer *writer, uint3
     dagny_library_write(writer, (uint8_t)(value >> 24));
 }
 
-static void dagny_library_sonar_put(const struct dagny_library_sonar *message,
-                                    struct dagny_library_writer *writer) {
+DAGNY_LIBRARY_INLINE void dagny_library_sonar_put(const struct dagny_library_sonar *message,
+                                                  struct dagny_library_writer *writer) {
     dagny_library_write_bytes(writer, message->distances, 5U);
 }
 
-static void dagny_library_gps_put(const struct dagny_library_gps *message,
-                                  struct dagny_library_writer *writer) {
+DAGNY_LIBRARY_INLINE void dagny_library_gps_put(const struct dagny_library_gps *message,
+                                                struct dagny_library_writer *writer) {
     dagny_library_write_bytes(writer, message->nmea, message->nmea_size);
 }
 
-static void dagny_library_odometry_put(const struct dagny_library_odometry *message,
-                                       struct dagny_library_writer *writer) {
+DAGNY_LIBRARY_INLINE void dagny_library_odometry_put(const struct dagny_library_odometry *message,
+                                                     struct dagny_library_writer *writer) {
     dagny_library_write_u16le(writer, message->right_count);
     dagny_library_write_u16le(writer, message->left_count);
     dagny_library_write_u16le(writer, message->quad_count);
@@ -692,53 +716,53 @@ static void dagny_library_odometry_put(const struct dagny_library_odometry *mess
     dagny_library_write(writer, (uint8_t)message->steer);
 }
 
-static void dagny_library_battery_put(const struct dagny_library_battery *message,
-                                      struct dagny_library_writer *writer) {
+DAGNY_LIBRARY_INLINE void dagny_library_battery_put(const struct dagny_library_battery *message,
+                                                    struct dagny_library_writer *writer) {
     dagny_library_write(writer, message->main_battery);
     dagny_library_write(writer, message->motor_battery);
     dagny_library_write_u32le(writer, (uint32_t)message->idle);
 }
 
-static void dagny_library_compass_put(const struct dagny_library_compass *message,
-                                      struct dagny_library_writer *writer) {
+DAGNY_LIBRARY_INLINE void dagny_library_compass_put(const struct dagny_library_compass *message,
+                                                    struct dagny_library_writer *writer) {
     dagny_library_write_u16le(writer, (uint16_t)message->x);
     dagny_library_write_u16le(writer, (uint16_t)message->y);
 }
 
-static void dagny_library_motor_put(const struct dagny_library_motor *message,
-                                    struct dagny_library_writer *writer) {
+DAGNY_LIBRARY_INLINE void dagny_library_motor_put(const struct dagny_library_motor *message,
+                                                  struct dagny_library_writer *writer) {
     dagny_library_write(writer, (uint8_t)message->speed);
 }
 
-static void dagny_library_drive_put(const struct dagny_library_drive *message,
-                                    struct dagny_library_writer *writer) {
+DAGNY_LIBRARY_INLINE void dagny_library_drive_put(const struct dagny_library_drive *message,
+                                                  struct dagny_library_writer *writer) {
     dagny_library_write(writer, (uint8_t)message->speed);
     dagny_library_write(writer, message->steer);
 }
 
-static void dagny_library_steering_put(const struct dagny_library_steering *message,
-                                       struct dagny_library_writer *writer) {
+DAGNY_LIBRARY_INLINE void dagny_library_steering_put(const struct dagny_library_steering *message,
+                                                     struct dagny_library_writer *writer) {
     dagny_library_write(writer, message->position);
 }
 
-static void dagny_library_power_put(const struct dagny_library_power *message,
-                                    struct dagny_library_writer *writer) {
+DAGNY_LIBRARY_INLINE void dagny_library_power_put(const struct dagny_library_power *message,
+                                                  struct dagny_library_writer *writer) {
     dagny_library_write(writer, message->code);
 }
 
-static void dagny_library_gps_position_put(const struct dagny_library_gps_position *message,
-                                           struct dagny_library_writer *writer) {
+DAGNY_LIBRARY_INLINE void dagny_library_gps_position_put(
+    const struct dagny_library_gps_position *message, struct dagny_library_writer *writer) {
     dagny_library_write_u32le(writer, (uint32_t)message->latitude);
     dagny_library_write_u32le(writer, (uint32_t)message->longitude);
 }
 
-static void dagny_library_laser_put(const struct dagny_library_laser *message,
-                                    struct dagny_library_writer *writer) {
+DAGNY_LIBRARY_INLINE void dagny_library_laser_put(const struct dagny_library_laser *message,
+                                                  struct dagny_library_writer *writer) {
     dagny_library_write_bytes(writer, message->readings, message->readings_count);
 }
 
-static void dagny_library_shutdown_put(const struct dagny_library_shutdown *message,
-                                       struct dagny_library_writer *writer) {
+DAGNY_LIBRARY_INLINE void dagny_library_shutdown_put(const struct dagny_library_shutdown *message,
+                                                     struct dagny_library_writer *writer) {
     (void)message;
     dagny_library_write(writer, 0x5AU);
     dagny_library_write(writer, 0x5AU);
@@ -1951,7 +1975,7 @@ void dagny_library_robot_dispatch(void *user, const struct dagny_library_robot_e
     }
 }
 
-#if defined(__GNUC__) || defined(__clang__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(DAGNY_LIBRARY_NO_WEAK)
 
 __attribute__((weak)) void dagny_library_on_motor(void *user,
                                                   const struct dagny_library_motor *message,

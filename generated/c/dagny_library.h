@@ -20,6 +20,14 @@
 extern "C" {
 #endif
 
+/**
+ * In front of each function that the source defines. Where the one source that calls them includes
+ * `dagny_library.c`, define this as `static inline`: then the compiler sees all calls.
+ */
+#ifndef DAGNY_LIBRARY_API
+#define DAGNY_LIBRARY_API
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define DAGNY_LIBRARY_SPEC_HASH "a7092ead0b8db66d126ced8180d3166654ee1bcf3b0a0c7a4a08e8970ec47ae4"
 
@@ -97,12 +105,12 @@ struct dagny_library_sonar {
     uint8_t distances[5];
 };
 
-enum dagny_library_result dagny_library_sonar_encode(const struct dagny_library_sonar *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size);
-enum dagny_library_result dagny_library_sonar_decode(struct dagny_library_sonar *message,
-                                                     const uint8_t *payload, size_t size);
-void dagny_library_sonar_load(struct dagny_library_sonar *message, const uint8_t *payload);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_sonar_encode(
+    const struct dagny_library_sonar *message, uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_sonar_decode(
+    struct dagny_library_sonar *message, const uint8_t *payload, size_t size);
+DAGNY_LIBRARY_API void dagny_library_sonar_load(struct dagny_library_sonar *message,
+                                                const uint8_t *payload);
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint8_t dagny_library_sonar_distances_at(const uint8_t *payload, size_t index) {
@@ -133,11 +141,12 @@ struct dagny_library_gps {
     char nmea[126];
 };
 
-enum dagny_library_result dagny_library_gps_encode(const struct dagny_library_gps *message,
-                                                   uint8_t *payload, size_t capacity, size_t *size);
-enum dagny_library_result dagny_library_gps_decode(struct dagny_library_gps *message,
-                                                   const uint8_t *payload, size_t size);
-void dagny_library_gps_load(struct dagny_library_gps *message, const uint8_t *payload, size_t size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_encode(
+    const struct dagny_library_gps *message, uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_decode(
+    struct dagny_library_gps *message, const uint8_t *payload, size_t size);
+DAGNY_LIBRARY_API void dagny_library_gps_load(struct dagny_library_gps *message,
+                                              const uint8_t *payload, size_t size);
 
 /* --- odometry --------------------------------------------------------------------------------- */
 
@@ -189,11 +198,12 @@ struct dagny_library_odometry {
     int8_t steer;
 };
 
-enum dagny_library_result dagny_library_odometry_encode(
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_odometry_encode(
     const struct dagny_library_odometry *message, uint8_t *payload, size_t capacity, size_t *size);
-enum dagny_library_result dagny_library_odometry_decode(struct dagny_library_odometry *message,
-                                                        const uint8_t *payload, size_t size);
-void dagny_library_odometry_load(struct dagny_library_odometry *message, const uint8_t *payload);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_odometry_decode(
+    struct dagny_library_odometry *message, const uint8_t *payload, size_t size);
+DAGNY_LIBRARY_API void dagny_library_odometry_load(struct dagny_library_odometry *message,
+                                                   const uint8_t *payload);
 
 /* --- battery ---------------------------------------------------------------------------------- */
 
@@ -227,12 +237,12 @@ struct dagny_library_battery {
     int32_t idle;
 };
 
-enum dagny_library_result dagny_library_battery_encode(const struct dagny_library_battery *message,
-                                                       uint8_t *payload, size_t capacity,
-                                                       size_t *size);
-enum dagny_library_result dagny_library_battery_decode(struct dagny_library_battery *message,
-                                                       const uint8_t *payload, size_t size);
-void dagny_library_battery_load(struct dagny_library_battery *message, const uint8_t *payload);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_battery_encode(
+    const struct dagny_library_battery *message, uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_battery_decode(
+    struct dagny_library_battery *message, const uint8_t *payload, size_t size);
+DAGNY_LIBRARY_API void dagny_library_battery_load(struct dagny_library_battery *message,
+                                                  const uint8_t *payload);
 
 /* --- compass ---------------------------------------------------------------------------------- */
 
@@ -259,12 +269,12 @@ struct dagny_library_compass {
     int16_t y;
 };
 
-enum dagny_library_result dagny_library_compass_encode(const struct dagny_library_compass *message,
-                                                       uint8_t *payload, size_t capacity,
-                                                       size_t *size);
-enum dagny_library_result dagny_library_compass_decode(struct dagny_library_compass *message,
-                                                       const uint8_t *payload, size_t size);
-void dagny_library_compass_load(struct dagny_library_compass *message, const uint8_t *payload);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_compass_encode(
+    const struct dagny_library_compass *message, uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_compass_decode(
+    struct dagny_library_compass *message, const uint8_t *payload, size_t size);
+DAGNY_LIBRARY_API void dagny_library_compass_load(struct dagny_library_compass *message,
+                                                  const uint8_t *payload);
 
 /* --- motor ------------------------------------------------------------------------------------ */
 
@@ -288,12 +298,12 @@ struct dagny_library_motor {
     int8_t speed;
 };
 
-enum dagny_library_result dagny_library_motor_encode(const struct dagny_library_motor *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size);
-enum dagny_library_result dagny_library_motor_decode(struct dagny_library_motor *message,
-                                                     const uint8_t *payload, size_t size);
-void dagny_library_motor_load(struct dagny_library_motor *message, const uint8_t *payload);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_motor_encode(
+    const struct dagny_library_motor *message, uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_motor_decode(
+    struct dagny_library_motor *message, const uint8_t *payload, size_t size);
+DAGNY_LIBRARY_API void dagny_library_motor_load(struct dagny_library_motor *message,
+                                                const uint8_t *payload);
 
 /* --- drive ------------------------------------------------------------------------------------ */
 
@@ -322,12 +332,12 @@ struct dagny_library_drive {
     uint8_t steer;
 };
 
-enum dagny_library_result dagny_library_drive_encode(const struct dagny_library_drive *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size);
-enum dagny_library_result dagny_library_drive_decode(struct dagny_library_drive *message,
-                                                     const uint8_t *payload, size_t size);
-void dagny_library_drive_load(struct dagny_library_drive *message, const uint8_t *payload);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_drive_encode(
+    const struct dagny_library_drive *message, uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_drive_decode(
+    struct dagny_library_drive *message, const uint8_t *payload, size_t size);
+DAGNY_LIBRARY_API void dagny_library_drive_load(struct dagny_library_drive *message,
+                                                const uint8_t *payload);
 
 /* --- steering --------------------------------------------------------------------------------- */
 
@@ -349,11 +359,12 @@ struct dagny_library_steering {
     uint8_t position;
 };
 
-enum dagny_library_result dagny_library_steering_encode(
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_encode(
     const struct dagny_library_steering *message, uint8_t *payload, size_t capacity, size_t *size);
-enum dagny_library_result dagny_library_steering_decode(struct dagny_library_steering *message,
-                                                        const uint8_t *payload, size_t size);
-void dagny_library_steering_load(struct dagny_library_steering *message, const uint8_t *payload);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_decode(
+    struct dagny_library_steering *message, const uint8_t *payload, size_t size);
+DAGNY_LIBRARY_API void dagny_library_steering_load(struct dagny_library_steering *message,
+                                                   const uint8_t *payload);
 
 /* --- power ------------------------------------------------------------------------------------ */
 
@@ -374,12 +385,12 @@ struct dagny_library_power {
     uint8_t code;
 };
 
-enum dagny_library_result dagny_library_power_encode(const struct dagny_library_power *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size);
-enum dagny_library_result dagny_library_power_decode(struct dagny_library_power *message,
-                                                     const uint8_t *payload, size_t size);
-void dagny_library_power_load(struct dagny_library_power *message, const uint8_t *payload);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_encode(
+    const struct dagny_library_power *message, uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_decode(
+    struct dagny_library_power *message, const uint8_t *payload, size_t size);
+DAGNY_LIBRARY_API void dagny_library_power_load(struct dagny_library_power *message,
+                                                const uint8_t *payload);
 
 /* --- gps_position ----------------------------------------------------------------------------- */
 
@@ -412,13 +423,13 @@ struct dagny_library_gps_position {
     int32_t longitude;
 };
 
-enum dagny_library_result dagny_library_gps_position_encode(
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_position_encode(
     const struct dagny_library_gps_position *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum dagny_library_result dagny_library_gps_position_decode(
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_position_decode(
     struct dagny_library_gps_position *message, const uint8_t *payload, size_t size);
-void dagny_library_gps_position_load(struct dagny_library_gps_position *message,
-                                     const uint8_t *payload);
+DAGNY_LIBRARY_API void dagny_library_gps_position_load(struct dagny_library_gps_position *message,
+                                                       const uint8_t *payload);
 
 /* --- laser ------------------------------------------------------------------------------------ */
 
@@ -446,13 +457,12 @@ struct dagny_library_laser {
     uint8_t readings[512];
 };
 
-enum dagny_library_result dagny_library_laser_encode(const struct dagny_library_laser *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size);
-enum dagny_library_result dagny_library_laser_decode(struct dagny_library_laser *message,
-                                                     const uint8_t *payload, size_t size);
-void dagny_library_laser_load(struct dagny_library_laser *message, const uint8_t *payload,
-                              size_t size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_laser_encode(
+    const struct dagny_library_laser *message, uint8_t *payload, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_laser_decode(
+    struct dagny_library_laser *message, const uint8_t *payload, size_t size);
+DAGNY_LIBRARY_API void dagny_library_laser_load(struct dagny_library_laser *message,
+                                                const uint8_t *payload, size_t size);
 
 /** Reads readings[index] from a payload that was received, unchecked. */
 static inline uint8_t dagny_library_laser_readings_at(const uint8_t *payload, size_t index) {
@@ -479,11 +489,12 @@ struct dagny_library_shutdown {
     uint8_t unused;
 };
 
-enum dagny_library_result dagny_library_shutdown_encode(
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_encode(
     const struct dagny_library_shutdown *message, uint8_t *payload, size_t capacity, size_t *size);
-enum dagny_library_result dagny_library_shutdown_decode(struct dagny_library_shutdown *message,
-                                                        const uint8_t *payload, size_t size);
-void dagny_library_shutdown_load(struct dagny_library_shutdown *message, const uint8_t *payload);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_decode(
+    struct dagny_library_shutdown *message, const uint8_t *payload, size_t size);
+DAGNY_LIBRARY_API void dagny_library_shutdown_load(struct dagny_library_shutdown *message,
+                                                   const uint8_t *payload);
 
 /* --- frames ----------------------------------------------------------------------------------- */
 
@@ -501,104 +512,99 @@ typedef void (*dagny_library_put)(void *user, uint8_t byte);
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_SONAR_FRAME_MAX 12U
 #define DAGNY_LIBRARY_SONAR_FRAME_ROOM 13U
-enum dagny_library_result dagny_library_sonar_frame(const struct dagny_library_sonar *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size);
-enum dagny_library_result dagny_library_sonar_send(const struct dagny_library_sonar *message,
-                                                   dagny_library_put put, void *user);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_sonar_frame(
+    const struct dagny_library_sonar *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_sonar_send(
+    const struct dagny_library_sonar *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_GPS_FRAME_MAX 254U
 #define DAGNY_LIBRARY_GPS_FRAME_ROOM 255U
-enum dagny_library_result dagny_library_gps_frame(const struct dagny_library_gps *message,
-                                                  uint8_t *frame, size_t capacity, size_t *size);
-enum dagny_library_result dagny_library_gps_send(const struct dagny_library_gps *message,
-                                                 dagny_library_put put, void *user);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_frame(
+    const struct dagny_library_gps *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_send(
+    const struct dagny_library_gps *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_ODOMETRY_FRAME_MAX 28U
 #define DAGNY_LIBRARY_ODOMETRY_FRAME_ROOM 29U
-enum dagny_library_result dagny_library_odometry_frame(const struct dagny_library_odometry *message,
-                                                       uint8_t *frame, size_t capacity,
-                                                       size_t *size);
-enum dagny_library_result dagny_library_odometry_send(const struct dagny_library_odometry *message,
-                                                      dagny_library_put put, void *user);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_odometry_frame(
+    const struct dagny_library_odometry *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_odometry_send(
+    const struct dagny_library_odometry *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_BATTERY_FRAME_MAX 14U
 #define DAGNY_LIBRARY_BATTERY_FRAME_ROOM 15U
-enum dagny_library_result dagny_library_battery_frame(const struct dagny_library_battery *message,
-                                                      uint8_t *frame, size_t capacity,
-                                                      size_t *size);
-enum dagny_library_result dagny_library_battery_send(const struct dagny_library_battery *message,
-                                                     dagny_library_put put, void *user);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_battery_frame(
+    const struct dagny_library_battery *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_battery_send(
+    const struct dagny_library_battery *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_COMPASS_FRAME_MAX 10U
 #define DAGNY_LIBRARY_COMPASS_FRAME_ROOM 11U
-enum dagny_library_result dagny_library_compass_frame(const struct dagny_library_compass *message,
-                                                      uint8_t *frame, size_t capacity,
-                                                      size_t *size);
-enum dagny_library_result dagny_library_compass_send(const struct dagny_library_compass *message,
-                                                     dagny_library_put put, void *user);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_compass_frame(
+    const struct dagny_library_compass *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_compass_send(
+    const struct dagny_library_compass *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_MOTOR_FRAME_MAX 4U
 #define DAGNY_LIBRARY_MOTOR_FRAME_ROOM 5U
-enum dagny_library_result dagny_library_motor_frame(const struct dagny_library_motor *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size);
-enum dagny_library_result dagny_library_motor_send(const struct dagny_library_motor *message,
-                                                   dagny_library_put put, void *user);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_motor_frame(
+    const struct dagny_library_motor *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_motor_send(
+    const struct dagny_library_motor *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_DRIVE_FRAME_MAX 6U
 #define DAGNY_LIBRARY_DRIVE_FRAME_ROOM 7U
-enum dagny_library_result dagny_library_drive_frame(const struct dagny_library_drive *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size);
-enum dagny_library_result dagny_library_drive_send(const struct dagny_library_drive *message,
-                                                   dagny_library_put put, void *user);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_drive_frame(
+    const struct dagny_library_drive *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_drive_send(
+    const struct dagny_library_drive *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_STEERING_FRAME_MAX 4U
 #define DAGNY_LIBRARY_STEERING_FRAME_ROOM 5U
-enum dagny_library_result dagny_library_steering_frame(const struct dagny_library_steering *message,
-                                                       uint8_t *frame, size_t capacity,
-                                                       size_t *size);
-enum dagny_library_result dagny_library_steering_send(const struct dagny_library_steering *message,
-                                                      dagny_library_put put, void *user);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_frame(
+    const struct dagny_library_steering *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_send(
+    const struct dagny_library_steering *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_POWER_FRAME_MAX 4U
 #define DAGNY_LIBRARY_POWER_FRAME_ROOM 5U
-enum dagny_library_result dagny_library_power_frame(const struct dagny_library_power *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size);
-enum dagny_library_result dagny_library_power_send(const struct dagny_library_power *message,
-                                                   dagny_library_put put, void *user);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_frame(
+    const struct dagny_library_power *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_send(
+    const struct dagny_library_power *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_GPS_POSITION_FRAME_MAX 18U
 #define DAGNY_LIBRARY_GPS_POSITION_FRAME_ROOM 19U
-enum dagny_library_result dagny_library_gps_position_frame(
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_position_frame(
     const struct dagny_library_gps_position *message, uint8_t *frame, size_t capacity,
     size_t *size);
-enum dagny_library_result dagny_library_gps_position_send(
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_position_send(
     const struct dagny_library_gps_position *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_LASER_FRAME_MAX 1026U
 #define DAGNY_LIBRARY_LASER_FRAME_ROOM 1027U
-enum dagny_library_result dagny_library_laser_frame(const struct dagny_library_laser *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size);
-enum dagny_library_result dagny_library_laser_send(const struct dagny_library_laser *message,
-                                                   dagny_library_put put, void *user);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_laser_frame(
+    const struct dagny_library_laser *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_laser_send(
+    const struct dagny_library_laser *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_SHUTDOWN_FRAME_MAX 16U
 #define DAGNY_LIBRARY_SHUTDOWN_FRAME_ROOM 17U
-enum dagny_library_result dagny_library_shutdown_frame(const struct dagny_library_shutdown *message,
-                                                       uint8_t *frame, size_t capacity,
-                                                       size_t *size);
-enum dagny_library_result dagny_library_shutdown_send(const struct dagny_library_shutdown *message,
-                                                      dagny_library_put put, void *user);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_frame(
+    const struct dagny_library_shutdown *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_send(
+    const struct dagny_library_shutdown *message, dagny_library_put put, void *user);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
 
@@ -690,18 +696,20 @@ struct dagny_library_host_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void dagny_library_host_decoder_init(struct dagny_library_host_decoder *decoder,
-                                     dagny_library_host_handler handler, void *user);
+DAGNY_LIBRARY_API void dagny_library_host_decoder_init(struct dagny_library_host_decoder *decoder,
+                                                       dagny_library_host_handler handler,
+                                                       void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void dagny_library_host_decoder_push(struct dagny_library_host_decoder *decoder, uint8_t byte);
+DAGNY_LIBRARY_API void dagny_library_host_decoder_push(struct dagny_library_host_decoder *decoder,
+                                                       uint8_t byte);
 
 /** Take the next bytes. */
-void dagny_library_host_decoder_feed(struct dagny_library_host_decoder *decoder,
-                                     const uint8_t *data, size_t size);
+DAGNY_LIBRARY_API void dagny_library_host_decoder_feed(struct dagny_library_host_decoder *decoder,
+                                                       const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void dagny_library_host_decoder_flush(struct dagny_library_host_decoder *decoder);
+DAGNY_LIBRARY_API void dagny_library_host_decoder_flush(struct dagny_library_host_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define dagny_library_host_decoder_idle dagny_library_host_decoder_flush
@@ -774,18 +782,21 @@ struct dagny_library_robot_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void dagny_library_robot_decoder_init(struct dagny_library_robot_decoder *decoder,
-                                      dagny_library_robot_handler handler, void *user);
+DAGNY_LIBRARY_API void dagny_library_robot_decoder_init(struct dagny_library_robot_decoder *decoder,
+                                                        dagny_library_robot_handler handler,
+                                                        void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void dagny_library_robot_decoder_push(struct dagny_library_robot_decoder *decoder, uint8_t byte);
+DAGNY_LIBRARY_API void dagny_library_robot_decoder_push(struct dagny_library_robot_decoder *decoder,
+                                                        uint8_t byte);
 
 /** Take the next bytes. */
-void dagny_library_robot_decoder_feed(struct dagny_library_robot_decoder *decoder,
-                                      const uint8_t *data, size_t size);
+DAGNY_LIBRARY_API void dagny_library_robot_decoder_feed(struct dagny_library_robot_decoder *decoder,
+                                                        const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void dagny_library_robot_decoder_flush(struct dagny_library_robot_decoder *decoder);
+DAGNY_LIBRARY_API void dagny_library_robot_decoder_flush(
+    struct dagny_library_robot_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define dagny_library_robot_decoder_idle dagny_library_robot_decoder_flush
@@ -795,8 +806,9 @@ void dagny_library_robot_decoder_flush(struct dagny_library_robot_decoder *decod
 /*
  * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
  * function with it. Define those that you need; the others do nothing. They are weak where the
- * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
- * by defining DAGNY_LIBRARY_NO_HANDLERS for the source.
+ * compiler knows weak functions. For another one, and where yours stand in the source that includes
+ * this one's source, define DAGNY_LIBRARY_NO_WEAK and all of them, or leave out the dispatching by
+ * defining DAGNY_LIBRARY_NO_HANDLERS for the source.
  */
 
 /** motor came from host. */
@@ -828,7 +840,8 @@ void dagny_library_on_shutdown_from_host(void *user, const struct dagny_library_
                                          const struct dagny_library_host_parts *parts);
 
 /** Calls the functions above; give it to dagny_library_host_decoder_init. */
-void dagny_library_host_dispatch(void *user, const struct dagny_library_host_event *event);
+DAGNY_LIBRARY_API void dagny_library_host_dispatch(void *user,
+                                                   const struct dagny_library_host_event *event);
 
 /** sonar came from robot. */
 void dagny_library_on_sonar(void *user, const struct dagny_library_sonar *message,
@@ -859,7 +872,8 @@ void dagny_library_on_shutdown_from_robot(void *user, const struct dagny_library
                                           const struct dagny_library_robot_parts *parts);
 
 /** Calls the functions above; give it to dagny_library_robot_decoder_init. */
-void dagny_library_robot_dispatch(void *user, const struct dagny_library_robot_event *event);
+DAGNY_LIBRARY_API void dagny_library_robot_dispatch(void *user,
+                                                    const struct dagny_library_robot_event *event);
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,24 @@
 #include "matty.h"
 
 /*
+ * What a function of the header needs is put into it, so that it is short and fast also where no
+ * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
+ * the function that calls it: define MATTY_APART as `static` with -flto, or in one source.
+ */
+#if defined(__GNUC__)
+#define MATTY_INLINE static inline __attribute__((always_inline))
+#else
+#define MATTY_INLINE static inline
+#endif
+#ifndef MATTY_APART
+#if defined(__GNUC__)
+#define MATTY_APART static __attribute__((noinline))
+#else
+#define MATTY_APART static
+#endif
+#endif
+
+/*
  * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
  * done where pointers have more than 32 bits; define MATTY_FAST_FEED as 1 or 0 to choose.
  * Define MATTY_SSE2 as 1 for sixteen at a time on x86.
@@ -21,7 +39,7 @@
 #include <emmintrin.h>
 #endif
 
-static void matty_store_u16le(uint8_t *at, uint16_t value) {
+MATTY_INLINE void matty_store_u16le(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)value;
     at[1] = (uint8_t)(value >> 8);
 }
@@ -50,7 +68,7 @@ static void matty_copy(void *to, const void *from, size_t size) {
 
 /* --- stop ------------------------------------------------------------------------------------- */
 
-static void matty_stop_store(const struct matty_stop *message, uint8_t *payload) {
+MATTY_INLINE void matty_stop_store(const struct matty_stop *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -79,7 +97,7 @@ enum matty_result matty_stop_decode(struct matty_stop *message, const uint8_t *p
 
 /* --- reset ------------------------------------------------------------------------------------ */
 
-static void matty_reset_store(const struct matty_reset *message, uint8_t *payload) {
+MATTY_INLINE void matty_reset_store(const struct matty_reset *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -108,7 +126,7 @@ enum matty_result matty_reset_decode(struct matty_reset *message, const uint8_t 
 
 /* --- mode ------------------------------------------------------------------------------------- */
 
-static void matty_mode_store(const struct matty_mode *message, uint8_t *payload) {
+MATTY_INLINE void matty_mode_store(const struct matty_mode *message, uint8_t *payload) {
     payload[0] = message->mode;
 }
 
@@ -137,7 +155,7 @@ enum matty_result matty_mode_decode(struct matty_mode *message, const uint8_t *p
 
 /* --- go --------------------------------------------------------------------------------------- */
 
-static void matty_go_store(const struct matty_go *message, uint8_t *payload) {
+MATTY_INLINE void matty_go_store(const struct matty_go *message, uint8_t *payload) {
     matty_store_u16le(payload, (uint16_t)message->speed);
     matty_store_u16le(payload + 2, (uint16_t)message->steer);
 }
@@ -167,7 +185,7 @@ enum matty_result matty_go_decode(struct matty_go *message, const uint8_t *paylo
 
 /* --- limits ----------------------------------------------------------------------------------- */
 
-static void matty_limits_store(const struct matty_limits *message, uint8_t *payload) {
+MATTY_INLINE void matty_limits_store(const struct matty_limits *message, uint8_t *payload) {
     matty_store_u16le(payload, (uint16_t)message->max_speed);
     matty_store_u16le(payload + 2, (uint16_t)message->max_steer);
 }
@@ -198,7 +216,7 @@ enum matty_result matty_limits_decode(struct matty_limits *message, const uint8_
 
 /* --- timing ----------------------------------------------------------------------------------- */
 
-static void matty_timing_store(const struct matty_timing *message, uint8_t *payload) {
+MATTY_INLINE void matty_timing_store(const struct matty_timing *message, uint8_t *payload) {
     matty_store_u16le(payload, message->period);
     matty_store_u16le(payload + 2, message->timeout);
 }
@@ -229,7 +247,7 @@ enum matty_result matty_timing_decode(struct matty_timing *message, const uint8_
 
 /* --- gps_mode --------------------------------------------------------------------------------- */
 
-static void matty_gps_mode_store(const struct matty_gps_mode *message, uint8_t *payload) {
+MATTY_INLINE void matty_gps_mode_store(const struct matty_gps_mode *message, uint8_t *payload) {
     payload[0] = message->mode;
 }
 
@@ -258,7 +276,7 @@ enum matty_result matty_gps_mode_decode(struct matty_gps_mode *message, const ui
 
 /* --- ack -------------------------------------------------------------------------------------- */
 
-static void matty_ack_store(const struct matty_ack *message, uint8_t *payload) {
+MATTY_INLINE void matty_ack_store(const struct matty_ack *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -286,7 +304,7 @@ enum matty_result matty_ack_decode(struct matty_ack *message, const uint8_t *pay
 
 /* --- nack ------------------------------------------------------------------------------------- */
 
-static void matty_nack_store(const struct matty_nack *message, uint8_t *payload) {
+MATTY_INLINE void matty_nack_store(const struct matty_nack *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -315,7 +333,7 @@ enum matty_result matty_nack_decode(struct matty_nack *message, const uint8_t *p
 
 /* --- status ----------------------------------------------------------------------------------- */
 
-static void matty_status_store(const struct matty_status *message, uint8_t *payload) {
+MATTY_INLINE void matty_status_store(const struct matty_status *message, uint8_t *payload) {
     payload[0] = message->status;
     payload[1] = message->mode;
     matty_store_u16le(payload + 2, message->voltage);
@@ -368,7 +386,7 @@ static size_t matty_gps_measure(const struct matty_gps *message) {
     return size;
 }
 
-static enum matty_result matty_gps_validate(const struct matty_gps *message) {
+MATTY_INLINE enum matty_result matty_gps_validate(const struct matty_gps *message) {
     if (message->nmea_size > 121U) {
         return MATTY_ERROR_RANGE;
     }
@@ -378,7 +396,7 @@ static enum matty_result matty_gps_validate(const struct matty_gps *message) {
     return MATTY_OK;
 }
 
-static void matty_gps_store(const struct matty_gps *message, uint8_t *payload) {
+MATTY_INLINE void matty_gps_store(const struct matty_gps *message, uint8_t *payload) {
     matty_copy(payload, message->nmea, message->nmea_size);
 }
 
@@ -669,50 +687,54 @@ static void matty_write_bytes(struct matty_writer *writer, const void *from, siz
     }
 }
 
-static void matty_stop_put(const struct matty_stop *message, struct matty_writer *writer) {
+MATTY_INLINE void matty_stop_put(const struct matty_stop *message, struct matty_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void matty_reset_put(const struct matty_reset *message, struct matty_writer *writer) {
+MATTY_INLINE void matty_reset_put(const struct matty_reset *message, struct matty_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void matty_mode_put(const struct matty_mode *message, struct matty_writer *writer) {
+MATTY_INLINE void matty_mode_put(const struct matty_mode *message, struct matty_writer *writer) {
     matty_write(writer, message->mode);
 }
 
-static void matty_go_put(const struct matty_go *message, struct matty_writer *writer) {
+MATTY_INLINE void matty_go_put(const struct matty_go *message, struct matty_writer *writer) {
     matty_write_u16le(writer, (uint16_t)message->speed);
     matty_write_u16le(writer, (uint16_t)message->steer);
 }
 
-static void matty_limits_put(const struct matty_limits *message, struct matty_writer *writer) {
+MATTY_INLINE void matty_limits_put(const struct matty_limits *message,
+                                   struct matty_writer *writer) {
     matty_write_u16le(writer, (uint16_t)message->max_speed);
     matty_write_u16le(writer, (uint16_t)message->max_steer);
 }
 
-static void matty_timing_put(const struct matty_timing *message, struct matty_writer *writer) {
+MATTY_INLINE void matty_timing_put(const struct matty_timing *message,
+                                   struct matty_writer *writer) {
     matty_write_u16le(writer, message->period);
     matty_write_u16le(writer, message->timeout);
 }
 
-static void matty_gps_mode_put(const struct matty_gps_mode *message, struct matty_writer *writer) {
+MATTY_INLINE void matty_gps_mode_put(const struct matty_gps_mode *message,
+                                     struct matty_writer *writer) {
     matty_write(writer, message->mode);
 }
 
-static void matty_ack_put(const struct matty_ack *message, struct matty_writer *writer) {
+MATTY_INLINE void matty_ack_put(const struct matty_ack *message, struct matty_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void matty_nack_put(const struct matty_nack *message, struct matty_writer *writer) {
+MATTY_INLINE void matty_nack_put(const struct matty_nack *message, struct matty_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void matty_status_put(const struct matty_status *message, struct matty_writer *writer) {
+MATTY_INLINE void matty_status_put(const struct matty_status *message,
+                                   struct matty_writer *writer) {
     matty_write(writer, message->status);
     matty_write(writer, message->mode);
     matty_write_u16le(writer, message->voltage);
@@ -725,7 +747,7 @@ static void matty_status_put(const struct matty_status *message, struct matty_wr
     matty_write_u16le(writer, message->encoder3);
 }
 
-static void matty_gps_put(const struct matty_gps *message, struct matty_writer *writer) {
+MATTY_INLINE void matty_gps_put(const struct matty_gps *message, struct matty_writer *writer) {
     matty_write_bytes(writer, message->nmea, message->nmea_size);
 }
 
@@ -2132,7 +2154,7 @@ void matty_esp_dispatch(void *user, const struct matty_esp_event *event) {
     }
 }
 
-#if defined(__GNUC__) || defined(__clang__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(MATTY_NO_WEAK)
 
 __attribute__((weak)) void matty_on_stop(void *user, const struct matty_stop *message,
                                          const struct matty_pc_parts *parts) {

@@ -19,6 +19,14 @@
 extern "C" {
 #endif
 
+/**
+ * In front of each function that the source defines. Where the one source that calls them includes
+ * `matty.c`, define this as `static inline`: then the compiler sees all calls.
+ */
+#ifndef MATTY_API
+#define MATTY_API
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define MATTY_SPEC_HASH "cdb67c5317565b9738a484dc5d94d77752d0a1f43af67ee7e89c512ed9794d13"
 
@@ -105,11 +113,11 @@ struct matty_stop {
     uint8_t unused;
 };
 
-enum matty_result matty_stop_encode(const struct matty_stop *message, uint8_t *payload,
-                                    size_t capacity, size_t *size);
-enum matty_result matty_stop_decode(struct matty_stop *message, const uint8_t *payload,
-                                    size_t size);
-void matty_stop_load(struct matty_stop *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_stop_encode(const struct matty_stop *message, uint8_t *payload,
+                                              size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_stop_decode(struct matty_stop *message, const uint8_t *payload,
+                                              size_t size);
+MATTY_API void matty_stop_load(struct matty_stop *message, const uint8_t *payload);
 
 /* --- reset ------------------------------------------------------------------------------------ */
 
@@ -125,11 +133,11 @@ struct matty_reset {
     uint8_t unused;
 };
 
-enum matty_result matty_reset_encode(const struct matty_reset *message, uint8_t *payload,
-                                     size_t capacity, size_t *size);
-enum matty_result matty_reset_decode(struct matty_reset *message, const uint8_t *payload,
-                                     size_t size);
-void matty_reset_load(struct matty_reset *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_reset_encode(const struct matty_reset *message, uint8_t *payload,
+                                               size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_reset_decode(struct matty_reset *message, const uint8_t *payload,
+                                               size_t size);
+MATTY_API void matty_reset_load(struct matty_reset *message, const uint8_t *payload);
 
 /* --- mode ------------------------------------------------------------------------------------- */
 
@@ -145,11 +153,11 @@ struct matty_mode {
     uint8_t mode;
 };
 
-enum matty_result matty_mode_encode(const struct matty_mode *message, uint8_t *payload,
-                                    size_t capacity, size_t *size);
-enum matty_result matty_mode_decode(struct matty_mode *message, const uint8_t *payload,
-                                    size_t size);
-void matty_mode_load(struct matty_mode *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_mode_encode(const struct matty_mode *message, uint8_t *payload,
+                                              size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_mode_decode(struct matty_mode *message, const uint8_t *payload,
+                                              size_t size);
+MATTY_API void matty_mode_load(struct matty_mode *message, const uint8_t *payload);
 
 /* --- go --------------------------------------------------------------------------------------- */
 
@@ -171,10 +179,11 @@ struct matty_go {
     int16_t steer;
 };
 
-enum matty_result matty_go_encode(const struct matty_go *message, uint8_t *payload, size_t capacity,
-                                  size_t *size);
-enum matty_result matty_go_decode(struct matty_go *message, const uint8_t *payload, size_t size);
-void matty_go_load(struct matty_go *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_go_encode(const struct matty_go *message, uint8_t *payload,
+                                            size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_go_decode(struct matty_go *message, const uint8_t *payload,
+                                            size_t size);
+MATTY_API void matty_go_load(struct matty_go *message, const uint8_t *payload);
 
 /* --- limits ----------------------------------------------------------------------------------- */
 
@@ -196,11 +205,11 @@ struct matty_limits {
     int16_t max_steer;
 };
 
-enum matty_result matty_limits_encode(const struct matty_limits *message, uint8_t *payload,
-                                      size_t capacity, size_t *size);
-enum matty_result matty_limits_decode(struct matty_limits *message, const uint8_t *payload,
-                                      size_t size);
-void matty_limits_load(struct matty_limits *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_limits_encode(const struct matty_limits *message,
+                                                uint8_t *payload, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_limits_decode(struct matty_limits *message,
+                                                const uint8_t *payload, size_t size);
+MATTY_API void matty_limits_load(struct matty_limits *message, const uint8_t *payload);
 
 /* --- timing ----------------------------------------------------------------------------------- */
 
@@ -220,11 +229,11 @@ struct matty_timing {
     uint16_t timeout;
 };
 
-enum matty_result matty_timing_encode(const struct matty_timing *message, uint8_t *payload,
-                                      size_t capacity, size_t *size);
-enum matty_result matty_timing_decode(struct matty_timing *message, const uint8_t *payload,
-                                      size_t size);
-void matty_timing_load(struct matty_timing *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_timing_encode(const struct matty_timing *message,
+                                                uint8_t *payload, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_timing_decode(struct matty_timing *message,
+                                                const uint8_t *payload, size_t size);
+MATTY_API void matty_timing_load(struct matty_timing *message, const uint8_t *payload);
 
 /* --- gps_mode --------------------------------------------------------------------------------- */
 
@@ -240,11 +249,11 @@ struct matty_gps_mode {
     uint8_t mode;
 };
 
-enum matty_result matty_gps_mode_encode(const struct matty_gps_mode *message, uint8_t *payload,
-                                        size_t capacity, size_t *size);
-enum matty_result matty_gps_mode_decode(struct matty_gps_mode *message, const uint8_t *payload,
-                                        size_t size);
-void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_gps_mode_encode(const struct matty_gps_mode *message,
+                                                  uint8_t *payload, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_gps_mode_decode(struct matty_gps_mode *message,
+                                                  const uint8_t *payload, size_t size);
+MATTY_API void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload);
 
 /* --- ack -------------------------------------------------------------------------------------- */
 
@@ -264,10 +273,11 @@ struct matty_ack {
     uint8_t unused;
 };
 
-enum matty_result matty_ack_encode(const struct matty_ack *message, uint8_t *payload,
-                                   size_t capacity, size_t *size);
-enum matty_result matty_ack_decode(struct matty_ack *message, const uint8_t *payload, size_t size);
-void matty_ack_load(struct matty_ack *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_ack_encode(const struct matty_ack *message, uint8_t *payload,
+                                             size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_ack_decode(struct matty_ack *message, const uint8_t *payload,
+                                             size_t size);
+MATTY_API void matty_ack_load(struct matty_ack *message, const uint8_t *payload);
 
 /* --- nack ------------------------------------------------------------------------------------- */
 
@@ -287,11 +297,11 @@ struct matty_nack {
     uint8_t unused;
 };
 
-enum matty_result matty_nack_encode(const struct matty_nack *message, uint8_t *payload,
-                                    size_t capacity, size_t *size);
-enum matty_result matty_nack_decode(struct matty_nack *message, const uint8_t *payload,
-                                    size_t size);
-void matty_nack_load(struct matty_nack *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_nack_encode(const struct matty_nack *message, uint8_t *payload,
+                                              size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_nack_decode(struct matty_nack *message, const uint8_t *payload,
+                                              size_t size);
+MATTY_API void matty_nack_load(struct matty_nack *message, const uint8_t *payload);
 
 /* --- status ----------------------------------------------------------------------------------- */
 
@@ -339,11 +349,11 @@ struct matty_status {
     uint16_t encoder3;
 };
 
-enum matty_result matty_status_encode(const struct matty_status *message, uint8_t *payload,
-                                      size_t capacity, size_t *size);
-enum matty_result matty_status_decode(struct matty_status *message, const uint8_t *payload,
-                                      size_t size);
-void matty_status_load(struct matty_status *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_status_encode(const struct matty_status *message,
+                                                uint8_t *payload, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_status_decode(struct matty_status *message,
+                                                const uint8_t *payload, size_t size);
+MATTY_API void matty_status_load(struct matty_status *message, const uint8_t *payload);
 
 /* --- gps -------------------------------------------------------------------------------------- */
 
@@ -364,10 +374,11 @@ struct matty_gps {
     char nmea[121];
 };
 
-enum matty_result matty_gps_encode(const struct matty_gps *message, uint8_t *payload,
-                                   size_t capacity, size_t *size);
-enum matty_result matty_gps_decode(struct matty_gps *message, const uint8_t *payload, size_t size);
-void matty_gps_load(struct matty_gps *message, const uint8_t *payload, size_t size);
+MATTY_API enum matty_result matty_gps_encode(const struct matty_gps *message, uint8_t *payload,
+                                             size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_gps_decode(struct matty_gps *message, const uint8_t *payload,
+                                             size_t size);
+MATTY_API void matty_gps_load(struct matty_gps *message, const uint8_t *payload, size_t size);
 
 /* --- frames ----------------------------------------------------------------------------------- */
 
@@ -385,90 +396,91 @@ typedef void (*matty_put)(void *user, uint8_t byte);
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_STOP_FRAME_MAX 7U
 #define MATTY_STOP_FRAME_ROOM 10U
-enum matty_result matty_stop_frame(const struct matty_stop *message, uint8_t counter,
-                                   uint8_t *frame, size_t capacity, size_t *size);
-enum matty_result matty_stop_send(const struct matty_stop *message, uint8_t counter, matty_put put,
-                                  void *user);
+MATTY_API enum matty_result matty_stop_frame(const struct matty_stop *message, uint8_t counter,
+                                             uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_stop_send(const struct matty_stop *message, uint8_t counter,
+                                            matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_RESET_FRAME_MAX 7U
 #define MATTY_RESET_FRAME_ROOM 10U
-enum matty_result matty_reset_frame(const struct matty_reset *message, uint8_t counter,
-                                    uint8_t *frame, size_t capacity, size_t *size);
-enum matty_result matty_reset_send(const struct matty_reset *message, uint8_t counter,
-                                   matty_put put, void *user);
+MATTY_API enum matty_result matty_reset_frame(const struct matty_reset *message, uint8_t counter,
+                                              uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_reset_send(const struct matty_reset *message, uint8_t counter,
+                                             matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_MODE_FRAME_MAX 8U
 #define MATTY_MODE_FRAME_ROOM 12U
-enum matty_result matty_mode_frame(const struct matty_mode *message, uint8_t counter,
-                                   uint8_t *frame, size_t capacity, size_t *size);
-enum matty_result matty_mode_send(const struct matty_mode *message, uint8_t counter, matty_put put,
-                                  void *user);
+MATTY_API enum matty_result matty_mode_frame(const struct matty_mode *message, uint8_t counter,
+                                             uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_mode_send(const struct matty_mode *message, uint8_t counter,
+                                            matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_GO_FRAME_MAX 14U
 #define MATTY_GO_FRAME_ROOM 18U
-enum matty_result matty_go_frame(const struct matty_go *message, uint8_t counter, uint8_t *frame,
-                                 size_t capacity, size_t *size);
-enum matty_result matty_go_send(const struct matty_go *message, uint8_t counter, matty_put put,
-                                void *user);
+MATTY_API enum matty_result matty_go_frame(const struct matty_go *message, uint8_t counter,
+                                           uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_go_send(const struct matty_go *message, uint8_t counter,
+                                          matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_LIMITS_FRAME_MAX 14U
 #define MATTY_LIMITS_FRAME_ROOM 18U
-enum matty_result matty_limits_frame(const struct matty_limits *message, uint8_t counter,
-                                     uint8_t *frame, size_t capacity, size_t *size);
-enum matty_result matty_limits_send(const struct matty_limits *message, uint8_t counter,
-                                    matty_put put, void *user);
+MATTY_API enum matty_result matty_limits_frame(const struct matty_limits *message, uint8_t counter,
+                                               uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_limits_send(const struct matty_limits *message, uint8_t counter,
+                                              matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_TIMING_FRAME_MAX 14U
 #define MATTY_TIMING_FRAME_ROOM 18U
-enum matty_result matty_timing_frame(const struct matty_timing *message, uint8_t counter,
-                                     uint8_t *frame, size_t capacity, size_t *size);
-enum matty_result matty_timing_send(const struct matty_timing *message, uint8_t counter,
-                                    matty_put put, void *user);
+MATTY_API enum matty_result matty_timing_frame(const struct matty_timing *message, uint8_t counter,
+                                               uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_timing_send(const struct matty_timing *message, uint8_t counter,
+                                              matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_GPS_MODE_FRAME_MAX 8U
 #define MATTY_GPS_MODE_FRAME_ROOM 12U
-enum matty_result matty_gps_mode_frame(const struct matty_gps_mode *message, uint8_t counter,
-                                       uint8_t *frame, size_t capacity, size_t *size);
-enum matty_result matty_gps_mode_send(const struct matty_gps_mode *message, uint8_t counter,
-                                      matty_put put, void *user);
+MATTY_API enum matty_result matty_gps_mode_frame(const struct matty_gps_mode *message,
+                                                 uint8_t counter, uint8_t *frame, size_t capacity,
+                                                 size_t *size);
+MATTY_API enum matty_result matty_gps_mode_send(const struct matty_gps_mode *message,
+                                                uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_ACK_FRAME_MAX 6U
 #define MATTY_ACK_FRAME_ROOM 10U
-enum matty_result matty_ack_frame(const struct matty_ack *message, uint8_t counter, uint8_t *frame,
-                                  size_t capacity, size_t *size);
-enum matty_result matty_ack_send(const struct matty_ack *message, uint8_t counter, matty_put put,
-                                 void *user);
+MATTY_API enum matty_result matty_ack_frame(const struct matty_ack *message, uint8_t counter,
+                                            uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_ack_send(const struct matty_ack *message, uint8_t counter,
+                                           matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_NACK_FRAME_MAX 6U
 #define MATTY_NACK_FRAME_ROOM 10U
-enum matty_result matty_nack_frame(const struct matty_nack *message, uint8_t counter,
-                                   uint8_t *frame, size_t capacity, size_t *size);
-enum matty_result matty_nack_send(const struct matty_nack *message, uint8_t counter, matty_put put,
-                                  void *user);
+MATTY_API enum matty_result matty_nack_frame(const struct matty_nack *message, uint8_t counter,
+                                             uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_nack_send(const struct matty_nack *message, uint8_t counter,
+                                            matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_STATUS_FRAME_MAX 42U
 #define MATTY_STATUS_FRAME_ROOM 46U
-enum matty_result matty_status_frame(const struct matty_status *message, uint8_t counter,
-                                     uint8_t *frame, size_t capacity, size_t *size);
-enum matty_result matty_status_send(const struct matty_status *message, uint8_t counter,
-                                    matty_put put, void *user);
+MATTY_API enum matty_result matty_status_frame(const struct matty_status *message, uint8_t counter,
+                                               uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_status_send(const struct matty_status *message, uint8_t counter,
+                                              matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_GPS_FRAME_MAX 249U
 #define MATTY_GPS_FRAME_ROOM 252U
-enum matty_result matty_gps_frame(const struct matty_gps *message, uint8_t counter, uint8_t *frame,
-                                  size_t capacity, size_t *size);
-enum matty_result matty_gps_send(const struct matty_gps *message, uint8_t counter, matty_put put,
-                                 void *user);
+MATTY_API enum matty_result matty_gps_frame(const struct matty_gps *message, uint8_t counter,
+                                            uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_gps_send(const struct matty_gps *message, uint8_t counter,
+                                           matty_put put, void *user);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
 
@@ -554,16 +566,18 @@ struct matty_pc_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void matty_pc_decoder_init(struct matty_pc_decoder *decoder, matty_pc_handler handler, void *user);
+MATTY_API void matty_pc_decoder_init(struct matty_pc_decoder *decoder, matty_pc_handler handler,
+                                     void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void matty_pc_decoder_push(struct matty_pc_decoder *decoder, uint8_t byte);
+MATTY_API void matty_pc_decoder_push(struct matty_pc_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void matty_pc_decoder_feed(struct matty_pc_decoder *decoder, const uint8_t *data, size_t size);
+MATTY_API void matty_pc_decoder_feed(struct matty_pc_decoder *decoder, const uint8_t *data,
+                                     size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void matty_pc_decoder_flush(struct matty_pc_decoder *decoder);
+MATTY_API void matty_pc_decoder_flush(struct matty_pc_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define matty_pc_decoder_idle matty_pc_decoder_flush
@@ -630,17 +644,18 @@ struct matty_esp_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void matty_esp_decoder_init(struct matty_esp_decoder *decoder, matty_esp_handler handler,
-                            void *user);
+MATTY_API void matty_esp_decoder_init(struct matty_esp_decoder *decoder, matty_esp_handler handler,
+                                      void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void matty_esp_decoder_push(struct matty_esp_decoder *decoder, uint8_t byte);
+MATTY_API void matty_esp_decoder_push(struct matty_esp_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void matty_esp_decoder_feed(struct matty_esp_decoder *decoder, const uint8_t *data, size_t size);
+MATTY_API void matty_esp_decoder_feed(struct matty_esp_decoder *decoder, const uint8_t *data,
+                                      size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void matty_esp_decoder_flush(struct matty_esp_decoder *decoder);
+MATTY_API void matty_esp_decoder_flush(struct matty_esp_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define matty_esp_decoder_idle matty_esp_decoder_flush
@@ -650,8 +665,9 @@ void matty_esp_decoder_flush(struct matty_esp_decoder *decoder);
 /*
  * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
  * function with it. Define those that you need; the others do nothing. They are weak where the
- * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
- * by defining MATTY_NO_HANDLERS for the source.
+ * compiler knows weak functions. For another one, and where yours stand in the source that includes
+ * this one's source, define MATTY_NO_WEAK and all of them, or leave out the dispatching by
+ * defining MATTY_NO_HANDLERS for the source.
  */
 
 /** stop came from pc. */
@@ -682,7 +698,7 @@ void matty_on_gps_mode(void *user, const struct matty_gps_mode *message,
                        const struct matty_pc_parts *parts);
 
 /** Calls the functions above; give it to matty_pc_decoder_init. */
-void matty_pc_dispatch(void *user, const struct matty_pc_event *event);
+MATTY_API void matty_pc_dispatch(void *user, const struct matty_pc_event *event);
 
 /** ack came from esp. */
 void matty_on_ack(void *user, const struct matty_ack *message, const struct matty_esp_parts *parts);
@@ -699,7 +715,7 @@ void matty_on_status(void *user, const struct matty_status *message,
 void matty_on_gps(void *user, const struct matty_gps *message, const struct matty_esp_parts *parts);
 
 /** Calls the functions above; give it to matty_esp_decoder_init. */
-void matty_esp_dispatch(void *user, const struct matty_esp_event *event);
+MATTY_API void matty_esp_dispatch(void *user, const struct matty_esp_event *event);
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,24 @@
 #include "matty_v4.h"
 
 /*
+ * What a function of the header needs is put into it, so that it is short and fast also where no
+ * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
+ * the function that calls it: define MATTY_V4_APART as `static` with -flto, or in one source.
+ */
+#if defined(__GNUC__)
+#define MATTY_V4_INLINE static inline __attribute__((always_inline))
+#else
+#define MATTY_V4_INLINE static inline
+#endif
+#ifndef MATTY_V4_APART
+#if defined(__GNUC__)
+#define MATTY_V4_APART static __attribute__((noinline))
+#else
+#define MATTY_V4_APART static
+#endif
+#endif
+
+/*
  * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
  * done where pointers have more than 32 bits; define MATTY_V4_FAST_FEED as 1 or 0 to choose.
  * Define MATTY_V4_SSE2 as 1 for sixteen at a time on x86.
@@ -21,7 +39,7 @@
 #include <emmintrin.h>
 #endif
 
-static void matty_v4_store_u16le(uint8_t *at, uint16_t value) {
+MATTY_V4_INLINE void matty_v4_store_u16le(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)value;
     at[1] = (uint8_t)(value >> 8);
 }
@@ -60,7 +78,7 @@ static void matty_v4_copy(void *to, const void *from, size_t size) {
 
 /* --- stop ------------------------------------------------------------------------------------- */
 
-static void matty_v4_stop_store(const struct matty_v4_stop *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_stop_store(const struct matty_v4_stop *message, uint8_t *payload) {
     payload[0] = message->mode;
 }
 
@@ -89,7 +107,7 @@ enum matty_v4_result matty_v4_stop_decode(struct matty_v4_stop *message, const u
 
 /* --- reset ------------------------------------------------------------------------------------ */
 
-static void matty_v4_reset_store(const struct matty_v4_reset *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_reset_store(const struct matty_v4_reset *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -118,7 +136,7 @@ enum matty_v4_result matty_v4_reset_decode(struct matty_v4_reset *message, const
 
 /* --- mode ------------------------------------------------------------------------------------- */
 
-static void matty_v4_mode_store(const struct matty_v4_mode *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_mode_store(const struct matty_v4_mode *message, uint8_t *payload) {
     payload[0] = message->mode;
 }
 
@@ -147,7 +165,7 @@ enum matty_v4_result matty_v4_mode_decode(struct matty_v4_mode *message, const u
 
 /* --- go --------------------------------------------------------------------------------------- */
 
-static void matty_v4_go_store(const struct matty_v4_go *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_go_store(const struct matty_v4_go *message, uint8_t *payload) {
     matty_v4_store_u16le(payload, (uint16_t)message->speed);
     matty_v4_store_u16le(payload + 2, (uint16_t)message->steer);
 }
@@ -178,7 +196,8 @@ enum matty_v4_result matty_v4_go_decode(struct matty_v4_go *message, const uint8
 
 /* --- limits ----------------------------------------------------------------------------------- */
 
-static void matty_v4_limits_store(const struct matty_v4_limits *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_limits_store(const struct matty_v4_limits *message,
+                                           uint8_t *payload) {
     matty_v4_store_u16le(payload, (uint16_t)message->max_speed);
     matty_v4_store_u16le(payload + 2, (uint16_t)message->max_steer);
 }
@@ -209,7 +228,8 @@ enum matty_v4_result matty_v4_limits_decode(struct matty_v4_limits *message, con
 
 /* --- timing ----------------------------------------------------------------------------------- */
 
-static void matty_v4_timing_store(const struct matty_v4_timing *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_timing_store(const struct matty_v4_timing *message,
+                                           uint8_t *payload) {
     matty_v4_store_u16le(payload, message->period);
     matty_v4_store_u16le(payload + 2, message->timeout);
 }
@@ -240,7 +260,8 @@ enum matty_v4_result matty_v4_timing_decode(struct matty_v4_timing *message, con
 
 /* --- gps_mode --------------------------------------------------------------------------------- */
 
-static void matty_v4_gps_mode_store(const struct matty_v4_gps_mode *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_gps_mode_store(const struct matty_v4_gps_mode *message,
+                                             uint8_t *payload) {
     payload[0] = message->mode;
 }
 
@@ -269,8 +290,8 @@ enum matty_v4_result matty_v4_gps_mode_decode(struct matty_v4_gps_mode *message,
 
 /* --- version_query ---------------------------------------------------------------------------- */
 
-static void matty_v4_version_query_store(const struct matty_v4_version_query *message,
-                                         uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_version_query_store(const struct matty_v4_version_query *message,
+                                                  uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -300,14 +321,14 @@ enum matty_v4_result matty_v4_version_query_decode(struct matty_v4_version_query
 
 /* --- led -------------------------------------------------------------------------------------- */
 
-static enum matty_v4_result matty_v4_led_validate(const struct matty_v4_led *message) {
+MATTY_V4_INLINE enum matty_v4_result matty_v4_led_validate(const struct matty_v4_led *message) {
     if (message->rgb > 16777215UL) {
         return MATTY_V4_ERROR_RANGE;
     }
     return MATTY_V4_OK;
 }
 
-static void matty_v4_led_store(const struct matty_v4_led *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_led_store(const struct matty_v4_led *message, uint8_t *payload) {
     payload[0] = message->index;
     matty_v4_store_u24le(payload + 1, message->rgb);
 }
@@ -342,7 +363,7 @@ enum matty_v4_result matty_v4_led_decode(struct matty_v4_led *message, const uin
 
 /* --- ack -------------------------------------------------------------------------------------- */
 
-static void matty_v4_ack_store(const struct matty_v4_ack *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_ack_store(const struct matty_v4_ack *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -371,7 +392,7 @@ enum matty_v4_result matty_v4_ack_decode(struct matty_v4_ack *message, const uin
 
 /* --- nack ------------------------------------------------------------------------------------- */
 
-static void matty_v4_nack_store(const struct matty_v4_nack *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_nack_store(const struct matty_v4_nack *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -400,7 +421,8 @@ enum matty_v4_result matty_v4_nack_decode(struct matty_v4_nack *message, const u
 
 /* --- status ----------------------------------------------------------------------------------- */
 
-static void matty_v4_status_store(const struct matty_v4_status *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_status_store(const struct matty_v4_status *message,
+                                           uint8_t *payload) {
     payload[0] = message->status;
     payload[1] = message->mode;
     matty_v4_store_u16le(payload + 2, message->voltage);
@@ -459,7 +481,7 @@ static size_t matty_v4_gps_measure(const struct matty_v4_gps *message) {
     return size;
 }
 
-static enum matty_v4_result matty_v4_gps_validate(const struct matty_v4_gps *message) {
+MATTY_V4_INLINE enum matty_v4_result matty_v4_gps_validate(const struct matty_v4_gps *message) {
     if (message->nmea_size > 121U) {
         return MATTY_V4_ERROR_RANGE;
     }
@@ -469,7 +491,7 @@ static enum matty_v4_result matty_v4_gps_validate(const struct matty_v4_gps *mes
     return MATTY_V4_OK;
 }
 
-static void matty_v4_gps_store(const struct matty_v4_gps *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_gps_store(const struct matty_v4_gps *message, uint8_t *payload) {
     matty_v4_copy(payload, message->nmea, message->nmea_size);
 }
 
@@ -514,7 +536,8 @@ enum matty_v4_result matty_v4_gps_decode(struct matty_v4_gps *message, const uin
 
 /* --- version ---------------------------------------------------------------------------------- */
 
-static void matty_v4_version_store(const struct matty_v4_version *message, uint8_t *payload) {
+MATTY_V4_INLINE void matty_v4_version_store(const struct matty_v4_version *message,
+                                            uint8_t *payload) {
     payload[0] = message->serial_number;
     payload[1] = message->version;
 }
@@ -798,65 +821,71 @@ static void matty_v4_write_bytes(struct matty_v4_writer *writer, const void *fro
     }
 }
 
-static void matty_v4_stop_put(const struct matty_v4_stop *message, struct matty_v4_writer *writer) {
+MATTY_V4_INLINE void matty_v4_stop_put(const struct matty_v4_stop *message,
+                                       struct matty_v4_writer *writer) {
     matty_v4_write(writer, message->mode);
 }
 
-static void matty_v4_reset_put(const struct matty_v4_reset *message,
-                               struct matty_v4_writer *writer) {
+MATTY_V4_INLINE void matty_v4_reset_put(const struct matty_v4_reset *message,
+                                        struct matty_v4_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void matty_v4_mode_put(const struct matty_v4_mode *message, struct matty_v4_writer *writer) {
+MATTY_V4_INLINE void matty_v4_mode_put(const struct matty_v4_mode *message,
+                                       struct matty_v4_writer *writer) {
     matty_v4_write(writer, message->mode);
 }
 
-static void matty_v4_go_put(const struct matty_v4_go *message, struct matty_v4_writer *writer) {
+MATTY_V4_INLINE void matty_v4_go_put(const struct matty_v4_go *message,
+                                     struct matty_v4_writer *writer) {
     matty_v4_write_u16le(writer, (uint16_t)message->speed);
     matty_v4_write_u16le(writer, (uint16_t)message->steer);
 }
 
-static void matty_v4_limits_put(const struct matty_v4_limits *message,
-                                struct matty_v4_writer *writer) {
+MATTY_V4_INLINE void matty_v4_limits_put(const struct matty_v4_limits *message,
+                                         struct matty_v4_writer *writer) {
     matty_v4_write_u16le(writer, (uint16_t)message->max_speed);
     matty_v4_write_u16le(writer, (uint16_t)message->max_steer);
 }
 
-static void matty_v4_timing_put(const struct matty_v4_timing *message,
-                                struct matty_v4_writer *writer) {
+MATTY_V4_INLINE void matty_v4_timing_put(const struct matty_v4_timing *message,
+                                         struct matty_v4_writer *writer) {
     matty_v4_write_u16le(writer, message->period);
     matty_v4_write_u16le(writer, message->timeout);
 }
 
-static void matty_v4_gps_mode_put(const struct matty_v4_gps_mode *message,
-                                  struct matty_v4_writer *writer) {
+MATTY_V4_INLINE void matty_v4_gps_mode_put(const struct matty_v4_gps_mode *message,
+                                           struct matty_v4_writer *writer) {
     matty_v4_write(writer, message->mode);
 }
 
-static void matty_v4_version_query_put(const struct matty_v4_version_query *message,
+MATTY_V4_INLINE void matty_v4_version_query_put(const struct matty_v4_version_query *message,
+                                                struct matty_v4_writer *writer) {
+    (void)message;
+    (void)writer;
+}
+
+MATTY_V4_INLINE void matty_v4_led_put(const struct matty_v4_led *message,
+                                      struct matty_v4_writer *writer) {
+    matty_v4_write(writer, message->index);
+    matty_v4_write_u24le(writer, message->rgb);
+}
+
+MATTY_V4_INLINE void matty_v4_ack_put(const struct matty_v4_ack *message,
+                                      struct matty_v4_writer *writer) {
+    (void)message;
+    (void)writer;
+}
+
+MATTY_V4_INLINE void matty_v4_nack_put(const struct matty_v4_nack *message,
                                        struct matty_v4_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void matty_v4_led_put(const struct matty_v4_led *message, struct matty_v4_writer *writer) {
-    matty_v4_write(writer, message->index);
-    matty_v4_write_u24le(writer, message->rgb);
-}
-
-static void matty_v4_ack_put(const struct matty_v4_ack *message, struct matty_v4_writer *writer) {
-    (void)message;
-    (void)writer;
-}
-
-static void matty_v4_nack_put(const struct matty_v4_nack *message, struct matty_v4_writer *writer) {
-    (void)message;
-    (void)writer;
-}
-
-static void matty_v4_status_put(const struct matty_v4_status *message,
-                                struct matty_v4_writer *writer) {
+MATTY_V4_INLINE void matty_v4_status_put(const struct matty_v4_status *message,
+                                         struct matty_v4_writer *writer) {
     matty_v4_write(writer, message->status);
     matty_v4_write(writer, message->mode);
     matty_v4_write_u16le(writer, message->voltage);
@@ -872,12 +901,13 @@ static void matty_v4_status_put(const struct matty_v4_status *message,
     matty_v4_write_u16le(writer, (uint16_t)message->yaw);
 }
 
-static void matty_v4_gps_put(const struct matty_v4_gps *message, struct matty_v4_writer *writer) {
+MATTY_V4_INLINE void matty_v4_gps_put(const struct matty_v4_gps *message,
+                                      struct matty_v4_writer *writer) {
     matty_v4_write_bytes(writer, message->nmea, message->nmea_size);
 }
 
-static void matty_v4_version_put(const struct matty_v4_version *message,
-                                 struct matty_v4_writer *writer) {
+MATTY_V4_INLINE void matty_v4_version_put(const struct matty_v4_version *message,
+                                          struct matty_v4_writer *writer) {
     matty_v4_write(writer, message->serial_number);
     matty_v4_write(writer, message->version);
 }
@@ -2403,7 +2433,7 @@ void matty_v4_esp_dispatch(void *user, const struct matty_v4_esp_event *event) {
     }
 }
 
-#if defined(__GNUC__) || defined(__clang__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(MATTY_V4_NO_WEAK)
 
 __attribute__((weak)) void matty_v4_on_stop(void *user, const struct matty_v4_stop *message,
                                             const struct matty_v4_pc_parts *parts) {

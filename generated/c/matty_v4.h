@@ -18,6 +18,14 @@
 extern "C" {
 #endif
 
+/**
+ * In front of each function that the source defines. Where the one source that calls them includes
+ * `matty_v4.c`, define this as `static inline`: then the compiler sees all calls.
+ */
+#ifndef MATTY_V4_API
+#define MATTY_V4_API
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define MATTY_V4_SPEC_HASH "dceb8649d3dbb04ae2ad9f286946464ed2f6905f4664ab2a8cf2b210b638d828"
 
@@ -117,11 +125,12 @@ struct matty_v4_stop {
     uint8_t mode;
 };
 
-enum matty_v4_result matty_v4_stop_encode(const struct matty_v4_stop *message, uint8_t *payload,
-                                          size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_stop_decode(struct matty_v4_stop *message, const uint8_t *payload,
-                                          size_t size);
-void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_stop_encode(const struct matty_v4_stop *message,
+                                                       uint8_t *payload, size_t capacity,
+                                                       size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_stop_decode(struct matty_v4_stop *message,
+                                                       const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload);
 
 /* --- reset ------------------------------------------------------------------------------------ */
 
@@ -137,11 +146,12 @@ struct matty_v4_reset {
     uint8_t unused;
 };
 
-enum matty_v4_result matty_v4_reset_encode(const struct matty_v4_reset *message, uint8_t *payload,
-                                           size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_reset_decode(struct matty_v4_reset *message, const uint8_t *payload,
-                                           size_t size);
-void matty_v4_reset_load(struct matty_v4_reset *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_reset_encode(const struct matty_v4_reset *message,
+                                                        uint8_t *payload, size_t capacity,
+                                                        size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_reset_decode(struct matty_v4_reset *message,
+                                                        const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_reset_load(struct matty_v4_reset *message, const uint8_t *payload);
 
 /* --- mode ------------------------------------------------------------------------------------- */
 
@@ -157,11 +167,12 @@ struct matty_v4_mode {
     uint8_t mode;
 };
 
-enum matty_v4_result matty_v4_mode_encode(const struct matty_v4_mode *message, uint8_t *payload,
-                                          size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_mode_decode(struct matty_v4_mode *message, const uint8_t *payload,
-                                          size_t size);
-void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_mode_encode(const struct matty_v4_mode *message,
+                                                       uint8_t *payload, size_t capacity,
+                                                       size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_mode_decode(struct matty_v4_mode *message,
+                                                       const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload);
 
 /* --- go --------------------------------------------------------------------------------------- */
 
@@ -183,11 +194,12 @@ struct matty_v4_go {
     int16_t steer;
 };
 
-enum matty_v4_result matty_v4_go_encode(const struct matty_v4_go *message, uint8_t *payload,
-                                        size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_go_decode(struct matty_v4_go *message, const uint8_t *payload,
-                                        size_t size);
-void matty_v4_go_load(struct matty_v4_go *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_go_encode(const struct matty_v4_go *message,
+                                                     uint8_t *payload, size_t capacity,
+                                                     size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_go_decode(struct matty_v4_go *message,
+                                                     const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_go_load(struct matty_v4_go *message, const uint8_t *payload);
 
 /* --- limits ----------------------------------------------------------------------------------- */
 
@@ -214,11 +226,12 @@ struct matty_v4_limits {
     int16_t max_steer;
 };
 
-enum matty_v4_result matty_v4_limits_encode(const struct matty_v4_limits *message, uint8_t *payload,
-                                            size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_limits_decode(struct matty_v4_limits *message, const uint8_t *payload,
-                                            size_t size);
-void matty_v4_limits_load(struct matty_v4_limits *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_limits_encode(const struct matty_v4_limits *message,
+                                                         uint8_t *payload, size_t capacity,
+                                                         size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_limits_decode(struct matty_v4_limits *message,
+                                                         const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_limits_load(struct matty_v4_limits *message, const uint8_t *payload);
 
 /* --- timing ----------------------------------------------------------------------------------- */
 
@@ -241,11 +254,12 @@ struct matty_v4_timing {
     uint16_t timeout;
 };
 
-enum matty_v4_result matty_v4_timing_encode(const struct matty_v4_timing *message, uint8_t *payload,
-                                            size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_timing_decode(struct matty_v4_timing *message, const uint8_t *payload,
-                                            size_t size);
-void matty_v4_timing_load(struct matty_v4_timing *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_timing_encode(const struct matty_v4_timing *message,
+                                                         uint8_t *payload, size_t capacity,
+                                                         size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_timing_decode(struct matty_v4_timing *message,
+                                                         const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_timing_load(struct matty_v4_timing *message, const uint8_t *payload);
 
 /* --- gps_mode --------------------------------------------------------------------------------- */
 
@@ -261,11 +275,12 @@ struct matty_v4_gps_mode {
     uint8_t mode;
 };
 
-enum matty_v4_result matty_v4_gps_mode_encode(const struct matty_v4_gps_mode *message,
-                                              uint8_t *payload, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_gps_mode_decode(struct matty_v4_gps_mode *message,
-                                              const uint8_t *payload, size_t size);
-void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_encode(const struct matty_v4_gps_mode *message,
+                                                           uint8_t *payload, size_t capacity,
+                                                           size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_decode(struct matty_v4_gps_mode *message,
+                                                           const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, const uint8_t *payload);
 
 /* --- version_query ---------------------------------------------------------------------------- */
 
@@ -281,11 +296,12 @@ struct matty_v4_version_query {
     uint8_t unused;
 };
 
-enum matty_v4_result matty_v4_version_query_encode(const struct matty_v4_version_query *message,
-                                                   uint8_t *payload, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_version_query_decode(struct matty_v4_version_query *message,
-                                                   const uint8_t *payload, size_t size);
-void matty_v4_version_query_load(struct matty_v4_version_query *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_version_query_encode(
+    const struct matty_v4_version_query *message, uint8_t *payload, size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_version_query_decode(
+    struct matty_v4_version_query *message, const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_version_query_load(struct matty_v4_version_query *message,
+                                              const uint8_t *payload);
 
 /* --- led -------------------------------------------------------------------------------------- */
 
@@ -303,11 +319,12 @@ struct matty_v4_led {
     uint32_t rgb;
 };
 
-enum matty_v4_result matty_v4_led_encode(const struct matty_v4_led *message, uint8_t *payload,
-                                         size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_led_decode(struct matty_v4_led *message, const uint8_t *payload,
-                                         size_t size);
-void matty_v4_led_load(struct matty_v4_led *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_led_encode(const struct matty_v4_led *message,
+                                                      uint8_t *payload, size_t capacity,
+                                                      size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_led_decode(struct matty_v4_led *message,
+                                                      const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_led_load(struct matty_v4_led *message, const uint8_t *payload);
 
 /* --- ack -------------------------------------------------------------------------------------- */
 
@@ -327,11 +344,12 @@ struct matty_v4_ack {
     uint8_t unused;
 };
 
-enum matty_v4_result matty_v4_ack_encode(const struct matty_v4_ack *message, uint8_t *payload,
-                                         size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_ack_decode(struct matty_v4_ack *message, const uint8_t *payload,
-                                         size_t size);
-void matty_v4_ack_load(struct matty_v4_ack *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_ack_encode(const struct matty_v4_ack *message,
+                                                      uint8_t *payload, size_t capacity,
+                                                      size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_ack_decode(struct matty_v4_ack *message,
+                                                      const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_ack_load(struct matty_v4_ack *message, const uint8_t *payload);
 
 /* --- nack ------------------------------------------------------------------------------------- */
 
@@ -351,11 +369,12 @@ struct matty_v4_nack {
     uint8_t unused;
 };
 
-enum matty_v4_result matty_v4_nack_encode(const struct matty_v4_nack *message, uint8_t *payload,
-                                          size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_nack_decode(struct matty_v4_nack *message, const uint8_t *payload,
-                                          size_t size);
-void matty_v4_nack_load(struct matty_v4_nack *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_nack_encode(const struct matty_v4_nack *message,
+                                                       uint8_t *payload, size_t capacity,
+                                                       size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_nack_decode(struct matty_v4_nack *message,
+                                                       const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_nack_load(struct matty_v4_nack *message, const uint8_t *payload);
 
 /* --- status ----------------------------------------------------------------------------------- */
 
@@ -420,11 +439,12 @@ struct matty_v4_status {
     int16_t yaw;
 };
 
-enum matty_v4_result matty_v4_status_encode(const struct matty_v4_status *message, uint8_t *payload,
-                                            size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_status_decode(struct matty_v4_status *message, const uint8_t *payload,
-                                            size_t size);
-void matty_v4_status_load(struct matty_v4_status *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_status_encode(const struct matty_v4_status *message,
+                                                         uint8_t *payload, size_t capacity,
+                                                         size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_status_decode(struct matty_v4_status *message,
+                                                         const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_status_load(struct matty_v4_status *message, const uint8_t *payload);
 
 /* --- gps -------------------------------------------------------------------------------------- */
 
@@ -445,11 +465,13 @@ struct matty_v4_gps {
     char nmea[121];
 };
 
-enum matty_v4_result matty_v4_gps_encode(const struct matty_v4_gps *message, uint8_t *payload,
-                                         size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_gps_decode(struct matty_v4_gps *message, const uint8_t *payload,
-                                         size_t size);
-void matty_v4_gps_load(struct matty_v4_gps *message, const uint8_t *payload, size_t size);
+MATTY_V4_API enum matty_v4_result matty_v4_gps_encode(const struct matty_v4_gps *message,
+                                                      uint8_t *payload, size_t capacity,
+                                                      size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_gps_decode(struct matty_v4_gps *message,
+                                                      const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_gps_load(struct matty_v4_gps *message, const uint8_t *payload,
+                                    size_t size);
 
 /* --- version ---------------------------------------------------------------------------------- */
 
@@ -467,11 +489,12 @@ struct matty_v4_version {
     uint8_t version;
 };
 
-enum matty_v4_result matty_v4_version_encode(const struct matty_v4_version *message,
-                                             uint8_t *payload, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_version_decode(struct matty_v4_version *message,
-                                             const uint8_t *payload, size_t size);
-void matty_v4_version_load(struct matty_v4_version *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_version_encode(const struct matty_v4_version *message,
+                                                          uint8_t *payload, size_t capacity,
+                                                          size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_version_decode(struct matty_v4_version *message,
+                                                          const uint8_t *payload, size_t size);
+MATTY_V4_API void matty_v4_version_load(struct matty_v4_version *message, const uint8_t *payload);
 
 /* --- frames ----------------------------------------------------------------------------------- */
 
@@ -489,116 +512,134 @@ typedef void (*matty_v4_put)(void *user, uint8_t byte);
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_STOP_FRAME_MAX 8U
 #define MATTY_V4_STOP_FRAME_ROOM 12U
-enum matty_v4_result matty_v4_stop_frame(const struct matty_v4_stop *message, uint8_t counter,
-                                         uint8_t *frame, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_stop_send(const struct matty_v4_stop *message, uint8_t counter,
-                                        matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_stop_frame(const struct matty_v4_stop *message,
+                                                      uint8_t counter, uint8_t *frame,
+                                                      size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_stop_send(const struct matty_v4_stop *message,
+                                                     uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_RESET_FRAME_MAX 7U
 #define MATTY_V4_RESET_FRAME_ROOM 10U
-enum matty_v4_result matty_v4_reset_frame(const struct matty_v4_reset *message, uint8_t counter,
-                                          uint8_t *frame, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_reset_send(const struct matty_v4_reset *message, uint8_t counter,
-                                         matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_reset_frame(const struct matty_v4_reset *message,
+                                                       uint8_t counter, uint8_t *frame,
+                                                       size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_reset_send(const struct matty_v4_reset *message,
+                                                      uint8_t counter, matty_v4_put put,
+                                                      void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_MODE_FRAME_MAX 8U
 #define MATTY_V4_MODE_FRAME_ROOM 12U
-enum matty_v4_result matty_v4_mode_frame(const struct matty_v4_mode *message, uint8_t counter,
-                                         uint8_t *frame, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_mode_send(const struct matty_v4_mode *message, uint8_t counter,
-                                        matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_mode_frame(const struct matty_v4_mode *message,
+                                                      uint8_t counter, uint8_t *frame,
+                                                      size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_mode_send(const struct matty_v4_mode *message,
+                                                     uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_GO_FRAME_MAX 14U
 #define MATTY_V4_GO_FRAME_ROOM 18U
-enum matty_v4_result matty_v4_go_frame(const struct matty_v4_go *message, uint8_t counter,
-                                       uint8_t *frame, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_go_send(const struct matty_v4_go *message, uint8_t counter,
-                                      matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_go_frame(const struct matty_v4_go *message,
+                                                    uint8_t counter, uint8_t *frame,
+                                                    size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_go_send(const struct matty_v4_go *message,
+                                                   uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_LIMITS_FRAME_MAX 14U
 #define MATTY_V4_LIMITS_FRAME_ROOM 18U
-enum matty_v4_result matty_v4_limits_frame(const struct matty_v4_limits *message, uint8_t counter,
-                                           uint8_t *frame, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_limits_send(const struct matty_v4_limits *message, uint8_t counter,
-                                          matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_limits_frame(const struct matty_v4_limits *message,
+                                                        uint8_t counter, uint8_t *frame,
+                                                        size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_limits_send(const struct matty_v4_limits *message,
+                                                       uint8_t counter, matty_v4_put put,
+                                                       void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_TIMING_FRAME_MAX 14U
 #define MATTY_V4_TIMING_FRAME_ROOM 18U
-enum matty_v4_result matty_v4_timing_frame(const struct matty_v4_timing *message, uint8_t counter,
-                                           uint8_t *frame, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_timing_send(const struct matty_v4_timing *message, uint8_t counter,
-                                          matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_timing_frame(const struct matty_v4_timing *message,
+                                                        uint8_t counter, uint8_t *frame,
+                                                        size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_timing_send(const struct matty_v4_timing *message,
+                                                       uint8_t counter, matty_v4_put put,
+                                                       void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_GPS_MODE_FRAME_MAX 8U
 #define MATTY_V4_GPS_MODE_FRAME_ROOM 12U
-enum matty_v4_result matty_v4_gps_mode_frame(const struct matty_v4_gps_mode *message,
-                                             uint8_t counter, uint8_t *frame, size_t capacity,
-                                             size_t *size);
-enum matty_v4_result matty_v4_gps_mode_send(const struct matty_v4_gps_mode *message,
-                                            uint8_t counter, matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_frame(const struct matty_v4_gps_mode *message,
+                                                          uint8_t counter, uint8_t *frame,
+                                                          size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_send(const struct matty_v4_gps_mode *message,
+                                                         uint8_t counter, matty_v4_put put,
+                                                         void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_VERSION_QUERY_FRAME_MAX 7U
 #define MATTY_V4_VERSION_QUERY_FRAME_ROOM 10U
-enum matty_v4_result matty_v4_version_query_frame(const struct matty_v4_version_query *message,
-                                                  uint8_t counter, uint8_t *frame, size_t capacity,
-                                                  size_t *size);
-enum matty_v4_result matty_v4_version_query_send(const struct matty_v4_version_query *message,
-                                                 uint8_t counter, matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_version_query_frame(
+    const struct matty_v4_version_query *message, uint8_t counter, uint8_t *frame, size_t capacity,
+    size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_version_query_send(
+    const struct matty_v4_version_query *message, uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_LED_FRAME_MAX 14U
 #define MATTY_V4_LED_FRAME_ROOM 18U
-enum matty_v4_result matty_v4_led_frame(const struct matty_v4_led *message, uint8_t counter,
-                                        uint8_t *frame, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_led_send(const struct matty_v4_led *message, uint8_t counter,
-                                       matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_led_frame(const struct matty_v4_led *message,
+                                                     uint8_t counter, uint8_t *frame,
+                                                     size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_led_send(const struct matty_v4_led *message,
+                                                    uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_ACK_FRAME_MAX 6U
 #define MATTY_V4_ACK_FRAME_ROOM 10U
-enum matty_v4_result matty_v4_ack_frame(const struct matty_v4_ack *message, uint8_t counter,
-                                        uint8_t *frame, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_ack_send(const struct matty_v4_ack *message, uint8_t counter,
-                                       matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_ack_frame(const struct matty_v4_ack *message,
+                                                     uint8_t counter, uint8_t *frame,
+                                                     size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_ack_send(const struct matty_v4_ack *message,
+                                                    uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_NACK_FRAME_MAX 6U
 #define MATTY_V4_NACK_FRAME_ROOM 10U
-enum matty_v4_result matty_v4_nack_frame(const struct matty_v4_nack *message, uint8_t counter,
-                                         uint8_t *frame, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_nack_send(const struct matty_v4_nack *message, uint8_t counter,
-                                        matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_nack_frame(const struct matty_v4_nack *message,
+                                                      uint8_t counter, uint8_t *frame,
+                                                      size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_nack_send(const struct matty_v4_nack *message,
+                                                     uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_STATUS_FRAME_MAX 54U
 #define MATTY_V4_STATUS_FRAME_ROOM 58U
-enum matty_v4_result matty_v4_status_frame(const struct matty_v4_status *message, uint8_t counter,
-                                           uint8_t *frame, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_status_send(const struct matty_v4_status *message, uint8_t counter,
-                                          matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_status_frame(const struct matty_v4_status *message,
+                                                        uint8_t counter, uint8_t *frame,
+                                                        size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_status_send(const struct matty_v4_status *message,
+                                                       uint8_t counter, matty_v4_put put,
+                                                       void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_GPS_FRAME_MAX 249U
 #define MATTY_V4_GPS_FRAME_ROOM 252U
-enum matty_v4_result matty_v4_gps_frame(const struct matty_v4_gps *message, uint8_t counter,
-                                        uint8_t *frame, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_gps_send(const struct matty_v4_gps *message, uint8_t counter,
-                                       matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_gps_frame(const struct matty_v4_gps *message,
+                                                     uint8_t counter, uint8_t *frame,
+                                                     size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_gps_send(const struct matty_v4_gps *message,
+                                                    uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_VERSION_FRAME_MAX 11U
 #define MATTY_V4_VERSION_FRAME_ROOM 14U
-enum matty_v4_result matty_v4_version_frame(const struct matty_v4_version *message, uint8_t counter,
-                                            uint8_t *frame, size_t capacity, size_t *size);
-enum matty_v4_result matty_v4_version_send(const struct matty_v4_version *message, uint8_t counter,
-                                           matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_version_frame(const struct matty_v4_version *message,
+                                                         uint8_t counter, uint8_t *frame,
+                                                         size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_version_send(const struct matty_v4_version *message,
+                                                        uint8_t counter, matty_v4_put put,
+                                                        void *user);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
 
@@ -684,18 +725,18 @@ struct matty_v4_pc_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void matty_v4_pc_decoder_init(struct matty_v4_pc_decoder *decoder, matty_v4_pc_handler handler,
-                              void *user);
+MATTY_V4_API void matty_v4_pc_decoder_init(struct matty_v4_pc_decoder *decoder,
+                                           matty_v4_pc_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void matty_v4_pc_decoder_push(struct matty_v4_pc_decoder *decoder, uint8_t byte);
+MATTY_V4_API void matty_v4_pc_decoder_push(struct matty_v4_pc_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void matty_v4_pc_decoder_feed(struct matty_v4_pc_decoder *decoder, const uint8_t *data,
-                              size_t size);
+MATTY_V4_API void matty_v4_pc_decoder_feed(struct matty_v4_pc_decoder *decoder, const uint8_t *data,
+                                           size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void matty_v4_pc_decoder_flush(struct matty_v4_pc_decoder *decoder);
+MATTY_V4_API void matty_v4_pc_decoder_flush(struct matty_v4_pc_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define matty_v4_pc_decoder_idle matty_v4_pc_decoder_flush
@@ -762,18 +803,18 @@ struct matty_v4_esp_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void matty_v4_esp_decoder_init(struct matty_v4_esp_decoder *decoder, matty_v4_esp_handler handler,
-                               void *user);
+MATTY_V4_API void matty_v4_esp_decoder_init(struct matty_v4_esp_decoder *decoder,
+                                            matty_v4_esp_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void matty_v4_esp_decoder_push(struct matty_v4_esp_decoder *decoder, uint8_t byte);
+MATTY_V4_API void matty_v4_esp_decoder_push(struct matty_v4_esp_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void matty_v4_esp_decoder_feed(struct matty_v4_esp_decoder *decoder, const uint8_t *data,
-                               size_t size);
+MATTY_V4_API void matty_v4_esp_decoder_feed(struct matty_v4_esp_decoder *decoder,
+                                            const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void matty_v4_esp_decoder_flush(struct matty_v4_esp_decoder *decoder);
+MATTY_V4_API void matty_v4_esp_decoder_flush(struct matty_v4_esp_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define matty_v4_esp_decoder_idle matty_v4_esp_decoder_flush
@@ -783,8 +824,9 @@ void matty_v4_esp_decoder_flush(struct matty_v4_esp_decoder *decoder);
 /*
  * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
  * function with it. Define those that you need; the others do nothing. They are weak where the
- * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
- * by defining MATTY_V4_NO_HANDLERS for the source.
+ * compiler knows weak functions. For another one, and where yours stand in the source that includes
+ * this one's source, define MATTY_V4_NO_WEAK and all of them, or leave out the dispatching by
+ * defining MATTY_V4_NO_HANDLERS for the source.
  */
 
 /** stop came from pc. */
@@ -824,7 +866,7 @@ void matty_v4_on_led(void *user, const struct matty_v4_led *message,
                      const struct matty_v4_pc_parts *parts);
 
 /** Calls the functions above; give it to matty_v4_pc_decoder_init. */
-void matty_v4_pc_dispatch(void *user, const struct matty_v4_pc_event *event);
+MATTY_V4_API void matty_v4_pc_dispatch(void *user, const struct matty_v4_pc_event *event);
 
 /** ack came from esp. */
 void matty_v4_on_ack(void *user, const struct matty_v4_ack *message,
@@ -847,7 +889,7 @@ void matty_v4_on_version(void *user, const struct matty_v4_version *message,
                          const struct matty_v4_esp_parts *parts);
 
 /** Calls the functions above; give it to matty_v4_esp_decoder_init. */
-void matty_v4_esp_dispatch(void *user, const struct matty_v4_esp_event *event);
+MATTY_V4_API void matty_v4_esp_dispatch(void *user, const struct matty_v4_esp_event *event);
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,24 @@
 #include "rflex.h"
 
 /*
+ * What a function of the header needs is put into it, so that it is short and fast also where no
+ * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
+ * the function that calls it: define RFLEX_APART as `static` with -flto, or in one source.
+ */
+#if defined(__GNUC__)
+#define RFLEX_INLINE static inline __attribute__((always_inline))
+#else
+#define RFLEX_INLINE static inline
+#endif
+#ifndef RFLEX_APART
+#if defined(__GNUC__)
+#define RFLEX_APART static __attribute__((noinline))
+#else
+#define RFLEX_APART static
+#endif
+#endif
+
+/*
  * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
  * done where pointers have more than 32 bits; define RFLEX_FAST_FEED as 1 or 0 to choose.
  * Define RFLEX_SSE2 as 1 for sixteen at a time on x86.
@@ -33,15 +51,15 @@ static uint32_t rflex_load_u32be(const uint8_t *at) {
                       ((uint32_t)at[0] << 24));
 }
 
-static void rflex_store_u16be(uint8_t *at, uint16_t value) {
+RFLEX_INLINE void rflex_store_u16be(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)(value >> 8);
     at[1] = (uint8_t)value;
 }
 
 /* --- request_system_status -------------------------------------------------------------------- */
 
-static void rflex_request_system_status_store(const struct rflex_request_system_status *message,
-                                              uint8_t *payload) {
+RFLEX_INLINE void rflex_request_system_status_store(
+    const struct rflex_request_system_status *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -72,7 +90,8 @@ enum rflex_result rflex_request_system_status_decode(struct rflex_request_system
 
 /* --- system_status ---------------------------------------------------------------------------- */
 
-static void rflex_system_status_store(const struct rflex_system_status *message, uint8_t *payload) {
+RFLEX_INLINE void rflex_system_status_store(const struct rflex_system_status *message,
+                                            uint8_t *payload) {
     rflex_store_u32be(payload, message->timestamp);
     rflex_store_u32be(payload + 4, message->battery_voltage);
     payload[8] = message->brake;
@@ -105,7 +124,7 @@ enum rflex_result rflex_system_status_decode(struct rflex_system_status *message
 
 /* --- motor_00 --------------------------------------------------------------------------------- */
 
-static void rflex_motor_00_store(const struct rflex_motor_00 *message, uint8_t *payload) {
+RFLEX_INLINE void rflex_motor_00_store(const struct rflex_motor_00 *message, uint8_t *payload) {
     payload[0] = message->unknown;
 }
 
@@ -134,7 +153,8 @@ enum rflex_result rflex_motor_00_decode(struct rflex_motor_00 *message, const ui
 
 /* --- motor_command ---------------------------------------------------------------------------- */
 
-static void rflex_motor_command_store(const struct rflex_motor_command *message, uint8_t *payload) {
+RFLEX_INLINE void rflex_motor_command_store(const struct rflex_motor_command *message,
+                                            uint8_t *payload) {
     payload[0] = message->axis;
     rflex_store_u32be(payload + 1, message->velocity);
     rflex_store_u32be(payload + 5, message->acceleration);
@@ -171,8 +191,8 @@ enum rflex_result rflex_motor_command_decode(struct rflex_motor_command *message
 
 /* --- confirm_motor_command -------------------------------------------------------------------- */
 
-static void rflex_confirm_motor_command_store(const struct rflex_confirm_motor_command *message,
-                                              uint8_t *payload) {
+RFLEX_INLINE void rflex_confirm_motor_command_store(
+    const struct rflex_confirm_motor_command *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
     rflex_store_u32be(payload + 4, message->timestamp);
     payload[8] = message->axis;
@@ -207,7 +227,7 @@ enum rflex_result rflex_confirm_motor_command_decode(struct rflex_confirm_motor_
 
 /* --- motor_0a --------------------------------------------------------------------------------- */
 
-static void rflex_motor_0a_store(const struct rflex_motor_0a *message, uint8_t *payload) {
+RFLEX_INLINE void rflex_motor_0a_store(const struct rflex_motor_0a *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -236,7 +256,7 @@ enum rflex_result rflex_motor_0a_decode(struct rflex_motor_0a *message, const ui
 
 /* --- motor_0c --------------------------------------------------------------------------------- */
 
-static void rflex_motor_0c_store(const struct rflex_motor_0c *message, uint8_t *payload) {
+RFLEX_INLINE void rflex_motor_0c_store(const struct rflex_motor_0c *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -265,8 +285,8 @@ enum rflex_result rflex_motor_0c_decode(struct rflex_motor_0c *message, const ui
 
 /* --- motor_0c_answer -------------------------------------------------------------------------- */
 
-static void rflex_motor_0c_answer_store(const struct rflex_motor_0c_answer *message,
-                                        uint8_t *payload) {
+RFLEX_INLINE void rflex_motor_0c_answer_store(const struct rflex_motor_0c_answer *message,
+                                              uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
     rflex_store_u32be(payload + 4, message->timestamp);
 }
@@ -297,7 +317,7 @@ enum rflex_result rflex_motor_0c_answer_decode(struct rflex_motor_0c_answer *mes
 
 /* --- read_motor ------------------------------------------------------------------------------- */
 
-static void rflex_read_motor_store(const struct rflex_read_motor *message, uint8_t *payload) {
+RFLEX_INLINE void rflex_read_motor_store(const struct rflex_read_motor *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
     rflex_store_u32be(payload + 4, message->timestamp);
     payload[8] = message->axis;
@@ -338,7 +358,7 @@ enum rflex_result rflex_read_motor_decode(struct rflex_read_motor *message, cons
 
 /* --- start_stop_motor_packets ----------------------------------------------------------------- */
 
-static void rflex_start_stop_motor_packets_store(
+RFLEX_INLINE void rflex_start_stop_motor_packets_store(
     const struct rflex_start_stop_motor_packets *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->timestamp);
     rflex_store_u32be(payload + 4, message->start_stop);
@@ -372,7 +392,7 @@ enum rflex_result rflex_start_stop_motor_packets_decode(
 
 /* --- confirm_start_stop_motor_packets --------------------------------------------------------- */
 
-static void rflex_confirm_start_stop_motor_packets_store(
+RFLEX_INLINE void rflex_confirm_start_stop_motor_packets_store(
     const struct rflex_confirm_start_stop_motor_packets *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
     rflex_store_u32be(payload + 4, message->timestamp);
@@ -406,8 +426,8 @@ enum rflex_result rflex_confirm_start_stop_motor_packets_decode(
 
 /* --- request_joystick_data -------------------------------------------------------------------- */
 
-static void rflex_request_joystick_data_store(const struct rflex_request_joystick_data *message,
-                                              uint8_t *payload) {
+RFLEX_INLINE void rflex_request_joystick_data_store(
+    const struct rflex_request_joystick_data *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -438,7 +458,8 @@ enum rflex_result rflex_request_joystick_data_decode(struct rflex_request_joysti
 
 /* --- joystick_data ---------------------------------------------------------------------------- */
 
-static void rflex_joystick_data_store(const struct rflex_joystick_data *message, uint8_t *payload) {
+RFLEX_INLINE void rflex_joystick_data_store(const struct rflex_joystick_data *message,
+                                            uint8_t *payload) {
     rflex_store_u32be(payload, message->timestamp);
     rflex_store_u32be(payload + 4, (uint32_t)message->horizontal);
     rflex_store_u32be(payload + 8, (uint32_t)message->vertical);
@@ -473,7 +494,7 @@ enum rflex_result rflex_joystick_data_decode(struct rflex_joystick_data *message
 
 /* --- start_stop_sonar_packets ----------------------------------------------------------------- */
 
-static void rflex_start_stop_sonar_packets_store(
+RFLEX_INLINE void rflex_start_stop_sonar_packets_store(
     const struct rflex_start_stop_sonar_packets *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->frequency);
     rflex_store_u32be(payload + 4, message->unknown_1);
@@ -511,7 +532,7 @@ enum rflex_result rflex_start_stop_sonar_packets_decode(
 
 /* --- confirm_start_stop_sonar_packets --------------------------------------------------------- */
 
-static void rflex_confirm_start_stop_sonar_packets_store(
+RFLEX_INLINE void rflex_confirm_start_stop_sonar_packets_store(
     const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
     rflex_store_u32be(payload + 4, message->timestamp);
@@ -551,14 +572,14 @@ static size_t rflex_sonar_data_measure(const struct rflex_sonar_data *message) {
     return size;
 }
 
-static enum rflex_result rflex_sonar_data_validate(const struct rflex_sonar_data *message) {
+RFLEX_INLINE enum rflex_result rflex_sonar_data_validate(const struct rflex_sonar_data *message) {
     if (message->readings_count > 82U) {
         return RFLEX_ERROR_RANGE;
     }
     return RFLEX_OK;
 }
 
-static void rflex_sonar_data_store(const struct rflex_sonar_data *message, uint8_t *payload) {
+RFLEX_INLINE void rflex_sonar_data_store(const struct rflex_sonar_data *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
     rflex_store_u32be(payload + 4, message->timestamp);
     for (size_t i = 0; i < message->readings_count; i++) {
@@ -627,8 +648,8 @@ enum rflex_result rflex_sonar_data_decode(struct rflex_sonar_data *message, cons
 
 /* --- initialize_digital_io -------------------------------------------------------------------- */
 
-static void rflex_initialize_digital_io_store(const struct rflex_initialize_digital_io *message,
-                                              uint8_t *payload) {
+RFLEX_INLINE void rflex_initialize_digital_io_store(
+    const struct rflex_initialize_digital_io *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
 }
 
@@ -659,7 +680,7 @@ enum rflex_result rflex_initialize_digital_io_decode(struct rflex_initialize_dig
 
 /* --- confirm_initialize_digital_io ------------------------------------------------------------ */
 
-static void rflex_confirm_initialize_digital_io_store(
+RFLEX_INLINE void rflex_confirm_initialize_digital_io_store(
     const struct rflex_confirm_initialize_digital_io *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
     rflex_store_u32be(payload + 4, message->timestamp);
@@ -693,8 +714,8 @@ enum rflex_result rflex_confirm_initialize_digital_io_decode(
 
 /* --- changed_bumpers -------------------------------------------------------------------------- */
 
-static void rflex_changed_bumpers_store(const struct rflex_changed_bumpers *message,
-                                        uint8_t *payload) {
+RFLEX_INLINE void rflex_changed_bumpers_store(const struct rflex_changed_bumpers *message,
+                                              uint8_t *payload) {
     rflex_store_u32be(payload, message->timestamp);
     payload[4] = message->position;
     rflex_store_u16be(payload + 5, message->value);
@@ -727,8 +748,8 @@ enum rflex_result rflex_changed_bumpers_decode(struct rflex_changed_bumpers *mes
 
 /* --- check_io_changed ------------------------------------------------------------------------- */
 
-static void rflex_check_io_changed_store(const struct rflex_check_io_changed *message,
-                                         uint8_t *payload) {
+RFLEX_INLINE void rflex_check_io_changed_store(const struct rflex_check_io_changed *message,
+                                               uint8_t *payload) {
     rflex_store_u32be(payload, message->timestamp);
 }
 
@@ -757,8 +778,8 @@ enum rflex_result rflex_check_io_changed_decode(struct rflex_check_io_changed *m
 
 /* --- check_io_changed_answer ------------------------------------------------------------------ */
 
-static void rflex_check_io_changed_answer_store(const struct rflex_check_io_changed_answer *message,
-                                                uint8_t *payload) {
+RFLEX_INLINE void rflex_check_io_changed_answer_store(
+    const struct rflex_check_io_changed_answer *message, uint8_t *payload) {
     rflex_store_u32be(payload, message->unknown);
     rflex_store_u32be(payload + 4, message->timestamp);
     rflex_store_u32be(payload + 8, message->package_count);
@@ -793,7 +814,8 @@ enum rflex_result rflex_check_io_changed_answer_decode(
 
 /* --- changed_byte ----------------------------------------------------------------------------- */
 
-static void rflex_changed_byte_store(const struct rflex_changed_byte *message, uint8_t *payload) {
+RFLEX_INLINE void rflex_changed_byte_store(const struct rflex_changed_byte *message,
+                                           uint8_t *payload) {
     rflex_store_u32be(payload, message->timestamp);
     payload[4] = message->position;
     rflex_store_u16be(payload + 5, message->value);
@@ -1112,25 +1134,26 @@ static void rflex_write_u16be(struct rflex_writer *writer, uint16_t value) {
     rflex_write(writer, (uint8_t)value);
 }
 
-static void rflex_request_system_status_put(const struct rflex_request_system_status *message,
-                                            struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_request_system_status_put(const struct rflex_request_system_status *message,
+                                                  struct rflex_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void rflex_system_status_put(const struct rflex_system_status *message,
-                                    struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_system_status_put(const struct rflex_system_status *message,
+                                          struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->timestamp);
     rflex_write_u32be(writer, message->battery_voltage);
     rflex_write(writer, message->brake);
 }
 
-static void rflex_motor_00_put(const struct rflex_motor_00 *message, struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_motor_00_put(const struct rflex_motor_00 *message,
+                                     struct rflex_writer *writer) {
     rflex_write(writer, message->unknown);
 }
 
-static void rflex_motor_command_put(const struct rflex_motor_command *message,
-                                    struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_motor_command_put(const struct rflex_motor_command *message,
+                                          struct rflex_writer *writer) {
     rflex_write(writer, message->axis);
     rflex_write_u32be(writer, message->velocity);
     rflex_write_u32be(writer, message->acceleration);
@@ -1138,31 +1161,33 @@ static void rflex_motor_command_put(const struct rflex_motor_command *message,
     rflex_write(writer, message->direction);
 }
 
-static void rflex_confirm_motor_command_put(const struct rflex_confirm_motor_command *message,
-                                            struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_confirm_motor_command_put(const struct rflex_confirm_motor_command *message,
+                                                  struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->unknown);
     rflex_write_u32be(writer, message->timestamp);
     rflex_write(writer, message->axis);
 }
 
-static void rflex_motor_0a_put(const struct rflex_motor_0a *message, struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_motor_0a_put(const struct rflex_motor_0a *message,
+                                     struct rflex_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void rflex_motor_0c_put(const struct rflex_motor_0c *message, struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_motor_0c_put(const struct rflex_motor_0c *message,
+                                     struct rflex_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void rflex_motor_0c_answer_put(const struct rflex_motor_0c_answer *message,
-                                      struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_motor_0c_answer_put(const struct rflex_motor_0c_answer *message,
+                                            struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->unknown);
     rflex_write_u32be(writer, message->timestamp);
 }
 
-static void rflex_read_motor_put(const struct rflex_read_motor *message,
-                                 struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_read_motor_put(const struct rflex_read_motor *message,
+                                       struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->unknown);
     rflex_write_u32be(writer, message->timestamp);
     rflex_write(writer, message->axis);
@@ -1172,48 +1197,48 @@ static void rflex_read_motor_put(const struct rflex_read_motor *message,
     rflex_write_u32be(writer, (uint32_t)message->torque);
 }
 
-static void rflex_start_stop_motor_packets_put(const struct rflex_start_stop_motor_packets *message,
-                                               struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_start_stop_motor_packets_put(
+    const struct rflex_start_stop_motor_packets *message, struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->timestamp);
     rflex_write_u32be(writer, message->start_stop);
 }
 
-static void rflex_confirm_start_stop_motor_packets_put(
+RFLEX_INLINE void rflex_confirm_start_stop_motor_packets_put(
     const struct rflex_confirm_start_stop_motor_packets *message, struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->unknown);
     rflex_write_u32be(writer, message->timestamp);
 }
 
-static void rflex_request_joystick_data_put(const struct rflex_request_joystick_data *message,
-                                            struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_request_joystick_data_put(const struct rflex_request_joystick_data *message,
+                                                  struct rflex_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void rflex_joystick_data_put(const struct rflex_joystick_data *message,
-                                    struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_joystick_data_put(const struct rflex_joystick_data *message,
+                                          struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->timestamp);
     rflex_write_u32be(writer, (uint32_t)message->horizontal);
     rflex_write_u32be(writer, (uint32_t)message->vertical);
     rflex_write(writer, message->buttons);
 }
 
-static void rflex_start_stop_sonar_packets_put(const struct rflex_start_stop_sonar_packets *message,
-                                               struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_start_stop_sonar_packets_put(
+    const struct rflex_start_stop_sonar_packets *message, struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->frequency);
     rflex_write_u32be(writer, message->unknown_1);
     rflex_write(writer, message->unknown_2);
     rflex_write_u32be(writer, message->start_stop);
 }
 
-static void rflex_confirm_start_stop_sonar_packets_put(
+RFLEX_INLINE void rflex_confirm_start_stop_sonar_packets_put(
     const struct rflex_confirm_start_stop_sonar_packets *message, struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->unknown);
     rflex_write_u32be(writer, message->timestamp);
 }
 
-static void rflex_sonar_data_put(const struct rflex_sonar_data *message,
-                                 struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_sonar_data_put(const struct rflex_sonar_data *message,
+                                       struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->unknown);
     rflex_write_u32be(writer, message->timestamp);
     for (size_t i = 0; i < message->readings_count; i++) {
@@ -1222,38 +1247,38 @@ static void rflex_sonar_data_put(const struct rflex_sonar_data *message,
     }
 }
 
-static void rflex_initialize_digital_io_put(const struct rflex_initialize_digital_io *message,
-                                            struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_initialize_digital_io_put(const struct rflex_initialize_digital_io *message,
+                                                  struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->unknown);
 }
 
-static void rflex_confirm_initialize_digital_io_put(
+RFLEX_INLINE void rflex_confirm_initialize_digital_io_put(
     const struct rflex_confirm_initialize_digital_io *message, struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->unknown);
     rflex_write_u32be(writer, message->timestamp);
 }
 
-static void rflex_changed_bumpers_put(const struct rflex_changed_bumpers *message,
-                                      struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_changed_bumpers_put(const struct rflex_changed_bumpers *message,
+                                            struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->timestamp);
     rflex_write(writer, message->position);
     rflex_write_u16be(writer, message->value);
 }
 
-static void rflex_check_io_changed_put(const struct rflex_check_io_changed *message,
-                                       struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_check_io_changed_put(const struct rflex_check_io_changed *message,
+                                             struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->timestamp);
 }
 
-static void rflex_check_io_changed_answer_put(const struct rflex_check_io_changed_answer *message,
-                                              struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_check_io_changed_answer_put(
+    const struct rflex_check_io_changed_answer *message, struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->unknown);
     rflex_write_u32be(writer, message->timestamp);
     rflex_write_u32be(writer, message->package_count);
 }
 
-static void rflex_changed_byte_put(const struct rflex_changed_byte *message,
-                                   struct rflex_writer *writer) {
+RFLEX_INLINE void rflex_changed_byte_put(const struct rflex_changed_byte *message,
+                                         struct rflex_writer *writer) {
     rflex_write_u32be(writer, message->timestamp);
     rflex_write(writer, message->position);
     rflex_write_u16be(writer, message->value);
@@ -3404,7 +3429,7 @@ void rflex_flex_dispatch(void *user, const struct rflex_flex_event *event) {
     }
 }
 
-#if defined(__GNUC__) || defined(__clang__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(RFLEX_NO_WEAK)
 
 __attribute__((weak)) void rflex_on_request_system_status(
     void *user, const struct rflex_request_system_status *message,

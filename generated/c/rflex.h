@@ -20,6 +20,14 @@
 extern "C" {
 #endif
 
+/**
+ * In front of each function that the source defines. Where the one source that calls them includes
+ * `rflex.c`, define this as `static inline`: then the compiler sees all calls.
+ */
+#ifndef RFLEX_API
+#define RFLEX_API
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define RFLEX_SPEC_HASH "bdc0dbf75479fc3117451c2780def69871f73fedb48120ce349c7ab8d25414f4"
 
@@ -156,13 +164,13 @@ struct rflex_request_system_status {
     uint8_t unused;
 };
 
-enum rflex_result rflex_request_system_status_encode(
+RFLEX_API enum rflex_result rflex_request_system_status_encode(
     const struct rflex_request_system_status *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_result rflex_request_system_status_decode(struct rflex_request_system_status *message,
-                                                     const uint8_t *payload, size_t size);
-void rflex_request_system_status_load(struct rflex_request_system_status *message,
-                                      const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_request_system_status_decode(
+    struct rflex_request_system_status *message, const uint8_t *payload, size_t size);
+RFLEX_API void rflex_request_system_status_load(struct rflex_request_system_status *message,
+                                                const uint8_t *payload);
 
 /* --- system_status ---------------------------------------------------------------------------- */
 
@@ -183,11 +191,13 @@ struct rflex_system_status {
     uint8_t brake;
 };
 
-enum rflex_result rflex_system_status_encode(const struct rflex_system_status *message,
-                                             uint8_t *payload, size_t capacity, size_t *size);
-enum rflex_result rflex_system_status_decode(struct rflex_system_status *message,
-                                             const uint8_t *payload, size_t size);
-void rflex_system_status_load(struct rflex_system_status *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_system_status_encode(const struct rflex_system_status *message,
+                                                       uint8_t *payload, size_t capacity,
+                                                       size_t *size);
+RFLEX_API enum rflex_result rflex_system_status_decode(struct rflex_system_status *message,
+                                                       const uint8_t *payload, size_t size);
+RFLEX_API void rflex_system_status_load(struct rflex_system_status *message,
+                                        const uint8_t *payload);
 
 /* --- motor_00 --------------------------------------------------------------------------------- */
 
@@ -204,11 +214,11 @@ struct rflex_motor_00 {
     uint8_t unknown;
 };
 
-enum rflex_result rflex_motor_00_encode(const struct rflex_motor_00 *message, uint8_t *payload,
-                                        size_t capacity, size_t *size);
-enum rflex_result rflex_motor_00_decode(struct rflex_motor_00 *message, const uint8_t *payload,
-                                        size_t size);
-void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_motor_00_encode(const struct rflex_motor_00 *message,
+                                                  uint8_t *payload, size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_motor_00_decode(struct rflex_motor_00 *message,
+                                                  const uint8_t *payload, size_t size);
+RFLEX_API void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload);
 
 /* --- motor_command ---------------------------------------------------------------------------- */
 
@@ -233,11 +243,13 @@ struct rflex_motor_command {
     uint8_t direction;
 };
 
-enum rflex_result rflex_motor_command_encode(const struct rflex_motor_command *message,
-                                             uint8_t *payload, size_t capacity, size_t *size);
-enum rflex_result rflex_motor_command_decode(struct rflex_motor_command *message,
-                                             const uint8_t *payload, size_t size);
-void rflex_motor_command_load(struct rflex_motor_command *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_motor_command_encode(const struct rflex_motor_command *message,
+                                                       uint8_t *payload, size_t capacity,
+                                                       size_t *size);
+RFLEX_API enum rflex_result rflex_motor_command_decode(struct rflex_motor_command *message,
+                                                       const uint8_t *payload, size_t size);
+RFLEX_API void rflex_motor_command_load(struct rflex_motor_command *message,
+                                        const uint8_t *payload);
 
 /* --- confirm_motor_command -------------------------------------------------------------------- */
 
@@ -258,13 +270,13 @@ struct rflex_confirm_motor_command {
     uint8_t axis;
 };
 
-enum rflex_result rflex_confirm_motor_command_encode(
+RFLEX_API enum rflex_result rflex_confirm_motor_command_encode(
     const struct rflex_confirm_motor_command *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_result rflex_confirm_motor_command_decode(struct rflex_confirm_motor_command *message,
-                                                     const uint8_t *payload, size_t size);
-void rflex_confirm_motor_command_load(struct rflex_confirm_motor_command *message,
-                                      const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_confirm_motor_command_decode(
+    struct rflex_confirm_motor_command *message, const uint8_t *payload, size_t size);
+RFLEX_API void rflex_confirm_motor_command_load(struct rflex_confirm_motor_command *message,
+                                                const uint8_t *payload);
 
 /* --- motor_0a --------------------------------------------------------------------------------- */
 
@@ -283,11 +295,11 @@ struct rflex_motor_0a {
     uint8_t unused;
 };
 
-enum rflex_result rflex_motor_0a_encode(const struct rflex_motor_0a *message, uint8_t *payload,
-                                        size_t capacity, size_t *size);
-enum rflex_result rflex_motor_0a_decode(struct rflex_motor_0a *message, const uint8_t *payload,
-                                        size_t size);
-void rflex_motor_0a_load(struct rflex_motor_0a *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_motor_0a_encode(const struct rflex_motor_0a *message,
+                                                  uint8_t *payload, size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_motor_0a_decode(struct rflex_motor_0a *message,
+                                                  const uint8_t *payload, size_t size);
+RFLEX_API void rflex_motor_0a_load(struct rflex_motor_0a *message, const uint8_t *payload);
 
 /* --- motor_0c --------------------------------------------------------------------------------- */
 
@@ -307,11 +319,11 @@ struct rflex_motor_0c {
     uint8_t unused;
 };
 
-enum rflex_result rflex_motor_0c_encode(const struct rflex_motor_0c *message, uint8_t *payload,
-                                        size_t capacity, size_t *size);
-enum rflex_result rflex_motor_0c_decode(struct rflex_motor_0c *message, const uint8_t *payload,
-                                        size_t size);
-void rflex_motor_0c_load(struct rflex_motor_0c *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_motor_0c_encode(const struct rflex_motor_0c *message,
+                                                  uint8_t *payload, size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_motor_0c_decode(struct rflex_motor_0c *message,
+                                                  const uint8_t *payload, size_t size);
+RFLEX_API void rflex_motor_0c_load(struct rflex_motor_0c *message, const uint8_t *payload);
 
 /* --- motor_0c_answer -------------------------------------------------------------------------- */
 
@@ -330,11 +342,12 @@ struct rflex_motor_0c_answer {
     uint32_t timestamp;
 };
 
-enum rflex_result rflex_motor_0c_answer_encode(const struct rflex_motor_0c_answer *message,
-                                               uint8_t *payload, size_t capacity, size_t *size);
-enum rflex_result rflex_motor_0c_answer_decode(struct rflex_motor_0c_answer *message,
-                                               const uint8_t *payload, size_t size);
-void rflex_motor_0c_answer_load(struct rflex_motor_0c_answer *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_motor_0c_answer_encode(
+    const struct rflex_motor_0c_answer *message, uint8_t *payload, size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_motor_0c_answer_decode(struct rflex_motor_0c_answer *message,
+                                                         const uint8_t *payload, size_t size);
+RFLEX_API void rflex_motor_0c_answer_load(struct rflex_motor_0c_answer *message,
+                                          const uint8_t *payload);
 
 /* --- read_motor ------------------------------------------------------------------------------- */
 
@@ -363,11 +376,12 @@ struct rflex_read_motor {
     int32_t torque;
 };
 
-enum rflex_result rflex_read_motor_encode(const struct rflex_read_motor *message, uint8_t *payload,
-                                          size_t capacity, size_t *size);
-enum rflex_result rflex_read_motor_decode(struct rflex_read_motor *message, const uint8_t *payload,
-                                          size_t size);
-void rflex_read_motor_load(struct rflex_read_motor *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_read_motor_encode(const struct rflex_read_motor *message,
+                                                    uint8_t *payload, size_t capacity,
+                                                    size_t *size);
+RFLEX_API enum rflex_result rflex_read_motor_decode(struct rflex_read_motor *message,
+                                                    const uint8_t *payload, size_t size);
+RFLEX_API void rflex_read_motor_load(struct rflex_read_motor *message, const uint8_t *payload);
 
 /* --- start_stop_motor_packets ----------------------------------------------------------------- */
 
@@ -386,13 +400,13 @@ struct rflex_start_stop_motor_packets {
     uint32_t start_stop;
 };
 
-enum rflex_result rflex_start_stop_motor_packets_encode(
+RFLEX_API enum rflex_result rflex_start_stop_motor_packets_encode(
     const struct rflex_start_stop_motor_packets *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_result rflex_start_stop_motor_packets_decode(
+RFLEX_API enum rflex_result rflex_start_stop_motor_packets_decode(
     struct rflex_start_stop_motor_packets *message, const uint8_t *payload, size_t size);
-void rflex_start_stop_motor_packets_load(struct rflex_start_stop_motor_packets *message,
-                                         const uint8_t *payload);
+RFLEX_API void rflex_start_stop_motor_packets_load(struct rflex_start_stop_motor_packets *message,
+                                                   const uint8_t *payload);
 
 /* --- confirm_start_stop_motor_packets --------------------------------------------------------- */
 
@@ -411,12 +425,12 @@ struct rflex_confirm_start_stop_motor_packets {
     uint32_t timestamp;
 };
 
-enum rflex_result rflex_confirm_start_stop_motor_packets_encode(
+RFLEX_API enum rflex_result rflex_confirm_start_stop_motor_packets_encode(
     const struct rflex_confirm_start_stop_motor_packets *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_result rflex_confirm_start_stop_motor_packets_decode(
+RFLEX_API enum rflex_result rflex_confirm_start_stop_motor_packets_decode(
     struct rflex_confirm_start_stop_motor_packets *message, const uint8_t *payload, size_t size);
-void rflex_confirm_start_stop_motor_packets_load(
+RFLEX_API void rflex_confirm_start_stop_motor_packets_load(
     struct rflex_confirm_start_stop_motor_packets *message, const uint8_t *payload);
 
 /* --- request_joystick_data -------------------------------------------------------------------- */
@@ -434,13 +448,13 @@ struct rflex_request_joystick_data {
     uint8_t unused;
 };
 
-enum rflex_result rflex_request_joystick_data_encode(
+RFLEX_API enum rflex_result rflex_request_joystick_data_encode(
     const struct rflex_request_joystick_data *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_result rflex_request_joystick_data_decode(struct rflex_request_joystick_data *message,
-                                                     const uint8_t *payload, size_t size);
-void rflex_request_joystick_data_load(struct rflex_request_joystick_data *message,
-                                      const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_request_joystick_data_decode(
+    struct rflex_request_joystick_data *message, const uint8_t *payload, size_t size);
+RFLEX_API void rflex_request_joystick_data_load(struct rflex_request_joystick_data *message,
+                                                const uint8_t *payload);
 
 /* --- joystick_data ---------------------------------------------------------------------------- */
 
@@ -463,11 +477,13 @@ struct rflex_joystick_data {
     uint8_t buttons;
 };
 
-enum rflex_result rflex_joystick_data_encode(const struct rflex_joystick_data *message,
-                                             uint8_t *payload, size_t capacity, size_t *size);
-enum rflex_result rflex_joystick_data_decode(struct rflex_joystick_data *message,
-                                             const uint8_t *payload, size_t size);
-void rflex_joystick_data_load(struct rflex_joystick_data *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_joystick_data_encode(const struct rflex_joystick_data *message,
+                                                       uint8_t *payload, size_t capacity,
+                                                       size_t *size);
+RFLEX_API enum rflex_result rflex_joystick_data_decode(struct rflex_joystick_data *message,
+                                                       const uint8_t *payload, size_t size);
+RFLEX_API void rflex_joystick_data_load(struct rflex_joystick_data *message,
+                                        const uint8_t *payload);
 
 /* --- start_stop_sonar_packets ----------------------------------------------------------------- */
 
@@ -490,13 +506,13 @@ struct rflex_start_stop_sonar_packets {
     uint32_t start_stop;
 };
 
-enum rflex_result rflex_start_stop_sonar_packets_encode(
+RFLEX_API enum rflex_result rflex_start_stop_sonar_packets_encode(
     const struct rflex_start_stop_sonar_packets *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_result rflex_start_stop_sonar_packets_decode(
+RFLEX_API enum rflex_result rflex_start_stop_sonar_packets_decode(
     struct rflex_start_stop_sonar_packets *message, const uint8_t *payload, size_t size);
-void rflex_start_stop_sonar_packets_load(struct rflex_start_stop_sonar_packets *message,
-                                         const uint8_t *payload);
+RFLEX_API void rflex_start_stop_sonar_packets_load(struct rflex_start_stop_sonar_packets *message,
+                                                   const uint8_t *payload);
 
 /* --- confirm_start_stop_sonar_packets --------------------------------------------------------- */
 
@@ -515,12 +531,12 @@ struct rflex_confirm_start_stop_sonar_packets {
     uint32_t timestamp;
 };
 
-enum rflex_result rflex_confirm_start_stop_sonar_packets_encode(
+RFLEX_API enum rflex_result rflex_confirm_start_stop_sonar_packets_encode(
     const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_result rflex_confirm_start_stop_sonar_packets_decode(
+RFLEX_API enum rflex_result rflex_confirm_start_stop_sonar_packets_decode(
     struct rflex_confirm_start_stop_sonar_packets *message, const uint8_t *payload, size_t size);
-void rflex_confirm_start_stop_sonar_packets_load(
+RFLEX_API void rflex_confirm_start_stop_sonar_packets_load(
     struct rflex_confirm_start_stop_sonar_packets *message, const uint8_t *payload);
 
 /* --- sonar_data ------------------------------------------------------------------------------- */
@@ -552,11 +568,13 @@ struct rflex_sonar_data {
     struct rflex_sonar_data_readings readings[82];
 };
 
-enum rflex_result rflex_sonar_data_encode(const struct rflex_sonar_data *message, uint8_t *payload,
-                                          size_t capacity, size_t *size);
-enum rflex_result rflex_sonar_data_decode(struct rflex_sonar_data *message, const uint8_t *payload,
-                                          size_t size);
-void rflex_sonar_data_load(struct rflex_sonar_data *message, const uint8_t *payload, size_t size);
+RFLEX_API enum rflex_result rflex_sonar_data_encode(const struct rflex_sonar_data *message,
+                                                    uint8_t *payload, size_t capacity,
+                                                    size_t *size);
+RFLEX_API enum rflex_result rflex_sonar_data_decode(struct rflex_sonar_data *message,
+                                                    const uint8_t *payload, size_t size);
+RFLEX_API void rflex_sonar_data_load(struct rflex_sonar_data *message, const uint8_t *payload,
+                                     size_t size);
 
 /** Reads readings[index] from a payload that was received, unchecked. */
 static inline void rflex_sonar_data_readings_at(const uint8_t *payload, size_t index,
@@ -587,13 +605,13 @@ struct rflex_initialize_digital_io {
     uint32_t unknown;
 };
 
-enum rflex_result rflex_initialize_digital_io_encode(
+RFLEX_API enum rflex_result rflex_initialize_digital_io_encode(
     const struct rflex_initialize_digital_io *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_result rflex_initialize_digital_io_decode(struct rflex_initialize_digital_io *message,
-                                                     const uint8_t *payload, size_t size);
-void rflex_initialize_digital_io_load(struct rflex_initialize_digital_io *message,
-                                      const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_initialize_digital_io_decode(
+    struct rflex_initialize_digital_io *message, const uint8_t *payload, size_t size);
+RFLEX_API void rflex_initialize_digital_io_load(struct rflex_initialize_digital_io *message,
+                                                const uint8_t *payload);
 
 /* --- confirm_initialize_digital_io ------------------------------------------------------------ */
 
@@ -616,13 +634,13 @@ struct rflex_confirm_initialize_digital_io {
     uint32_t timestamp;
 };
 
-enum rflex_result rflex_confirm_initialize_digital_io_encode(
+RFLEX_API enum rflex_result rflex_confirm_initialize_digital_io_encode(
     const struct rflex_confirm_initialize_digital_io *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_result rflex_confirm_initialize_digital_io_decode(
+RFLEX_API enum rflex_result rflex_confirm_initialize_digital_io_decode(
     struct rflex_confirm_initialize_digital_io *message, const uint8_t *payload, size_t size);
-void rflex_confirm_initialize_digital_io_load(struct rflex_confirm_initialize_digital_io *message,
-                                              const uint8_t *payload);
+RFLEX_API void rflex_confirm_initialize_digital_io_load(
+    struct rflex_confirm_initialize_digital_io *message, const uint8_t *payload);
 
 /* --- changed_bumpers -------------------------------------------------------------------------- */
 
@@ -650,11 +668,12 @@ struct rflex_changed_bumpers {
     uint16_t value;
 };
 
-enum rflex_result rflex_changed_bumpers_encode(const struct rflex_changed_bumpers *message,
-                                               uint8_t *payload, size_t capacity, size_t *size);
-enum rflex_result rflex_changed_bumpers_decode(struct rflex_changed_bumpers *message,
-                                               const uint8_t *payload, size_t size);
-void rflex_changed_bumpers_load(struct rflex_changed_bumpers *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_changed_bumpers_encode(
+    const struct rflex_changed_bumpers *message, uint8_t *payload, size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_changed_bumpers_decode(struct rflex_changed_bumpers *message,
+                                                         const uint8_t *payload, size_t size);
+RFLEX_API void rflex_changed_bumpers_load(struct rflex_changed_bumpers *message,
+                                          const uint8_t *payload);
 
 /* --- check_io_changed ------------------------------------------------------------------------- */
 
@@ -671,11 +690,12 @@ struct rflex_check_io_changed {
     uint32_t timestamp;
 };
 
-enum rflex_result rflex_check_io_changed_encode(const struct rflex_check_io_changed *message,
-                                                uint8_t *payload, size_t capacity, size_t *size);
-enum rflex_result rflex_check_io_changed_decode(struct rflex_check_io_changed *message,
-                                                const uint8_t *payload, size_t size);
-void rflex_check_io_changed_load(struct rflex_check_io_changed *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_check_io_changed_encode(
+    const struct rflex_check_io_changed *message, uint8_t *payload, size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_check_io_changed_decode(struct rflex_check_io_changed *message,
+                                                          const uint8_t *payload, size_t size);
+RFLEX_API void rflex_check_io_changed_load(struct rflex_check_io_changed *message,
+                                           const uint8_t *payload);
 
 /* --- check_io_changed_answer ------------------------------------------------------------------ */
 
@@ -696,13 +716,13 @@ struct rflex_check_io_changed_answer {
     uint32_t package_count;
 };
 
-enum rflex_result rflex_check_io_changed_answer_encode(
+RFLEX_API enum rflex_result rflex_check_io_changed_answer_encode(
     const struct rflex_check_io_changed_answer *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_result rflex_check_io_changed_answer_decode(
+RFLEX_API enum rflex_result rflex_check_io_changed_answer_decode(
     struct rflex_check_io_changed_answer *message, const uint8_t *payload, size_t size);
-void rflex_check_io_changed_answer_load(struct rflex_check_io_changed_answer *message,
-                                        const uint8_t *payload);
+RFLEX_API void rflex_check_io_changed_answer_load(struct rflex_check_io_changed_answer *message,
+                                                  const uint8_t *payload);
 
 /* --- changed_byte ----------------------------------------------------------------------------- */
 
@@ -725,11 +745,12 @@ struct rflex_changed_byte {
     uint16_t value;
 };
 
-enum rflex_result rflex_changed_byte_encode(const struct rflex_changed_byte *message,
-                                            uint8_t *payload, size_t capacity, size_t *size);
-enum rflex_result rflex_changed_byte_decode(struct rflex_changed_byte *message,
-                                            const uint8_t *payload, size_t size);
-void rflex_changed_byte_load(struct rflex_changed_byte *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_changed_byte_encode(const struct rflex_changed_byte *message,
+                                                      uint8_t *payload, size_t capacity,
+                                                      size_t *size);
+RFLEX_API enum rflex_result rflex_changed_byte_decode(struct rflex_changed_byte *message,
+                                                      const uint8_t *payload, size_t size);
+RFLEX_API void rflex_changed_byte_load(struct rflex_changed_byte *message, const uint8_t *payload);
 
 /* --- frames ----------------------------------------------------------------------------------- */
 
@@ -747,199 +768,205 @@ typedef void (*rflex_put)(void *user, uint8_t byte);
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_MAX 11U
 #define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23U
-enum rflex_result rflex_request_system_status_frame(
+RFLEX_API enum rflex_result rflex_request_system_status_frame(
     const struct rflex_request_system_status *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_result rflex_request_system_status_send(
+RFLEX_API enum rflex_result rflex_request_system_status_send(
     const struct rflex_request_system_status *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_SYSTEM_STATUS_FRAME_MAX 40U
 #define RFLEX_SYSTEM_STATUS_FRAME_ROOM 50U
-enum rflex_result rflex_system_status_frame(const struct rflex_system_status *message,
-                                            uint8_t number, uint8_t *frame, size_t capacity,
-                                            size_t *size);
-enum rflex_result rflex_system_status_send(const struct rflex_system_status *message,
-                                           uint8_t number, rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_system_status_frame(const struct rflex_system_status *message,
+                                                      uint8_t number, uint8_t *frame,
+                                                      size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_system_status_send(const struct rflex_system_status *message,
+                                                     uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_00_FRAME_MAX 16U
 #define RFLEX_MOTOR_00_FRAME_ROOM 26U
-enum rflex_result rflex_motor_00_frame(const struct rflex_motor_00 *message, uint8_t number,
-                                       uint8_t *frame, size_t capacity, size_t *size);
-enum rflex_result rflex_motor_00_send(const struct rflex_motor_00 *message, uint8_t number,
-                                      rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_motor_00_frame(const struct rflex_motor_00 *message,
+                                                 uint8_t number, uint8_t *frame, size_t capacity,
+                                                 size_t *size);
+RFLEX_API enum rflex_result rflex_motor_00_send(const struct rflex_motor_00 *message,
+                                                uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_COMMAND_FRAME_MAX 53U
 #define RFLEX_MOTOR_COMMAND_FRAME_ROOM 65U
-enum rflex_result rflex_motor_command_frame(const struct rflex_motor_command *message,
-                                            uint8_t number, uint8_t *frame, size_t capacity,
-                                            size_t *size);
-enum rflex_result rflex_motor_command_send(const struct rflex_motor_command *message,
-                                           uint8_t number, rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_motor_command_frame(const struct rflex_motor_command *message,
+                                                      uint8_t number, uint8_t *frame,
+                                                      size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_motor_command_send(const struct rflex_motor_command *message,
+                                                     uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CONFIRM_MOTOR_COMMAND_FRAME_MAX 40U
 #define RFLEX_CONFIRM_MOTOR_COMMAND_FRAME_ROOM 50U
-enum rflex_result rflex_confirm_motor_command_frame(
+RFLEX_API enum rflex_result rflex_confirm_motor_command_frame(
     const struct rflex_confirm_motor_command *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_result rflex_confirm_motor_command_send(
+RFLEX_API enum rflex_result rflex_confirm_motor_command_send(
     const struct rflex_confirm_motor_command *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_0A_FRAME_MAX 11U
 #define RFLEX_MOTOR_0A_FRAME_ROOM 23U
-enum rflex_result rflex_motor_0a_frame(const struct rflex_motor_0a *message, uint8_t number,
-                                       uint8_t *frame, size_t capacity, size_t *size);
-enum rflex_result rflex_motor_0a_send(const struct rflex_motor_0a *message, uint8_t number,
-                                      rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_motor_0a_frame(const struct rflex_motor_0a *message,
+                                                 uint8_t number, uint8_t *frame, size_t capacity,
+                                                 size_t *size);
+RFLEX_API enum rflex_result rflex_motor_0a_send(const struct rflex_motor_0a *message,
+                                                uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_0C_FRAME_MAX 11U
 #define RFLEX_MOTOR_0C_FRAME_ROOM 23U
-enum rflex_result rflex_motor_0c_frame(const struct rflex_motor_0c *message, uint8_t number,
-                                       uint8_t *frame, size_t capacity, size_t *size);
-enum rflex_result rflex_motor_0c_send(const struct rflex_motor_0c *message, uint8_t number,
-                                      rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_motor_0c_frame(const struct rflex_motor_0c *message,
+                                                 uint8_t number, uint8_t *frame, size_t capacity,
+                                                 size_t *size);
+RFLEX_API enum rflex_result rflex_motor_0c_send(const struct rflex_motor_0c *message,
+                                                uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_0C_ANSWER_FRAME_MAX 35U
 #define RFLEX_MOTOR_0C_ANSWER_FRAME_ROOM 47U
-enum rflex_result rflex_motor_0c_answer_frame(const struct rflex_motor_0c_answer *message,
-                                              uint8_t number, uint8_t *frame, size_t capacity,
-                                              size_t *size);
-enum rflex_result rflex_motor_0c_answer_send(const struct rflex_motor_0c_answer *message,
-                                             uint8_t number, rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_motor_0c_answer_frame(const struct rflex_motor_0c_answer *message,
+                                                        uint8_t number, uint8_t *frame,
+                                                        size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_motor_0c_answer_send(const struct rflex_motor_0c_answer *message,
+                                                       uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_READ_MOTOR_FRAME_MAX 88U
 #define RFLEX_READ_MOTOR_FRAME_ROOM 98U
-enum rflex_result rflex_read_motor_frame(const struct rflex_read_motor *message, uint8_t number,
-                                         uint8_t *frame, size_t capacity, size_t *size);
-enum rflex_result rflex_read_motor_send(const struct rflex_read_motor *message, uint8_t number,
-                                        rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_read_motor_frame(const struct rflex_read_motor *message,
+                                                   uint8_t number, uint8_t *frame, size_t capacity,
+                                                   size_t *size);
+RFLEX_API enum rflex_result rflex_read_motor_send(const struct rflex_read_motor *message,
+                                                  uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
 #define RFLEX_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
-enum rflex_result rflex_start_stop_motor_packets_frame(
+RFLEX_API enum rflex_result rflex_start_stop_motor_packets_frame(
     const struct rflex_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_result rflex_start_stop_motor_packets_send(
+RFLEX_API enum rflex_result rflex_start_stop_motor_packets_send(
     const struct rflex_start_stop_motor_packets *message, uint8_t number, rflex_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
 #define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
-enum rflex_result rflex_confirm_start_stop_motor_packets_frame(
+RFLEX_API enum rflex_result rflex_confirm_start_stop_motor_packets_frame(
     const struct rflex_confirm_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_result rflex_confirm_start_stop_motor_packets_send(
+RFLEX_API enum rflex_result rflex_confirm_start_stop_motor_packets_send(
     const struct rflex_confirm_start_stop_motor_packets *message, uint8_t number, rflex_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_MAX 11U
 #define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_ROOM 23U
-enum rflex_result rflex_request_joystick_data_frame(
+RFLEX_API enum rflex_result rflex_request_joystick_data_frame(
     const struct rflex_request_joystick_data *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_result rflex_request_joystick_data_send(
+RFLEX_API enum rflex_result rflex_request_joystick_data_send(
     const struct rflex_request_joystick_data *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_JOYSTICK_DATA_FRAME_MAX 52U
 #define RFLEX_JOYSTICK_DATA_FRAME_ROOM 62U
-enum rflex_result rflex_joystick_data_frame(const struct rflex_joystick_data *message,
-                                            uint8_t number, uint8_t *frame, size_t capacity,
-                                            size_t *size);
-enum rflex_result rflex_joystick_data_send(const struct rflex_joystick_data *message,
-                                           uint8_t number, rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_joystick_data_frame(const struct rflex_joystick_data *message,
+                                                      uint8_t number, uint8_t *frame,
+                                                      size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_joystick_data_send(const struct rflex_joystick_data *message,
+                                                     uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_START_STOP_SONAR_PACKETS_FRAME_MAX 52U
 #define RFLEX_START_STOP_SONAR_PACKETS_FRAME_ROOM 62U
-enum rflex_result rflex_start_stop_sonar_packets_frame(
+RFLEX_API enum rflex_result rflex_start_stop_sonar_packets_frame(
     const struct rflex_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_result rflex_start_stop_sonar_packets_send(
+RFLEX_API enum rflex_result rflex_start_stop_sonar_packets_send(
     const struct rflex_start_stop_sonar_packets *message, uint8_t number, rflex_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_MAX 35U
 #define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_ROOM 47U
-enum rflex_result rflex_confirm_start_stop_sonar_packets_frame(
+RFLEX_API enum rflex_result rflex_confirm_start_stop_sonar_packets_frame(
     const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_result rflex_confirm_start_stop_sonar_packets_send(
+RFLEX_API enum rflex_result rflex_confirm_start_stop_sonar_packets_send(
     const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t number, rflex_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_SONAR_DATA_FRAME_MAX 773U
 #define RFLEX_SONAR_DATA_FRAME_ROOM 785U
-enum rflex_result rflex_sonar_data_frame(const struct rflex_sonar_data *message, uint8_t number,
-                                         uint8_t *frame, size_t capacity, size_t *size);
-enum rflex_result rflex_sonar_data_send(const struct rflex_sonar_data *message, uint8_t number,
-                                        rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_sonar_data_frame(const struct rflex_sonar_data *message,
+                                                   uint8_t number, uint8_t *frame, size_t capacity,
+                                                   size_t *size);
+RFLEX_API enum rflex_result rflex_sonar_data_send(const struct rflex_sonar_data *message,
+                                                  uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_INITIALIZE_DIGITAL_IO_FRAME_MAX 23U
 #define RFLEX_INITIALIZE_DIGITAL_IO_FRAME_ROOM 35U
-enum rflex_result rflex_initialize_digital_io_frame(
+RFLEX_API enum rflex_result rflex_initialize_digital_io_frame(
     const struct rflex_initialize_digital_io *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_result rflex_initialize_digital_io_send(
+RFLEX_API enum rflex_result rflex_initialize_digital_io_send(
     const struct rflex_initialize_digital_io *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_MAX 35U
 #define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_ROOM 47U
-enum rflex_result rflex_confirm_initialize_digital_io_frame(
+RFLEX_API enum rflex_result rflex_confirm_initialize_digital_io_frame(
     const struct rflex_confirm_initialize_digital_io *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_result rflex_confirm_initialize_digital_io_send(
+RFLEX_API enum rflex_result rflex_confirm_initialize_digital_io_send(
     const struct rflex_confirm_initialize_digital_io *message, uint8_t number, rflex_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CHANGED_BUMPERS_FRAME_MAX 34U
 #define RFLEX_CHANGED_BUMPERS_FRAME_ROOM 44U
-enum rflex_result rflex_changed_bumpers_frame(const struct rflex_changed_bumpers *message,
-                                              uint8_t number, uint8_t *frame, size_t capacity,
-                                              size_t *size);
-enum rflex_result rflex_changed_bumpers_send(const struct rflex_changed_bumpers *message,
-                                             uint8_t number, rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_changed_bumpers_frame(const struct rflex_changed_bumpers *message,
+                                                        uint8_t number, uint8_t *frame,
+                                                        size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_changed_bumpers_send(const struct rflex_changed_bumpers *message,
+                                                       uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CHECK_IO_CHANGED_FRAME_MAX 23U
 #define RFLEX_CHECK_IO_CHANGED_FRAME_ROOM 35U
-enum rflex_result rflex_check_io_changed_frame(const struct rflex_check_io_changed *message,
-                                               uint8_t number, uint8_t *frame, size_t capacity,
-                                               size_t *size);
-enum rflex_result rflex_check_io_changed_send(const struct rflex_check_io_changed *message,
-                                              uint8_t number, rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_check_io_changed_frame(
+    const struct rflex_check_io_changed *message, uint8_t number, uint8_t *frame, size_t capacity,
+    size_t *size);
+RFLEX_API enum rflex_result rflex_check_io_changed_send(
+    const struct rflex_check_io_changed *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CHECK_IO_CHANGED_ANSWER_FRAME_MAX 47U
 #define RFLEX_CHECK_IO_CHANGED_ANSWER_FRAME_ROOM 59U
-enum rflex_result rflex_check_io_changed_answer_frame(
+RFLEX_API enum rflex_result rflex_check_io_changed_answer_frame(
     const struct rflex_check_io_changed_answer *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_result rflex_check_io_changed_answer_send(
+RFLEX_API enum rflex_result rflex_check_io_changed_answer_send(
     const struct rflex_check_io_changed_answer *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CHANGED_BYTE_FRAME_MAX 34U
 #define RFLEX_CHANGED_BYTE_FRAME_ROOM 44U
-enum rflex_result rflex_changed_byte_frame(const struct rflex_changed_byte *message, uint8_t number,
-                                           uint8_t *frame, size_t capacity, size_t *size);
-enum rflex_result rflex_changed_byte_send(const struct rflex_changed_byte *message, uint8_t number,
-                                          rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_changed_byte_frame(const struct rflex_changed_byte *message,
+                                                     uint8_t number, uint8_t *frame,
+                                                     size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_changed_byte_send(const struct rflex_changed_byte *message,
+                                                    uint8_t number, rflex_put put, void *user);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
 
@@ -1036,18 +1063,18 @@ struct rflex_linux_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void rflex_linux_decoder_init(struct rflex_linux_decoder *decoder, rflex_linux_handler handler,
-                              void *user);
+RFLEX_API void rflex_linux_decoder_init(struct rflex_linux_decoder *decoder,
+                                        rflex_linux_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void rflex_linux_decoder_push(struct rflex_linux_decoder *decoder, uint8_t byte);
+RFLEX_API void rflex_linux_decoder_push(struct rflex_linux_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void rflex_linux_decoder_feed(struct rflex_linux_decoder *decoder, const uint8_t *data,
-                              size_t size);
+RFLEX_API void rflex_linux_decoder_feed(struct rflex_linux_decoder *decoder, const uint8_t *data,
+                                        size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void rflex_linux_decoder_flush(struct rflex_linux_decoder *decoder);
+RFLEX_API void rflex_linux_decoder_flush(struct rflex_linux_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define rflex_linux_decoder_idle rflex_linux_decoder_flush
@@ -1125,17 +1152,18 @@ struct rflex_flex_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void rflex_flex_decoder_init(struct rflex_flex_decoder *decoder, rflex_flex_handler handler,
-                             void *user);
+RFLEX_API void rflex_flex_decoder_init(struct rflex_flex_decoder *decoder,
+                                       rflex_flex_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void rflex_flex_decoder_push(struct rflex_flex_decoder *decoder, uint8_t byte);
+RFLEX_API void rflex_flex_decoder_push(struct rflex_flex_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void rflex_flex_decoder_feed(struct rflex_flex_decoder *decoder, const uint8_t *data, size_t size);
+RFLEX_API void rflex_flex_decoder_feed(struct rflex_flex_decoder *decoder, const uint8_t *data,
+                                       size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void rflex_flex_decoder_flush(struct rflex_flex_decoder *decoder);
+RFLEX_API void rflex_flex_decoder_flush(struct rflex_flex_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define rflex_flex_decoder_idle rflex_flex_decoder_flush
@@ -1145,8 +1173,9 @@ void rflex_flex_decoder_flush(struct rflex_flex_decoder *decoder);
 /*
  * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
  * function with it. Define those that you need; the others do nothing. They are weak where the
- * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
- * by defining RFLEX_NO_HANDLERS for the source.
+ * compiler knows weak functions. For another one, and where yours stand in the source that includes
+ * this one's source, define RFLEX_NO_WEAK and all of them, or leave out the dispatching by
+ * defining RFLEX_NO_HANDLERS for the source.
  */
 
 /** request_system_status came from linux. */
@@ -1192,7 +1221,7 @@ void rflex_on_check_io_changed(void *user, const struct rflex_check_io_changed *
                                const struct rflex_linux_parts *parts);
 
 /** Calls the functions above; give it to rflex_linux_decoder_init. */
-void rflex_linux_dispatch(void *user, const struct rflex_linux_event *event);
+RFLEX_API void rflex_linux_dispatch(void *user, const struct rflex_linux_event *event);
 
 /** system_status came from flex. */
 void rflex_on_system_status(void *user, const struct rflex_system_status *message,
@@ -1247,7 +1276,7 @@ void rflex_on_changed_byte(void *user, const struct rflex_changed_byte *message,
                            const struct rflex_flex_parts *parts);
 
 /** Calls the functions above; give it to rflex_flex_decoder_init. */
-void rflex_flex_dispatch(void *user, const struct rflex_flex_event *event);
+RFLEX_API void rflex_flex_dispatch(void *user, const struct rflex_flex_event *event);
 
 #ifdef __cplusplus
 }

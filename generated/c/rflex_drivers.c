@@ -3,6 +3,24 @@
 #include "rflex_drivers.h"
 
 /*
+ * What a function of the header needs is put into it, so that it is short and fast also where no
+ * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
+ * the function that calls it: define RFLEX_DRIVERS_APART as `static` with -flto, or in one source.
+ */
+#if defined(__GNUC__)
+#define RFLEX_DRIVERS_INLINE static inline __attribute__((always_inline))
+#else
+#define RFLEX_DRIVERS_INLINE static inline
+#endif
+#ifndef RFLEX_DRIVERS_APART
+#if defined(__GNUC__)
+#define RFLEX_DRIVERS_APART static __attribute__((noinline))
+#else
+#define RFLEX_DRIVERS_APART static
+#endif
+#endif
+
+/*
  * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
  * done where pointers have more than 32 bits; define RFLEX_DRIVERS_FAST_FEED as 1 or 0 to choose.
  * Define RFLEX_DRIVERS_SSE2 as 1 for sixteen at a time on x86.
@@ -42,14 +60,14 @@ static void rflex_drivers_copy(void *to, const void *from, size_t size) {
     }
 }
 
-static void rflex_drivers_store_u16be(uint8_t *at, uint16_t value) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_store_u16be(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)(value >> 8);
     at[1] = (uint8_t)value;
 }
 
 /* --- request_system_status -------------------------------------------------------------------- */
 
-static void rflex_drivers_request_system_status_store(
+RFLEX_DRIVERS_INLINE void rflex_drivers_request_system_status_store(
     const struct rflex_drivers_request_system_status *message, uint8_t *payload) {
     (void)message;
     (void)payload;
@@ -81,8 +99,8 @@ enum rflex_drivers_result rflex_drivers_request_system_status_decode(
 
 /* --- system_status ---------------------------------------------------------------------------- */
 
-static void rflex_drivers_system_status_store(const struct rflex_drivers_system_status *message,
-                                              uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_system_status_store(
+    const struct rflex_drivers_system_status *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->timestamp);
     rflex_drivers_store_u32be(payload + 4, message->battery_voltage);
     payload[8] = message->brake;
@@ -123,7 +141,7 @@ static size_t rflex_drivers_lcd_dump_measure(const struct rflex_drivers_lcd_dump
     return size;
 }
 
-static enum rflex_drivers_result rflex_drivers_lcd_dump_validate(
+RFLEX_DRIVERS_INLINE enum rflex_drivers_result rflex_drivers_lcd_dump_validate(
     const struct rflex_drivers_lcd_dump *message) {
     if (message->byte_count > 249U) {
         return RFLEX_DRIVERS_ERROR_RANGE;
@@ -131,8 +149,8 @@ static enum rflex_drivers_result rflex_drivers_lcd_dump_validate(
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_lcd_dump_store(const struct rflex_drivers_lcd_dump *message,
-                                         uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_lcd_dump_store(const struct rflex_drivers_lcd_dump *message,
+                                                       uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->timestamp);
     payload[4] = message->row;
     payload[5] = message->byte_count;
@@ -196,8 +214,8 @@ enum rflex_drivers_result rflex_drivers_lcd_dump_decode(struct rflex_drivers_lcd
 
 /* --- axis_get_system -------------------------------------------------------------------------- */
 
-static void rflex_drivers_axis_get_system_store(const struct rflex_drivers_axis_get_system *message,
-                                                uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_axis_get_system_store(
+    const struct rflex_drivers_axis_get_system *message, uint8_t *payload) {
     payload[0] = message->axis;
 }
 
@@ -228,8 +246,8 @@ enum rflex_drivers_result rflex_drivers_axis_get_system_decode(
 
 /* --- motor_command ---------------------------------------------------------------------------- */
 
-static void rflex_drivers_motor_command_store(const struct rflex_drivers_motor_command *message,
-                                              uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_motor_command_store(
+    const struct rflex_drivers_motor_command *message, uint8_t *payload) {
     payload[0] = message->axis;
     rflex_drivers_store_u32be(payload + 1, message->velocity);
     rflex_drivers_store_u32be(payload + 5, message->acceleration);
@@ -268,7 +286,7 @@ enum rflex_drivers_result rflex_drivers_motor_command_decode(
 
 /* --- confirm_motor_command -------------------------------------------------------------------- */
 
-static void rflex_drivers_confirm_motor_command_store(
+RFLEX_DRIVERS_INLINE void rflex_drivers_confirm_motor_command_store(
     const struct rflex_drivers_confirm_motor_command *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
@@ -304,8 +322,8 @@ enum rflex_drivers_result rflex_drivers_confirm_motor_command_decode(
 
 /* --- set_defaults ----------------------------------------------------------------------------- */
 
-static void rflex_drivers_set_defaults_store(const struct rflex_drivers_set_defaults *message,
-                                             uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_set_defaults_store(
+    const struct rflex_drivers_set_defaults *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -336,8 +354,8 @@ enum rflex_drivers_result rflex_drivers_set_defaults_decode(
 
 /* --- brake_set -------------------------------------------------------------------------------- */
 
-static void rflex_drivers_brake_set_store(const struct rflex_drivers_brake_set *message,
-                                          uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_brake_set_store(
+    const struct rflex_drivers_brake_set *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -367,8 +385,8 @@ enum rflex_drivers_result rflex_drivers_brake_set_decode(struct rflex_drivers_br
 
 /* --- brake_release ---------------------------------------------------------------------------- */
 
-static void rflex_drivers_brake_release_store(const struct rflex_drivers_brake_release *message,
-                                              uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_brake_release_store(
+    const struct rflex_drivers_brake_release *message, uint8_t *payload) {
     (void)message;
     (void)payload;
 }
@@ -399,7 +417,7 @@ enum rflex_drivers_result rflex_drivers_brake_release_decode(
 
 /* --- brake_release_answer --------------------------------------------------------------------- */
 
-static void rflex_drivers_brake_release_answer_store(
+RFLEX_DRIVERS_INLINE void rflex_drivers_brake_release_answer_store(
     const struct rflex_drivers_brake_release_answer *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
@@ -433,8 +451,8 @@ enum rflex_drivers_result rflex_drivers_brake_release_answer_decode(
 
 /* --- read_motor ------------------------------------------------------------------------------- */
 
-static void rflex_drivers_read_motor_store(const struct rflex_drivers_read_motor *message,
-                                           uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_read_motor_store(
+    const struct rflex_drivers_read_motor *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
     payload[8] = message->axis;
@@ -477,7 +495,7 @@ enum rflex_drivers_result rflex_drivers_read_motor_decode(struct rflex_drivers_r
 
 /* --- start_stop_motor_packets ----------------------------------------------------------------- */
 
-static void rflex_drivers_start_stop_motor_packets_store(
+RFLEX_DRIVERS_INLINE void rflex_drivers_start_stop_motor_packets_store(
     const struct rflex_drivers_start_stop_motor_packets *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->period);
     rflex_drivers_store_u32be(payload + 4, message->mask);
@@ -511,7 +529,7 @@ enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_decode(
 
 /* --- confirm_start_stop_motor_packets --------------------------------------------------------- */
 
-static void rflex_drivers_confirm_start_stop_motor_packets_store(
+RFLEX_DRIVERS_INLINE void rflex_drivers_confirm_start_stop_motor_packets_store(
     const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
@@ -546,7 +564,7 @@ enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_decode(
 
 /* --- request_joystick_data -------------------------------------------------------------------- */
 
-static void rflex_drivers_request_joystick_data_store(
+RFLEX_DRIVERS_INLINE void rflex_drivers_request_joystick_data_store(
     const struct rflex_drivers_request_joystick_data *message, uint8_t *payload) {
     (void)message;
     (void)payload;
@@ -578,8 +596,8 @@ enum rflex_drivers_result rflex_drivers_request_joystick_data_decode(
 
 /* --- joystick_data ---------------------------------------------------------------------------- */
 
-static void rflex_drivers_joystick_data_store(const struct rflex_drivers_joystick_data *message,
-                                              uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_joystick_data_store(
+    const struct rflex_drivers_joystick_data *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->timestamp);
     rflex_drivers_store_u32be(payload + 4, (uint32_t)message->horizontal);
     rflex_drivers_store_u32be(payload + 8, (uint32_t)message->vertical);
@@ -616,7 +634,7 @@ enum rflex_drivers_result rflex_drivers_joystick_data_decode(
 
 /* --- start_stop_sonar_packets ----------------------------------------------------------------- */
 
-static void rflex_drivers_start_stop_sonar_packets_store(
+RFLEX_DRIVERS_INLINE void rflex_drivers_start_stop_sonar_packets_store(
     const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->echo_delay);
     rflex_drivers_store_u32be(payload + 4, message->ping_delay);
@@ -654,7 +672,7 @@ enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_decode(
 
 /* --- confirm_start_stop_sonar_packets --------------------------------------------------------- */
 
-static void rflex_drivers_confirm_start_stop_sonar_packets_store(
+RFLEX_DRIVERS_INLINE void rflex_drivers_confirm_start_stop_sonar_packets_store(
     const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
@@ -695,7 +713,7 @@ static size_t rflex_drivers_sonar_data_measure(const struct rflex_drivers_sonar_
     return size;
 }
 
-static enum rflex_drivers_result rflex_drivers_sonar_data_validate(
+RFLEX_DRIVERS_INLINE enum rflex_drivers_result rflex_drivers_sonar_data_validate(
     const struct rflex_drivers_sonar_data *message) {
     if (message->readings_count > 82U) {
         return RFLEX_DRIVERS_ERROR_RANGE;
@@ -703,8 +721,8 @@ static enum rflex_drivers_result rflex_drivers_sonar_data_validate(
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_sonar_data_store(const struct rflex_drivers_sonar_data *message,
-                                           uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_sonar_data_store(
+    const struct rflex_drivers_sonar_data *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
     for (size_t i = 0; i < message->readings_count; i++) {
@@ -776,7 +794,7 @@ enum rflex_drivers_result rflex_drivers_sonar_data_decode(struct rflex_drivers_s
 
 /* --- initialize_digital_io -------------------------------------------------------------------- */
 
-static void rflex_drivers_initialize_digital_io_store(
+RFLEX_DRIVERS_INLINE void rflex_drivers_initialize_digital_io_store(
     const struct rflex_drivers_initialize_digital_io *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->period);
 }
@@ -808,7 +826,7 @@ enum rflex_drivers_result rflex_drivers_initialize_digital_io_decode(
 
 /* --- confirm_initialize_digital_io ------------------------------------------------------------ */
 
-static void rflex_drivers_confirm_initialize_digital_io_store(
+RFLEX_DRIVERS_INLINE void rflex_drivers_confirm_initialize_digital_io_store(
     const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
@@ -843,8 +861,8 @@ enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_decode(
 
 /* --- changed_bumpers -------------------------------------------------------------------------- */
 
-static void rflex_drivers_changed_bumpers_store(const struct rflex_drivers_changed_bumpers *message,
-                                                uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_changed_bumpers_store(
+    const struct rflex_drivers_changed_bumpers *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->timestamp);
     payload[4] = message->address;
     rflex_drivers_store_u16be(payload + 5, message->data);
@@ -879,7 +897,7 @@ enum rflex_drivers_result rflex_drivers_changed_bumpers_decode(
 
 /* --- check_io_changed ------------------------------------------------------------------------- */
 
-static void rflex_drivers_check_io_changed_store(
+RFLEX_DRIVERS_INLINE void rflex_drivers_check_io_changed_store(
     const struct rflex_drivers_check_io_changed *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->timestamp);
 }
@@ -911,7 +929,7 @@ enum rflex_drivers_result rflex_drivers_check_io_changed_decode(
 
 /* --- check_io_changed_answer ------------------------------------------------------------------ */
 
-static void rflex_drivers_check_io_changed_answer_store(
+RFLEX_DRIVERS_INLINE void rflex_drivers_check_io_changed_answer_store(
     const struct rflex_drivers_check_io_changed_answer *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
@@ -947,8 +965,8 @@ enum rflex_drivers_result rflex_drivers_check_io_changed_answer_decode(
 
 /* --- changed_byte ----------------------------------------------------------------------------- */
 
-static void rflex_drivers_changed_byte_store(const struct rflex_drivers_changed_byte *message,
-                                             uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_changed_byte_store(
+    const struct rflex_drivers_changed_byte *message, uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->timestamp);
     payload[4] = message->address;
     rflex_drivers_store_u16be(payload + 5, message->data);
@@ -983,8 +1001,8 @@ enum rflex_drivers_result rflex_drivers_changed_byte_decode(
 
 /* --- ir_run ----------------------------------------------------------------------------------- */
 
-static void rflex_drivers_ir_run_store(const struct rflex_drivers_ir_run *message,
-                                       uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_ir_run_store(const struct rflex_drivers_ir_run *message,
+                                                     uint8_t *payload) {
     rflex_drivers_store_u32be(payload, message->unknown_1);
     rflex_drivers_store_u32be(payload + 4, message->unknown_2);
     rflex_drivers_store_u32be(payload + 8, message->unknown_3);
@@ -1030,7 +1048,7 @@ static size_t rflex_drivers_ir_report_measure(const struct rflex_drivers_ir_repo
     return size;
 }
 
-static enum rflex_drivers_result rflex_drivers_ir_report_validate(
+RFLEX_DRIVERS_INLINE enum rflex_drivers_result rflex_drivers_ir_report_validate(
     const struct rflex_drivers_ir_report *message) {
     const size_t size = rflex_drivers_ir_report_measure(message);
     if (size < 1U) {
@@ -1039,8 +1057,8 @@ static enum rflex_drivers_result rflex_drivers_ir_report_validate(
     return RFLEX_DRIVERS_OK;
 }
 
-static void rflex_drivers_ir_report_store(const struct rflex_drivers_ir_report *message,
-                                          uint8_t *payload) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_ir_report_store(
+    const struct rflex_drivers_ir_report *message, uint8_t *payload) {
     rflex_drivers_copy(payload, message->data, message->data_size);
 }
 
@@ -1380,35 +1398,35 @@ static void rflex_drivers_write_u16be(struct rflex_drivers_writer *writer, uint1
     rflex_drivers_write(writer, (uint8_t)value);
 }
 
-static void rflex_drivers_request_system_status_put(
+RFLEX_DRIVERS_INLINE void rflex_drivers_request_system_status_put(
     const struct rflex_drivers_request_system_status *message,
     struct rflex_drivers_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void rflex_drivers_system_status_put(const struct rflex_drivers_system_status *message,
-                                            struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_system_status_put(
+    const struct rflex_drivers_system_status *message, struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->timestamp);
     rflex_drivers_write_u32be(writer, message->battery_voltage);
     rflex_drivers_write(writer, message->brake);
 }
 
-static void rflex_drivers_lcd_dump_put(const struct rflex_drivers_lcd_dump *message,
-                                       struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_lcd_dump_put(const struct rflex_drivers_lcd_dump *message,
+                                                     struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->timestamp);
     rflex_drivers_write(writer, message->row);
     rflex_drivers_write(writer, message->byte_count);
     rflex_drivers_write_bytes(writer, message->pixels, message->byte_count);
 }
 
-static void rflex_drivers_axis_get_system_put(const struct rflex_drivers_axis_get_system *message,
-                                              struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_axis_get_system_put(
+    const struct rflex_drivers_axis_get_system *message, struct rflex_drivers_writer *writer) {
     rflex_drivers_write(writer, message->axis);
 }
 
-static void rflex_drivers_motor_command_put(const struct rflex_drivers_motor_command *message,
-                                            struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_motor_command_put(
+    const struct rflex_drivers_motor_command *message, struct rflex_drivers_writer *writer) {
     rflex_drivers_write(writer, message->axis);
     rflex_drivers_write_u32be(writer, message->velocity);
     rflex_drivers_write_u32be(writer, message->acceleration);
@@ -1416,7 +1434,7 @@ static void rflex_drivers_motor_command_put(const struct rflex_drivers_motor_com
     rflex_drivers_write(writer, message->direction);
 }
 
-static void rflex_drivers_confirm_motor_command_put(
+RFLEX_DRIVERS_INLINE void rflex_drivers_confirm_motor_command_put(
     const struct rflex_drivers_confirm_motor_command *message,
     struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
@@ -1424,32 +1442,32 @@ static void rflex_drivers_confirm_motor_command_put(
     rflex_drivers_write(writer, message->axis);
 }
 
-static void rflex_drivers_set_defaults_put(const struct rflex_drivers_set_defaults *message,
-                                           struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_set_defaults_put(
+    const struct rflex_drivers_set_defaults *message, struct rflex_drivers_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void rflex_drivers_brake_set_put(const struct rflex_drivers_brake_set *message,
-                                        struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_brake_set_put(const struct rflex_drivers_brake_set *message,
+                                                      struct rflex_drivers_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void rflex_drivers_brake_release_put(const struct rflex_drivers_brake_release *message,
-                                            struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_brake_release_put(
+    const struct rflex_drivers_brake_release *message, struct rflex_drivers_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void rflex_drivers_brake_release_answer_put(
+RFLEX_DRIVERS_INLINE void rflex_drivers_brake_release_answer_put(
     const struct rflex_drivers_brake_release_answer *message, struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
     rflex_drivers_write_u32be(writer, message->timestamp);
 }
 
-static void rflex_drivers_read_motor_put(const struct rflex_drivers_read_motor *message,
-                                         struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_read_motor_put(
+    const struct rflex_drivers_read_motor *message, struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
     rflex_drivers_write_u32be(writer, message->timestamp);
     rflex_drivers_write(writer, message->axis);
@@ -1459,36 +1477,36 @@ static void rflex_drivers_read_motor_put(const struct rflex_drivers_read_motor *
     rflex_drivers_write_u32be(writer, (uint32_t)message->torque);
 }
 
-static void rflex_drivers_start_stop_motor_packets_put(
+RFLEX_DRIVERS_INLINE void rflex_drivers_start_stop_motor_packets_put(
     const struct rflex_drivers_start_stop_motor_packets *message,
     struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->period);
     rflex_drivers_write_u32be(writer, message->mask);
 }
 
-static void rflex_drivers_confirm_start_stop_motor_packets_put(
+RFLEX_DRIVERS_INLINE void rflex_drivers_confirm_start_stop_motor_packets_put(
     const struct rflex_drivers_confirm_start_stop_motor_packets *message,
     struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
     rflex_drivers_write_u32be(writer, message->timestamp);
 }
 
-static void rflex_drivers_request_joystick_data_put(
+RFLEX_DRIVERS_INLINE void rflex_drivers_request_joystick_data_put(
     const struct rflex_drivers_request_joystick_data *message,
     struct rflex_drivers_writer *writer) {
     (void)message;
     (void)writer;
 }
 
-static void rflex_drivers_joystick_data_put(const struct rflex_drivers_joystick_data *message,
-                                            struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_joystick_data_put(
+    const struct rflex_drivers_joystick_data *message, struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->timestamp);
     rflex_drivers_write_u32be(writer, (uint32_t)message->horizontal);
     rflex_drivers_write_u32be(writer, (uint32_t)message->vertical);
     rflex_drivers_write(writer, message->buttons);
 }
 
-static void rflex_drivers_start_stop_sonar_packets_put(
+RFLEX_DRIVERS_INLINE void rflex_drivers_start_stop_sonar_packets_put(
     const struct rflex_drivers_start_stop_sonar_packets *message,
     struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->echo_delay);
@@ -1497,15 +1515,15 @@ static void rflex_drivers_start_stop_sonar_packets_put(
     rflex_drivers_write(writer, message->mode);
 }
 
-static void rflex_drivers_confirm_start_stop_sonar_packets_put(
+RFLEX_DRIVERS_INLINE void rflex_drivers_confirm_start_stop_sonar_packets_put(
     const struct rflex_drivers_confirm_start_stop_sonar_packets *message,
     struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
     rflex_drivers_write_u32be(writer, message->timestamp);
 }
 
-static void rflex_drivers_sonar_data_put(const struct rflex_drivers_sonar_data *message,
-                                         struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_sonar_data_put(
+    const struct rflex_drivers_sonar_data *message, struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
     rflex_drivers_write_u32be(writer, message->timestamp);
     for (size_t i = 0; i < message->readings_count; i++) {
@@ -1514,32 +1532,32 @@ static void rflex_drivers_sonar_data_put(const struct rflex_drivers_sonar_data *
     }
 }
 
-static void rflex_drivers_initialize_digital_io_put(
+RFLEX_DRIVERS_INLINE void rflex_drivers_initialize_digital_io_put(
     const struct rflex_drivers_initialize_digital_io *message,
     struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->period);
 }
 
-static void rflex_drivers_confirm_initialize_digital_io_put(
+RFLEX_DRIVERS_INLINE void rflex_drivers_confirm_initialize_digital_io_put(
     const struct rflex_drivers_confirm_initialize_digital_io *message,
     struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
     rflex_drivers_write_u32be(writer, message->timestamp);
 }
 
-static void rflex_drivers_changed_bumpers_put(const struct rflex_drivers_changed_bumpers *message,
-                                              struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_changed_bumpers_put(
+    const struct rflex_drivers_changed_bumpers *message, struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->timestamp);
     rflex_drivers_write(writer, message->address);
     rflex_drivers_write_u16be(writer, message->data);
 }
 
-static void rflex_drivers_check_io_changed_put(const struct rflex_drivers_check_io_changed *message,
-                                               struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_check_io_changed_put(
+    const struct rflex_drivers_check_io_changed *message, struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->timestamp);
 }
 
-static void rflex_drivers_check_io_changed_answer_put(
+RFLEX_DRIVERS_INLINE void rflex_drivers_check_io_changed_answer_put(
     const struct rflex_drivers_check_io_changed_answer *message,
     struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->retval);
@@ -1547,15 +1565,15 @@ static void rflex_drivers_check_io_changed_answer_put(
     rflex_drivers_write_u32be(writer, message->package_count);
 }
 
-static void rflex_drivers_changed_byte_put(const struct rflex_drivers_changed_byte *message,
-                                           struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_changed_byte_put(
+    const struct rflex_drivers_changed_byte *message, struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->timestamp);
     rflex_drivers_write(writer, message->address);
     rflex_drivers_write_u16be(writer, message->data);
 }
 
-static void rflex_drivers_ir_run_put(const struct rflex_drivers_ir_run *message,
-                                     struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_ir_run_put(const struct rflex_drivers_ir_run *message,
+                                                   struct rflex_drivers_writer *writer) {
     rflex_drivers_write_u32be(writer, message->unknown_1);
     rflex_drivers_write_u32be(writer, message->unknown_2);
     rflex_drivers_write_u32be(writer, message->unknown_3);
@@ -1564,8 +1582,8 @@ static void rflex_drivers_ir_run_put(const struct rflex_drivers_ir_run *message,
     rflex_drivers_write(writer, message->mode);
 }
 
-static void rflex_drivers_ir_report_put(const struct rflex_drivers_ir_report *message,
-                                        struct rflex_drivers_writer *writer) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_ir_report_put(const struct rflex_drivers_ir_report *message,
+                                                      struct rflex_drivers_writer *writer) {
     rflex_drivers_write_bytes(writer, message->data, message->data_size);
 }
 
@@ -3942,7 +3960,7 @@ void rflex_drivers_flex_dispatch(void *user, const struct rflex_drivers_flex_eve
     }
 }
 
-#if defined(__GNUC__) || defined(__clang__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(RFLEX_DRIVERS_NO_WEAK)
 
 __attribute__((weak)) void rflex_drivers_on_request_system_status(
     void *user, const struct rflex_drivers_request_system_status *message,

@@ -20,6 +20,14 @@
 extern "C" {
 #endif
 
+/**
+ * In front of each function that the source defines. Where the one source that calls them includes
+ * `rflex_drivers.c`, define this as `static inline`: then the compiler sees all calls.
+ */
+#ifndef RFLEX_DRIVERS_API
+#define RFLEX_DRIVERS_API
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define RFLEX_DRIVERS_SPEC_HASH "6b293ff835f71a294248ac2f82f2aaa6e6ca9f1f9520933d977de3ead1d21d2d"
 
@@ -161,13 +169,13 @@ struct rflex_drivers_request_system_status {
     uint8_t unused;
 };
 
-enum rflex_drivers_result rflex_drivers_request_system_status_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_encode(
     const struct rflex_drivers_request_system_status *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_request_system_status_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_decode(
     struct rflex_drivers_request_system_status *message, const uint8_t *payload, size_t size);
-void rflex_drivers_request_system_status_load(struct rflex_drivers_request_system_status *message,
-                                              const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_request_system_status_load(
+    struct rflex_drivers_request_system_status *message, const uint8_t *payload);
 
 /* --- system_status ---------------------------------------------------------------------------- */
 
@@ -194,13 +202,13 @@ struct rflex_drivers_system_status {
     uint8_t brake;
 };
 
-enum rflex_drivers_result rflex_drivers_system_status_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_system_status_encode(
     const struct rflex_drivers_system_status *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_system_status_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_system_status_decode(
     struct rflex_drivers_system_status *message, const uint8_t *payload, size_t size);
-void rflex_drivers_system_status_load(struct rflex_drivers_system_status *message,
-                                      const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_system_status_load(struct rflex_drivers_system_status *message,
+                                                        const uint8_t *payload);
 
 /* --- lcd_dump --------------------------------------------------------------------------------- */
 
@@ -225,12 +233,12 @@ struct rflex_drivers_lcd_dump {
     uint8_t pixels[249];
 };
 
-enum rflex_drivers_result rflex_drivers_lcd_dump_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_lcd_dump_encode(
     const struct rflex_drivers_lcd_dump *message, uint8_t *payload, size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_lcd_dump_decode(struct rflex_drivers_lcd_dump *message,
-                                                        const uint8_t *payload, size_t size);
-void rflex_drivers_lcd_dump_load(struct rflex_drivers_lcd_dump *message, const uint8_t *payload,
-                                 size_t size);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_lcd_dump_decode(
+    struct rflex_drivers_lcd_dump *message, const uint8_t *payload, size_t size);
+RFLEX_DRIVERS_API void rflex_drivers_lcd_dump_load(struct rflex_drivers_lcd_dump *message,
+                                                   const uint8_t *payload, size_t size);
 
 /* --- axis_get_system -------------------------------------------------------------------------- */
 
@@ -247,13 +255,13 @@ struct rflex_drivers_axis_get_system {
     uint8_t axis;
 };
 
-enum rflex_drivers_result rflex_drivers_axis_get_system_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_encode(
     const struct rflex_drivers_axis_get_system *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_axis_get_system_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_decode(
     struct rflex_drivers_axis_get_system *message, const uint8_t *payload, size_t size);
-void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_get_system *message,
-                                        const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_axis_get_system_load(
+    struct rflex_drivers_axis_get_system *message, const uint8_t *payload);
 
 /* --- motor_command ---------------------------------------------------------------------------- */
 
@@ -284,13 +292,13 @@ struct rflex_drivers_motor_command {
     uint8_t direction;
 };
 
-enum rflex_drivers_result rflex_drivers_motor_command_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_motor_command_encode(
     const struct rflex_drivers_motor_command *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_motor_command_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_motor_command_decode(
     struct rflex_drivers_motor_command *message, const uint8_t *payload, size_t size);
-void rflex_drivers_motor_command_load(struct rflex_drivers_motor_command *message,
-                                      const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_motor_command_load(struct rflex_drivers_motor_command *message,
+                                                        const uint8_t *payload);
 
 /* --- confirm_motor_command -------------------------------------------------------------------- */
 
@@ -314,13 +322,13 @@ struct rflex_drivers_confirm_motor_command {
     uint8_t axis;
 };
 
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_motor_command_encode(
     const struct rflex_drivers_confirm_motor_command *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_motor_command_decode(
     struct rflex_drivers_confirm_motor_command *message, const uint8_t *payload, size_t size);
-void rflex_drivers_confirm_motor_command_load(struct rflex_drivers_confirm_motor_command *message,
-                                              const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_confirm_motor_command_load(
+    struct rflex_drivers_confirm_motor_command *message, const uint8_t *payload);
 
 /* --- set_defaults ----------------------------------------------------------------------------- */
 
@@ -337,13 +345,13 @@ struct rflex_drivers_set_defaults {
     uint8_t unused;
 };
 
-enum rflex_drivers_result rflex_drivers_set_defaults_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_encode(
     const struct rflex_drivers_set_defaults *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_set_defaults_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_decode(
     struct rflex_drivers_set_defaults *message, const uint8_t *payload, size_t size);
-void rflex_drivers_set_defaults_load(struct rflex_drivers_set_defaults *message,
-                                     const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_set_defaults_load(struct rflex_drivers_set_defaults *message,
+                                                       const uint8_t *payload);
 
 /* --- brake_set -------------------------------------------------------------------------------- */
 
@@ -360,11 +368,12 @@ struct rflex_drivers_brake_set {
     uint8_t unused;
 };
 
-enum rflex_drivers_result rflex_drivers_brake_set_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_encode(
     const struct rflex_drivers_brake_set *message, uint8_t *payload, size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_brake_set_decode(struct rflex_drivers_brake_set *message,
-                                                         const uint8_t *payload, size_t size);
-void rflex_drivers_brake_set_load(struct rflex_drivers_brake_set *message, const uint8_t *payload);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_decode(
+    struct rflex_drivers_brake_set *message, const uint8_t *payload, size_t size);
+RFLEX_DRIVERS_API void rflex_drivers_brake_set_load(struct rflex_drivers_brake_set *message,
+                                                    const uint8_t *payload);
 
 /* --- brake_release ---------------------------------------------------------------------------- */
 
@@ -381,13 +390,13 @@ struct rflex_drivers_brake_release {
     uint8_t unused;
 };
 
-enum rflex_drivers_result rflex_drivers_brake_release_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_encode(
     const struct rflex_drivers_brake_release *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_brake_release_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_decode(
     struct rflex_drivers_brake_release *message, const uint8_t *payload, size_t size);
-void rflex_drivers_brake_release_load(struct rflex_drivers_brake_release *message,
-                                      const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_brake_release_load(struct rflex_drivers_brake_release *message,
+                                                        const uint8_t *payload);
 
 /* --- brake_release_answer --------------------------------------------------------------------- */
 
@@ -409,13 +418,13 @@ struct rflex_drivers_brake_release_answer {
     uint32_t timestamp;
 };
 
-enum rflex_drivers_result rflex_drivers_brake_release_answer_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_answer_encode(
     const struct rflex_drivers_brake_release_answer *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_brake_release_answer_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_answer_decode(
     struct rflex_drivers_brake_release_answer *message, const uint8_t *payload, size_t size);
-void rflex_drivers_brake_release_answer_load(struct rflex_drivers_brake_release_answer *message,
-                                             const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_brake_release_answer_load(
+    struct rflex_drivers_brake_release_answer *message, const uint8_t *payload);
 
 /* --- read_motor ------------------------------------------------------------------------------- */
 
@@ -447,13 +456,13 @@ struct rflex_drivers_read_motor {
     int32_t torque;
 };
 
-enum rflex_drivers_result rflex_drivers_read_motor_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_read_motor_encode(
     const struct rflex_drivers_read_motor *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_read_motor_decode(struct rflex_drivers_read_motor *message,
-                                                          const uint8_t *payload, size_t size);
-void rflex_drivers_read_motor_load(struct rflex_drivers_read_motor *message,
-                                   const uint8_t *payload);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_read_motor_decode(
+    struct rflex_drivers_read_motor *message, const uint8_t *payload, size_t size);
+RFLEX_DRIVERS_API void rflex_drivers_read_motor_load(struct rflex_drivers_read_motor *message,
+                                                     const uint8_t *payload);
 
 /* --- start_stop_motor_packets ----------------------------------------------------------------- */
 
@@ -476,12 +485,12 @@ struct rflex_drivers_start_stop_motor_packets {
     uint32_t mask;
 };
 
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_encode(
     const struct rflex_drivers_start_stop_motor_packets *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_decode(
     struct rflex_drivers_start_stop_motor_packets *message, const uint8_t *payload, size_t size);
-void rflex_drivers_start_stop_motor_packets_load(
+RFLEX_DRIVERS_API void rflex_drivers_start_stop_motor_packets_load(
     struct rflex_drivers_start_stop_motor_packets *message, const uint8_t *payload);
 
 /* --- confirm_start_stop_motor_packets --------------------------------------------------------- */
@@ -506,13 +515,13 @@ struct rflex_drivers_confirm_start_stop_motor_packets {
     uint32_t timestamp;
 };
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_encode(
     const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t *payload,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_decode(
     struct rflex_drivers_confirm_start_stop_motor_packets *message, const uint8_t *payload,
     size_t size);
-void rflex_drivers_confirm_start_stop_motor_packets_load(
+RFLEX_DRIVERS_API void rflex_drivers_confirm_start_stop_motor_packets_load(
     struct rflex_drivers_confirm_start_stop_motor_packets *message, const uint8_t *payload);
 
 /* --- request_joystick_data -------------------------------------------------------------------- */
@@ -530,13 +539,13 @@ struct rflex_drivers_request_joystick_data {
     uint8_t unused;
 };
 
-enum rflex_drivers_result rflex_drivers_request_joystick_data_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_encode(
     const struct rflex_drivers_request_joystick_data *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_request_joystick_data_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_decode(
     struct rflex_drivers_request_joystick_data *message, const uint8_t *payload, size_t size);
-void rflex_drivers_request_joystick_data_load(struct rflex_drivers_request_joystick_data *message,
-                                              const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_request_joystick_data_load(
+    struct rflex_drivers_request_joystick_data *message, const uint8_t *payload);
 
 /* --- joystick_data ---------------------------------------------------------------------------- */
 
@@ -559,13 +568,13 @@ struct rflex_drivers_joystick_data {
     uint8_t buttons;
 };
 
-enum rflex_drivers_result rflex_drivers_joystick_data_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_joystick_data_encode(
     const struct rflex_drivers_joystick_data *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_joystick_data_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_joystick_data_decode(
     struct rflex_drivers_joystick_data *message, const uint8_t *payload, size_t size);
-void rflex_drivers_joystick_data_load(struct rflex_drivers_joystick_data *message,
-                                      const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_joystick_data_load(struct rflex_drivers_joystick_data *message,
+                                                        const uint8_t *payload);
 
 /* --- start_stop_sonar_packets ----------------------------------------------------------------- */
 
@@ -594,12 +603,12 @@ struct rflex_drivers_start_stop_sonar_packets {
     uint8_t mode;
 };
 
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_encode(
     const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_decode(
     struct rflex_drivers_start_stop_sonar_packets *message, const uint8_t *payload, size_t size);
-void rflex_drivers_start_stop_sonar_packets_load(
+RFLEX_DRIVERS_API void rflex_drivers_start_stop_sonar_packets_load(
     struct rflex_drivers_start_stop_sonar_packets *message, const uint8_t *payload);
 
 /* --- confirm_start_stop_sonar_packets --------------------------------------------------------- */
@@ -624,13 +633,13 @@ struct rflex_drivers_confirm_start_stop_sonar_packets {
     uint32_t timestamp;
 };
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_encode(
     const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t *payload,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_decode(
     struct rflex_drivers_confirm_start_stop_sonar_packets *message, const uint8_t *payload,
     size_t size);
-void rflex_drivers_confirm_start_stop_sonar_packets_load(
+RFLEX_DRIVERS_API void rflex_drivers_confirm_start_stop_sonar_packets_load(
     struct rflex_drivers_confirm_start_stop_sonar_packets *message, const uint8_t *payload);
 
 /* --- sonar_data ------------------------------------------------------------------------------- */
@@ -662,13 +671,13 @@ struct rflex_drivers_sonar_data {
     struct rflex_drivers_sonar_data_readings readings[82];
 };
 
-enum rflex_drivers_result rflex_drivers_sonar_data_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_sonar_data_encode(
     const struct rflex_drivers_sonar_data *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_sonar_data_decode(struct rflex_drivers_sonar_data *message,
-                                                          const uint8_t *payload, size_t size);
-void rflex_drivers_sonar_data_load(struct rflex_drivers_sonar_data *message, const uint8_t *payload,
-                                   size_t size);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_sonar_data_decode(
+    struct rflex_drivers_sonar_data *message, const uint8_t *payload, size_t size);
+RFLEX_DRIVERS_API void rflex_drivers_sonar_data_load(struct rflex_drivers_sonar_data *message,
+                                                     const uint8_t *payload, size_t size);
 
 /** Reads readings[index] from a payload that was received, unchecked. */
 static inline void rflex_drivers_sonar_data_readings_at(
@@ -700,13 +709,13 @@ struct rflex_drivers_initialize_digital_io {
     uint32_t period;
 };
 
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_initialize_digital_io_encode(
     const struct rflex_drivers_initialize_digital_io *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_initialize_digital_io_decode(
     struct rflex_drivers_initialize_digital_io *message, const uint8_t *payload, size_t size);
-void rflex_drivers_initialize_digital_io_load(struct rflex_drivers_initialize_digital_io *message,
-                                              const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_initialize_digital_io_load(
+    struct rflex_drivers_initialize_digital_io *message, const uint8_t *payload);
 
 /* --- confirm_initialize_digital_io ------------------------------------------------------------ */
 
@@ -731,13 +740,13 @@ struct rflex_drivers_confirm_initialize_digital_io {
     uint32_t timestamp;
 };
 
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_encode(
     const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t *payload,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_decode(
     struct rflex_drivers_confirm_initialize_digital_io *message, const uint8_t *payload,
     size_t size);
-void rflex_drivers_confirm_initialize_digital_io_load(
+RFLEX_DRIVERS_API void rflex_drivers_confirm_initialize_digital_io_load(
     struct rflex_drivers_confirm_initialize_digital_io *message, const uint8_t *payload);
 
 /* --- changed_bumpers -------------------------------------------------------------------------- */
@@ -762,13 +771,13 @@ struct rflex_drivers_changed_bumpers {
     uint16_t data;
 };
 
-enum rflex_drivers_result rflex_drivers_changed_bumpers_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_bumpers_encode(
     const struct rflex_drivers_changed_bumpers *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_changed_bumpers_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_bumpers_decode(
     struct rflex_drivers_changed_bumpers *message, const uint8_t *payload, size_t size);
-void rflex_drivers_changed_bumpers_load(struct rflex_drivers_changed_bumpers *message,
-                                        const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_changed_bumpers_load(
+    struct rflex_drivers_changed_bumpers *message, const uint8_t *payload);
 
 /* --- check_io_changed ------------------------------------------------------------------------- */
 
@@ -785,13 +794,13 @@ struct rflex_drivers_check_io_changed {
     uint32_t timestamp;
 };
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_encode(
     const struct rflex_drivers_check_io_changed *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_check_io_changed_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_decode(
     struct rflex_drivers_check_io_changed *message, const uint8_t *payload, size_t size);
-void rflex_drivers_check_io_changed_load(struct rflex_drivers_check_io_changed *message,
-                                         const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_check_io_changed_load(
+    struct rflex_drivers_check_io_changed *message, const uint8_t *payload);
 
 /* --- check_io_changed_answer ------------------------------------------------------------------ */
 
@@ -818,12 +827,12 @@ struct rflex_drivers_check_io_changed_answer {
     uint32_t package_count;
 };
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_answer_encode(
     const struct rflex_drivers_check_io_changed_answer *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_answer_decode(
     struct rflex_drivers_check_io_changed_answer *message, const uint8_t *payload, size_t size);
-void rflex_drivers_check_io_changed_answer_load(
+RFLEX_DRIVERS_API void rflex_drivers_check_io_changed_answer_load(
     struct rflex_drivers_check_io_changed_answer *message, const uint8_t *payload);
 
 /* --- changed_byte ----------------------------------------------------------------------------- */
@@ -848,13 +857,13 @@ struct rflex_drivers_changed_byte {
     uint16_t data;
 };
 
-enum rflex_drivers_result rflex_drivers_changed_byte_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_byte_encode(
     const struct rflex_drivers_changed_byte *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_changed_byte_decode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_byte_decode(
     struct rflex_drivers_changed_byte *message, const uint8_t *payload, size_t size);
-void rflex_drivers_changed_byte_load(struct rflex_drivers_changed_byte *message,
-                                     const uint8_t *payload);
+RFLEX_DRIVERS_API void rflex_drivers_changed_byte_load(struct rflex_drivers_changed_byte *message,
+                                                       const uint8_t *payload);
 
 /* --- ir_run ----------------------------------------------------------------------------------- */
 
@@ -884,12 +893,12 @@ struct rflex_drivers_ir_run {
     uint8_t mode;
 };
 
-enum rflex_drivers_result rflex_drivers_ir_run_encode(const struct rflex_drivers_ir_run *message,
-                                                      uint8_t *payload, size_t capacity,
-                                                      size_t *size);
-enum rflex_drivers_result rflex_drivers_ir_run_decode(struct rflex_drivers_ir_run *message,
-                                                      const uint8_t *payload, size_t size);
-void rflex_drivers_ir_run_load(struct rflex_drivers_ir_run *message, const uint8_t *payload);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_run_encode(
+    const struct rflex_drivers_ir_run *message, uint8_t *payload, size_t capacity, size_t *size);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_run_decode(
+    struct rflex_drivers_ir_run *message, const uint8_t *payload, size_t size);
+RFLEX_DRIVERS_API void rflex_drivers_ir_run_load(struct rflex_drivers_ir_run *message,
+                                                 const uint8_t *payload);
 
 /* --- ir_report -------------------------------------------------------------------------------- */
 
@@ -911,12 +920,12 @@ struct rflex_drivers_ir_report {
     uint8_t data[255];
 };
 
-enum rflex_drivers_result rflex_drivers_ir_report_encode(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_report_encode(
     const struct rflex_drivers_ir_report *message, uint8_t *payload, size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_ir_report_decode(struct rflex_drivers_ir_report *message,
-                                                         const uint8_t *payload, size_t size);
-void rflex_drivers_ir_report_load(struct rflex_drivers_ir_report *message, const uint8_t *payload,
-                                  size_t size);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_report_decode(
+    struct rflex_drivers_ir_report *message, const uint8_t *payload, size_t size);
+RFLEX_DRIVERS_API void rflex_drivers_ir_report_load(struct rflex_drivers_ir_report *message,
+                                                    const uint8_t *payload, size_t size);
 
 /* --- frames ----------------------------------------------------------------------------------- */
 
@@ -934,260 +943,259 @@ typedef void (*rflex_drivers_put)(void *user, uint8_t byte);
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_MAX 13U
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23U
-enum rflex_drivers_result rflex_drivers_request_system_status_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_frame(
     const struct rflex_drivers_request_system_status *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_request_system_status_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_send(
     const struct rflex_drivers_request_system_status *message, uint8_t number,
     rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_SYSTEM_STATUS_FRAME_MAX 38U
 #define RFLEX_DRIVERS_SYSTEM_STATUS_FRAME_ROOM 50U
-enum rflex_drivers_result rflex_drivers_system_status_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_system_status_frame(
     const struct rflex_drivers_system_status *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_system_status_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_system_status_send(
     const struct rflex_drivers_system_status *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_LCD_DUMP_FRAME_MAX 776U
 #define RFLEX_DRIVERS_LCD_DUMP_FRAME_ROOM 788U
-enum rflex_drivers_result rflex_drivers_lcd_dump_frame(const struct rflex_drivers_lcd_dump *message,
-                                                       uint8_t number, uint8_t *frame,
-                                                       size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_lcd_dump_send(const struct rflex_drivers_lcd_dump *message,
-                                                      uint8_t number, rflex_drivers_put put,
-                                                      void *user);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_lcd_dump_frame(
+    const struct rflex_drivers_lcd_dump *message, uint8_t number, uint8_t *frame, size_t capacity,
+    size_t *size);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_lcd_dump_send(
+    const struct rflex_drivers_lcd_dump *message, uint8_t number, rflex_drivers_put put,
+    void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_AXIS_GET_SYSTEM_FRAME_MAX 14U
 #define RFLEX_DRIVERS_AXIS_GET_SYSTEM_FRAME_ROOM 26U
-enum rflex_drivers_result rflex_drivers_axis_get_system_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_frame(
     const struct rflex_drivers_axis_get_system *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_axis_get_system_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_send(
     const struct rflex_drivers_axis_get_system *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_MOTOR_COMMAND_FRAME_MAX 53U
 #define RFLEX_DRIVERS_MOTOR_COMMAND_FRAME_ROOM 65U
-enum rflex_drivers_result rflex_drivers_motor_command_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_motor_command_frame(
     const struct rflex_drivers_motor_command *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_motor_command_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_motor_command_send(
     const struct rflex_drivers_motor_command *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_FRAME_MAX 38U
 #define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_FRAME_ROOM 50U
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_motor_command_frame(
     const struct rflex_drivers_confirm_motor_command *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_motor_command_send(
     const struct rflex_drivers_confirm_motor_command *message, uint8_t number,
     rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_MAX 11U
 #define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_ROOM 23U
-enum rflex_drivers_result rflex_drivers_set_defaults_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_frame(
     const struct rflex_drivers_set_defaults *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_set_defaults_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_send(
     const struct rflex_drivers_set_defaults *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_BRAKE_SET_FRAME_MAX 11U
 #define RFLEX_DRIVERS_BRAKE_SET_FRAME_ROOM 23U
-enum rflex_drivers_result rflex_drivers_brake_set_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_frame(
     const struct rflex_drivers_brake_set *message, uint8_t number, uint8_t *frame, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_brake_set_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_send(
     const struct rflex_drivers_brake_set *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_MAX 11U
 #define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_ROOM 23U
-enum rflex_drivers_result rflex_drivers_brake_release_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_frame(
     const struct rflex_drivers_brake_release *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_brake_release_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_send(
     const struct rflex_drivers_brake_release *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_FRAME_MAX 35U
 #define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_FRAME_ROOM 47U
-enum rflex_drivers_result rflex_drivers_brake_release_answer_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_answer_frame(
     const struct rflex_drivers_brake_release_answer *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_brake_release_answer_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_answer_send(
     const struct rflex_drivers_brake_release_answer *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_READ_MOTOR_FRAME_MAX 86U
 #define RFLEX_DRIVERS_READ_MOTOR_FRAME_ROOM 98U
-enum rflex_drivers_result rflex_drivers_read_motor_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_read_motor_frame(
     const struct rflex_drivers_read_motor *message, uint8_t number, uint8_t *frame, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_read_motor_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_read_motor_send(
     const struct rflex_drivers_read_motor *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
 #define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_frame(
     const struct rflex_drivers_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_send(
     const struct rflex_drivers_start_stop_motor_packets *message, uint8_t number,
     rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_frame(
     const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t number,
     uint8_t *frame, size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_send(
     const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t number,
     rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_MAX 11U
 #define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_ROOM 23U
-enum rflex_drivers_result rflex_drivers_request_joystick_data_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_frame(
     const struct rflex_drivers_request_joystick_data *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_request_joystick_data_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_send(
     const struct rflex_drivers_request_joystick_data *message, uint8_t number,
     rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_JOYSTICK_DATA_FRAME_MAX 50U
 #define RFLEX_DRIVERS_JOYSTICK_DATA_FRAME_ROOM 62U
-enum rflex_drivers_result rflex_drivers_joystick_data_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_joystick_data_frame(
     const struct rflex_drivers_joystick_data *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_joystick_data_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_joystick_data_send(
     const struct rflex_drivers_joystick_data *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_FRAME_MAX 50U
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_FRAME_ROOM 62U
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_frame(
     const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_send(
     const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t number,
     rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_MAX 35U
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_ROOM 47U
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_frame(
     const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t number,
     uint8_t *frame, size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_send(
     const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t number,
     rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_SONAR_DATA_FRAME_MAX 773U
 #define RFLEX_DRIVERS_SONAR_DATA_FRAME_ROOM 785U
-enum rflex_drivers_result rflex_drivers_sonar_data_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_sonar_data_frame(
     const struct rflex_drivers_sonar_data *message, uint8_t number, uint8_t *frame, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_sonar_data_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_sonar_data_send(
     const struct rflex_drivers_sonar_data *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_FRAME_MAX 23U
 #define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_FRAME_ROOM 35U
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_initialize_digital_io_frame(
     const struct rflex_drivers_initialize_digital_io *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_initialize_digital_io_send(
     const struct rflex_drivers_initialize_digital_io *message, uint8_t number,
     rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_MAX 35U
 #define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_ROOM 47U
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_frame(
     const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t number,
     uint8_t *frame, size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_send(
     const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t number,
     rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CHANGED_BUMPERS_FRAME_MAX 32U
 #define RFLEX_DRIVERS_CHANGED_BUMPERS_FRAME_ROOM 44U
-enum rflex_drivers_result rflex_drivers_changed_bumpers_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_bumpers_frame(
     const struct rflex_drivers_changed_bumpers *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_changed_bumpers_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_bumpers_send(
     const struct rflex_drivers_changed_bumpers *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_FRAME_MAX 23U
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_FRAME_ROOM 35U
-enum rflex_drivers_result rflex_drivers_check_io_changed_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_frame(
     const struct rflex_drivers_check_io_changed *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_check_io_changed_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_send(
     const struct rflex_drivers_check_io_changed *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_FRAME_MAX 47U
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_FRAME_ROOM 59U
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_answer_frame(
     const struct rflex_drivers_check_io_changed_answer *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_answer_send(
     const struct rflex_drivers_check_io_changed_answer *message, uint8_t number,
     rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CHANGED_BYTE_FRAME_MAX 32U
 #define RFLEX_DRIVERS_CHANGED_BYTE_FRAME_ROOM 44U
-enum rflex_drivers_result rflex_drivers_changed_byte_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_byte_frame(
     const struct rflex_drivers_changed_byte *message, uint8_t number, uint8_t *frame,
     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_changed_byte_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_byte_send(
     const struct rflex_drivers_changed_byte *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_IR_RUN_FRAME_MAX 74U
 #define RFLEX_DRIVERS_IR_RUN_FRAME_ROOM 86U
-enum rflex_drivers_result rflex_drivers_ir_run_frame(const struct rflex_drivers_ir_run *message,
-                                                     uint8_t number, uint8_t *frame,
-                                                     size_t capacity, size_t *size);
-enum rflex_drivers_result rflex_drivers_ir_run_send(const struct rflex_drivers_ir_run *message,
-                                                    uint8_t number, rflex_drivers_put put,
-                                                    void *user);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_run_frame(
+    const struct rflex_drivers_ir_run *message, uint8_t number, uint8_t *frame, size_t capacity,
+    size_t *size);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_run_send(
+    const struct rflex_drivers_ir_run *message, uint8_t number, rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_IR_REPORT_FRAME_MAX 776U
 #define RFLEX_DRIVERS_IR_REPORT_FRAME_ROOM 788U
-enum rflex_drivers_result rflex_drivers_ir_report_frame(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_report_frame(
     const struct rflex_drivers_ir_report *message, uint8_t number, uint8_t *frame, size_t capacity,
     size_t *size);
-enum rflex_drivers_result rflex_drivers_ir_report_send(
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_report_send(
     const struct rflex_drivers_ir_report *message, uint8_t number, rflex_drivers_put put,
     void *user);
 
@@ -1287,18 +1295,21 @@ struct rflex_drivers_linux_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void rflex_drivers_linux_decoder_init(struct rflex_drivers_linux_decoder *decoder,
-                                      rflex_drivers_linux_handler handler, void *user);
+RFLEX_DRIVERS_API void rflex_drivers_linux_decoder_init(struct rflex_drivers_linux_decoder *decoder,
+                                                        rflex_drivers_linux_handler handler,
+                                                        void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void rflex_drivers_linux_decoder_push(struct rflex_drivers_linux_decoder *decoder, uint8_t byte);
+RFLEX_DRIVERS_API void rflex_drivers_linux_decoder_push(struct rflex_drivers_linux_decoder *decoder,
+                                                        uint8_t byte);
 
 /** Take the next bytes. */
-void rflex_drivers_linux_decoder_feed(struct rflex_drivers_linux_decoder *decoder,
-                                      const uint8_t *data, size_t size);
+RFLEX_DRIVERS_API void rflex_drivers_linux_decoder_feed(struct rflex_drivers_linux_decoder *decoder,
+                                                        const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void rflex_drivers_linux_decoder_flush(struct rflex_drivers_linux_decoder *decoder);
+RFLEX_DRIVERS_API void rflex_drivers_linux_decoder_flush(
+    struct rflex_drivers_linux_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define rflex_drivers_linux_decoder_idle rflex_drivers_linux_decoder_flush
@@ -1377,18 +1388,20 @@ struct rflex_drivers_flex_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void rflex_drivers_flex_decoder_init(struct rflex_drivers_flex_decoder *decoder,
-                                     rflex_drivers_flex_handler handler, void *user);
+RFLEX_DRIVERS_API void rflex_drivers_flex_decoder_init(struct rflex_drivers_flex_decoder *decoder,
+                                                       rflex_drivers_flex_handler handler,
+                                                       void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void rflex_drivers_flex_decoder_push(struct rflex_drivers_flex_decoder *decoder, uint8_t byte);
+RFLEX_DRIVERS_API void rflex_drivers_flex_decoder_push(struct rflex_drivers_flex_decoder *decoder,
+                                                       uint8_t byte);
 
 /** Take the next bytes. */
-void rflex_drivers_flex_decoder_feed(struct rflex_drivers_flex_decoder *decoder,
-                                     const uint8_t *data, size_t size);
+RFLEX_DRIVERS_API void rflex_drivers_flex_decoder_feed(struct rflex_drivers_flex_decoder *decoder,
+                                                       const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void rflex_drivers_flex_decoder_flush(struct rflex_drivers_flex_decoder *decoder);
+RFLEX_DRIVERS_API void rflex_drivers_flex_decoder_flush(struct rflex_drivers_flex_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define rflex_drivers_flex_decoder_idle rflex_drivers_flex_decoder_flush
@@ -1398,8 +1411,9 @@ void rflex_drivers_flex_decoder_flush(struct rflex_drivers_flex_decoder *decoder
 /*
  * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
  * function with it. Define those that you need; the others do nothing. They are weak where the
- * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
- * by defining RFLEX_DRIVERS_NO_HANDLERS for the source.
+ * compiler knows weak functions. For another one, and where yours stand in the source that includes
+ * this one's source, define RFLEX_DRIVERS_NO_WEAK and all of them, or leave out the dispatching by
+ * defining RFLEX_DRIVERS_NO_HANDLERS for the source.
  */
 
 /** request_system_status came from linux. */
@@ -1458,7 +1472,8 @@ void rflex_drivers_on_ir_run(void *user, const struct rflex_drivers_ir_run *mess
                              const struct rflex_drivers_linux_parts *parts);
 
 /** Calls the functions above; give it to rflex_drivers_linux_decoder_init. */
-void rflex_drivers_linux_dispatch(void *user, const struct rflex_drivers_linux_event *event);
+RFLEX_DRIVERS_API void rflex_drivers_linux_dispatch(void *user,
+                                                    const struct rflex_drivers_linux_event *event);
 
 /** system_status came from flex. */
 void rflex_drivers_on_system_status(void *user, const struct rflex_drivers_system_status *message,
@@ -1524,7 +1539,8 @@ void rflex_drivers_on_ir_report(void *user, const struct rflex_drivers_ir_report
                                 const struct rflex_drivers_flex_parts *parts);
 
 /** Calls the functions above; give it to rflex_drivers_flex_decoder_init. */
-void rflex_drivers_flex_dispatch(void *user, const struct rflex_drivers_flex_event *event);
+RFLEX_DRIVERS_API void rflex_drivers_flex_dispatch(void *user,
+                                                   const struct rflex_drivers_flex_event *event);
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,24 @@
 #include "rn1.h"
 
 /*
+ * What a function of the header needs is put into it, so that it is short and fast also where no
+ * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
+ * the function that calls it: define RN1_APART as `static` with -flto, or in one source.
+ */
+#if defined(__GNUC__)
+#define RN1_INLINE static inline __attribute__((always_inline))
+#else
+#define RN1_INLINE static inline
+#endif
+#ifndef RN1_APART
+#if defined(__GNUC__)
+#define RN1_APART static __attribute__((noinline))
+#else
+#define RN1_APART static
+#endif
+#endif
+
+/*
  * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
  * done where pointers have more than 32 bits; define RN1_FAST_FEED as 1 or 0 to choose.
  * Define RN1_SSE2 as 1 for sixteen at a time on x86.
@@ -34,7 +52,7 @@ static int8_t rn1_load_s7(const uint8_t *at) {
     return (int8_t)((at[0] ^ 0x40U) - 0x40U);
 }
 
-static void rn1_store_u14le(uint8_t *at, uint16_t value) {
+RN1_INLINE void rn1_store_u14le(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)(value & 0x7FU);
     at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
 }
@@ -94,7 +112,7 @@ static void rn1_load_u14le_run(uint16_t *numbers, const uint8_t *at, size_t coun
 
 /* --- move_manual ------------------------------------------------------------------------------ */
 
-static enum rn1_result rn1_move_manual_validate(const struct rn1_move_manual *message) {
+RN1_INLINE enum rn1_result rn1_move_manual_validate(const struct rn1_move_manual *message) {
     if (message->speed < -64 || message->speed > 63) {
         return RN1_ERROR_RANGE;
     }
@@ -104,7 +122,7 @@ static enum rn1_result rn1_move_manual_validate(const struct rn1_move_manual *me
     return RN1_OK;
 }
 
-static void rn1_move_manual_store(const struct rn1_move_manual *message, uint8_t *payload) {
+RN1_INLINE void rn1_move_manual_store(const struct rn1_move_manual *message, uint8_t *payload) {
     payload[0] = (uint8_t)((uint8_t)message->speed & 0x7FU);
     payload[1] = (uint8_t)((uint8_t)message->arc & 0x7FU);
 }
@@ -151,7 +169,7 @@ enum rn1_result rn1_move_manual_decode(struct rn1_move_manual *message, const ui
 
 /* --- move_relative_twostep -------------------------------------------------------------------- */
 
-static enum rn1_result rn1_move_relative_twostep_validate(
+RN1_INLINE enum rn1_result rn1_move_relative_twostep_validate(
     const struct rn1_move_relative_twostep *message) {
     if (message->angle < -8192 || message->angle > 8191) {
         return RN1_ERROR_RANGE;
@@ -162,8 +180,8 @@ static enum rn1_result rn1_move_relative_twostep_validate(
     return RN1_OK;
 }
 
-static void rn1_move_relative_twostep_store(const struct rn1_move_relative_twostep *message,
-                                            uint8_t *payload) {
+RN1_INLINE void rn1_move_relative_twostep_store(const struct rn1_move_relative_twostep *message,
+                                                uint8_t *payload) {
     rn1_store_u14le(payload, (uint16_t)message->angle);
     rn1_store_u14le(payload + 2, (uint16_t)message->forward);
 }
@@ -212,7 +230,8 @@ enum rn1_result rn1_move_relative_twostep_decode(struct rn1_move_relative_twoste
 
 /* --- move_relative_arc ------------------------------------------------------------------------ */
 
-static enum rn1_result rn1_move_relative_arc_validate(const struct rn1_move_relative_arc *message) {
+RN1_INLINE enum rn1_result rn1_move_relative_arc_validate(
+    const struct rn1_move_relative_arc *message) {
     if (message->angle < -8192 || message->angle > 8191) {
         return RN1_ERROR_RANGE;
     }
@@ -222,8 +241,8 @@ static enum rn1_result rn1_move_relative_arc_validate(const struct rn1_move_rela
     return RN1_OK;
 }
 
-static void rn1_move_relative_arc_store(const struct rn1_move_relative_arc *message,
-                                        uint8_t *payload) {
+RN1_INLINE void rn1_move_relative_arc_store(const struct rn1_move_relative_arc *message,
+                                            uint8_t *payload) {
     rn1_store_u14le(payload, (uint16_t)message->angle);
     rn1_store_u14le(payload + 2, (uint16_t)message->forward);
 }
@@ -290,7 +309,7 @@ static size_t rn1_maintenance_measure(const struct rn1_maintenance *message) {
     return size;
 }
 
-static enum rn1_result rn1_maintenance_validate(const struct rn1_maintenance *message) {
+RN1_INLINE enum rn1_result rn1_maintenance_validate(const struct rn1_maintenance *message) {
     if (message->operation > 127U) {
         return RN1_ERROR_RANGE;
     }
@@ -317,7 +336,7 @@ static enum rn1_result rn1_maintenance_validate(const struct rn1_maintenance *me
     return RN1_OK;
 }
 
-static void rn1_maintenance_store(const struct rn1_maintenance *message, uint8_t *payload) {
+RN1_INLINE void rn1_maintenance_store(const struct rn1_maintenance *message, uint8_t *payload) {
     payload[0] = 0x42U;
     payload[1] = 0x11U;
     payload[2] = 0x7AU;
@@ -462,7 +481,7 @@ enum rn1_result rn1_maintenance_decode(struct rn1_maintenance *message, const ui
 
 /* --- gyro ------------------------------------------------------------------------------------- */
 
-static enum rn1_result rn1_gyro_validate(const struct rn1_gyro *message) {
+RN1_INLINE enum rn1_result rn1_gyro_validate(const struct rn1_gyro *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
@@ -478,7 +497,7 @@ static enum rn1_result rn1_gyro_validate(const struct rn1_gyro *message) {
     return RN1_OK;
 }
 
-static void rn1_gyro_store(const struct rn1_gyro *message, uint8_t *payload) {
+RN1_INLINE void rn1_gyro_store(const struct rn1_gyro *message, uint8_t *payload) {
     payload[0] = message->status;
     rn1_store_u14le(payload + 1, (uint16_t)message->int_x);
     rn1_store_u14le(payload + 3, (uint16_t)message->int_y);
@@ -528,7 +547,7 @@ enum rn1_result rn1_gyro_decode(struct rn1_gyro *message, const uint8_t *payload
 
 /* --- xcel ------------------------------------------------------------------------------------- */
 
-static enum rn1_result rn1_xcel_validate(const struct rn1_xcel *message) {
+RN1_INLINE enum rn1_result rn1_xcel_validate(const struct rn1_xcel *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
@@ -544,7 +563,7 @@ static enum rn1_result rn1_xcel_validate(const struct rn1_xcel *message) {
     return RN1_OK;
 }
 
-static void rn1_xcel_store(const struct rn1_xcel *message, uint8_t *payload) {
+RN1_INLINE void rn1_xcel_store(const struct rn1_xcel *message, uint8_t *payload) {
     payload[0] = message->status;
     rn1_store_u14le(payload + 1, (uint16_t)message->int_x);
     rn1_store_u14le(payload + 3, (uint16_t)message->int_y);
@@ -594,7 +613,7 @@ enum rn1_result rn1_xcel_decode(struct rn1_xcel *message, const uint8_t *payload
 
 /* --- compass ---------------------------------------------------------------------------------- */
 
-static enum rn1_result rn1_compass_validate(const struct rn1_compass *message) {
+RN1_INLINE enum rn1_result rn1_compass_validate(const struct rn1_compass *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
@@ -610,7 +629,7 @@ static enum rn1_result rn1_compass_validate(const struct rn1_compass *message) {
     return RN1_OK;
 }
 
-static void rn1_compass_store(const struct rn1_compass *message, uint8_t *payload) {
+RN1_INLINE void rn1_compass_store(const struct rn1_compass *message, uint8_t *payload) {
     payload[0] = message->status;
     rn1_store_u14le(payload + 1, (uint16_t)message->avg_x);
     rn1_store_u14le(payload + 3, (uint16_t)message->avg_y);
@@ -661,7 +680,7 @@ enum rn1_result rn1_compass_decode(struct rn1_compass *message, const uint8_t *p
 
 /* --- optflow ---------------------------------------------------------------------------------- */
 
-static enum rn1_result rn1_optflow_validate(const struct rn1_optflow *message) {
+RN1_INLINE enum rn1_result rn1_optflow_validate(const struct rn1_optflow *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
@@ -677,7 +696,7 @@ static enum rn1_result rn1_optflow_validate(const struct rn1_optflow *message) {
     return RN1_OK;
 }
 
-static void rn1_optflow_store(const struct rn1_optflow *message, uint8_t *payload) {
+RN1_INLINE void rn1_optflow_store(const struct rn1_optflow *message, uint8_t *payload) {
     payload[0] = message->status;
     rn1_store_u14le(payload + 1, (uint16_t)message->dx);
     rn1_store_u14le(payload + 3, (uint16_t)message->dy);
@@ -728,7 +747,7 @@ enum rn1_result rn1_optflow_decode(struct rn1_optflow *message, const uint8_t *p
 
 /* --- lidar ------------------------------------------------------------------------------------ */
 
-static enum rn1_result rn1_lidar_validate(const struct rn1_lidar *message) {
+RN1_INLINE enum rn1_result rn1_lidar_validate(const struct rn1_lidar *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
@@ -738,7 +757,7 @@ static enum rn1_result rn1_lidar_validate(const struct rn1_lidar *message) {
     return RN1_OK;
 }
 
-static void rn1_lidar_store(const struct rn1_lidar *message, uint8_t *payload) {
+RN1_INLINE void rn1_lidar_store(const struct rn1_lidar *message, uint8_t *payload) {
     payload[0] = message->status;
     for (size_t i = 0; i < 360U; i++) {
         rn1_store_u14le(payload + 1 + 2 * i, message->distances[i]);
@@ -786,7 +805,7 @@ enum rn1_result rn1_lidar_decode(struct rn1_lidar *message, const uint8_t *paylo
 
 /* --- sonar ------------------------------------------------------------------------------------ */
 
-static enum rn1_result rn1_sonar_validate(const struct rn1_sonar *message) {
+RN1_INLINE enum rn1_result rn1_sonar_validate(const struct rn1_sonar *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
@@ -796,7 +815,7 @@ static enum rn1_result rn1_sonar_validate(const struct rn1_sonar *message) {
     return RN1_OK;
 }
 
-static void rn1_sonar_store(const struct rn1_sonar *message, uint8_t *payload) {
+RN1_INLINE void rn1_sonar_store(const struct rn1_sonar *message, uint8_t *payload) {
     payload[0] = message->status;
     for (size_t i = 0; i < 7U; i++) {
         rn1_store_u14le(payload + 1 + 2 * i, message->distances[i]);
@@ -844,7 +863,7 @@ enum rn1_result rn1_sonar_decode(struct rn1_sonar *message, const uint8_t *paylo
 
 /* --- facing ----------------------------------------------------------------------------------- */
 
-static enum rn1_result rn1_facing_validate(const struct rn1_facing *message) {
+RN1_INLINE enum rn1_result rn1_facing_validate(const struct rn1_facing *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
@@ -857,7 +876,7 @@ static enum rn1_result rn1_facing_validate(const struct rn1_facing *message) {
     return RN1_OK;
 }
 
-static void rn1_facing_store(const struct rn1_facing *message, uint8_t *payload) {
+RN1_INLINE void rn1_facing_store(const struct rn1_facing *message, uint8_t *payload) {
     payload[0] = message->status;
     rn1_store_u14le(payload + 1, message->heading);
     rn1_store_u14le(payload + 3, (uint16_t)message->speed);
@@ -1045,7 +1064,7 @@ static void rn1_brain_send_head(rn1_put put, void *user, size_t payload, uint8_t
     rn1_write(put, user, (uint8_t)start);
 }
 
-static void rn1_write_u14le(rn1_put put, void *user, uint16_t value) {
+RN1_INLINE void rn1_write_u14le(rn1_put put, void *user, uint16_t value) {
     rn1_write(put, user, (uint8_t)(value & 0x7FU));
     rn1_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU));
 }
@@ -1063,24 +1082,26 @@ static void rn1_write_bytes(rn1_put put, void *user, const void *from, size_t si
     }
 }
 
-static void rn1_move_manual_put(const struct rn1_move_manual *message, rn1_put put, void *user) {
+RN1_INLINE void rn1_move_manual_put(const struct rn1_move_manual *message,
+                                    rn1_put put, void *user) {
     rn1_write(put, user, (uint8_t)((uint8_t)message->speed & 0x7FU));
     rn1_write(put, user, (uint8_t)((uint8_t)message->arc & 0x7FU));
 }
 
-static void rn1_move_relative_twostep_put(const struct rn1_move_relative_twostep *message,
+RN1_INLINE void rn1_move_relative_twostep_put(const struct rn1_move_relative_twostep *message,
+                                              rn1_put put, void *user) {
+    rn1_write_u14le(put, user, (uint16_t)message->angle);
+    rn1_write_u14le(put, user, (uint16_t)message->forward);
+}
+
+RN1_INLINE void rn1_move_relative_arc_put(const struct rn1_move_relative_arc *message,
                                           rn1_put put, void *user) {
     rn1_write_u14le(put, user, (uint16_t)message->angle);
     rn1_write_u14le(put, user, (uint16_t)message->forward);
 }
 
-static void rn1_move_relative_arc_put(const struct rn1_move_relative_arc *message,
-                                      rn1_put put, void *user) {
-    rn1_write_u14le(put, user, (uint16_t)message->angle);
-    rn1_write_u14le(put, user, (uint16_t)message->forward);
-}
-
-static void rn1_maintenance_put(const struct rn1_maintenance *message, rn1_put put, void *user) {
+RN1_INLINE void rn1_maintenance_put(const struct rn1_maintenance *message,
+                                    rn1_put put, void *user) {
     rn1_write(put, user, 0x42U);
     rn1_write(put, user, 0x11U);
     rn1_write(put, user, 0x7AU);
@@ -1101,49 +1122,49 @@ static void rn1_maintenance_put(const struct rn1_maintenance *message, rn1_put p
     }
 }
 
-static void rn1_gyro_put(const struct rn1_gyro *message, rn1_put put, void *user) {
+RN1_INLINE void rn1_gyro_put(const struct rn1_gyro *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
     rn1_write_u14le(put, user, (uint16_t)message->int_x);
     rn1_write_u14le(put, user, (uint16_t)message->int_y);
     rn1_write_u14le(put, user, (uint16_t)message->int_z);
 }
 
-static void rn1_xcel_put(const struct rn1_xcel *message, rn1_put put, void *user) {
+RN1_INLINE void rn1_xcel_put(const struct rn1_xcel *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
     rn1_write_u14le(put, user, (uint16_t)message->int_x);
     rn1_write_u14le(put, user, (uint16_t)message->int_y);
     rn1_write_u14le(put, user, (uint16_t)message->int_z);
 }
 
-static void rn1_compass_put(const struct rn1_compass *message, rn1_put put, void *user) {
+RN1_INLINE void rn1_compass_put(const struct rn1_compass *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
     rn1_write_u14le(put, user, (uint16_t)message->avg_x);
     rn1_write_u14le(put, user, (uint16_t)message->avg_y);
     rn1_write_u14le(put, user, (uint16_t)message->avg_z);
 }
 
-static void rn1_optflow_put(const struct rn1_optflow *message, rn1_put put, void *user) {
+RN1_INLINE void rn1_optflow_put(const struct rn1_optflow *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
     rn1_write_u14le(put, user, (uint16_t)message->dx);
     rn1_write_u14le(put, user, (uint16_t)message->dy);
     rn1_write(put, user, message->q);
 }
 
-static void rn1_lidar_put(const struct rn1_lidar *message, rn1_put put, void *user) {
+RN1_INLINE void rn1_lidar_put(const struct rn1_lidar *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
     for (size_t i = 0; i < 360U; i++) {
         rn1_write_u14le(put, user, message->distances[i]);
     }
 }
 
-static void rn1_sonar_put(const struct rn1_sonar *message, rn1_put put, void *user) {
+RN1_INLINE void rn1_sonar_put(const struct rn1_sonar *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
     for (size_t i = 0; i < 7U; i++) {
         rn1_write_u14le(put, user, message->distances[i]);
     }
 }
 
-static void rn1_facing_put(const struct rn1_facing *message, rn1_put put, void *user) {
+RN1_INLINE void rn1_facing_put(const struct rn1_facing *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
     rn1_write_u14le(put, user, message->heading);
     rn1_write_u14le(put, user, (uint16_t)message->speed);
@@ -2315,7 +2336,7 @@ void rn1_brain_dispatch(void *user, const struct rn1_brain_event *event) {
     }
 }
 
-#if defined(__GNUC__) || defined(__clang__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(RN1_NO_WEAK)
 
 __attribute__((weak)) void rn1_on_move_manual(void *user, const struct rn1_move_manual *message,
                                               const struct rn1_host_parts *parts) {

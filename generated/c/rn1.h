@@ -21,6 +21,14 @@
 extern "C" {
 #endif
 
+/**
+ * In front of each function that the source defines. Where the one source that calls them includes
+ * `rn1.c`, define this as `static inline`: then the compiler sees all calls.
+ */
+#ifndef RN1_API
+#define RN1_API
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define RN1_SPEC_HASH "52b96749db6c04ab62c29308f0a6a960c2ec0a24307e498c3bbbfb5cc9f6c2bc"
 
@@ -141,11 +149,11 @@ struct rn1_move_manual {
     int8_t arc;
 };
 
-enum rn1_result rn1_move_manual_encode(const struct rn1_move_manual *message, uint8_t *payload,
-                                       size_t capacity, size_t *size);
-enum rn1_result rn1_move_manual_decode(struct rn1_move_manual *message, const uint8_t *payload,
-                                       size_t size);
-void rn1_move_manual_load(struct rn1_move_manual *message, const uint8_t *payload);
+RN1_API enum rn1_result rn1_move_manual_encode(const struct rn1_move_manual *message,
+                                               uint8_t *payload, size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_move_manual_decode(struct rn1_move_manual *message,
+                                               const uint8_t *payload, size_t size);
+RN1_API void rn1_move_manual_load(struct rn1_move_manual *message, const uint8_t *payload);
 
 /* --- move_relative_twostep -------------------------------------------------------------------- */
 
@@ -167,12 +175,13 @@ struct rn1_move_relative_twostep {
     int16_t forward;
 };
 
-enum rn1_result rn1_move_relative_twostep_encode(const struct rn1_move_relative_twostep *message,
-                                                 uint8_t *payload, size_t capacity, size_t *size);
-enum rn1_result rn1_move_relative_twostep_decode(struct rn1_move_relative_twostep *message,
-                                                 const uint8_t *payload, size_t size);
-void rn1_move_relative_twostep_load(struct rn1_move_relative_twostep *message,
-                                    const uint8_t *payload);
+RN1_API enum rn1_result rn1_move_relative_twostep_encode(
+    const struct rn1_move_relative_twostep *message, uint8_t *payload, size_t capacity,
+    size_t *size);
+RN1_API enum rn1_result rn1_move_relative_twostep_decode(struct rn1_move_relative_twostep *message,
+                                                         const uint8_t *payload, size_t size);
+RN1_API void rn1_move_relative_twostep_load(struct rn1_move_relative_twostep *message,
+                                            const uint8_t *payload);
 
 /* --- move_relative_arc ------------------------------------------------------------------------ */
 
@@ -194,11 +203,13 @@ struct rn1_move_relative_arc {
     int16_t forward;
 };
 
-enum rn1_result rn1_move_relative_arc_encode(const struct rn1_move_relative_arc *message,
-                                             uint8_t *payload, size_t capacity, size_t *size);
-enum rn1_result rn1_move_relative_arc_decode(struct rn1_move_relative_arc *message,
-                                             const uint8_t *payload, size_t size);
-void rn1_move_relative_arc_load(struct rn1_move_relative_arc *message, const uint8_t *payload);
+RN1_API enum rn1_result rn1_move_relative_arc_encode(const struct rn1_move_relative_arc *message,
+                                                     uint8_t *payload, size_t capacity,
+                                                     size_t *size);
+RN1_API enum rn1_result rn1_move_relative_arc_decode(struct rn1_move_relative_arc *message,
+                                                     const uint8_t *payload, size_t size);
+RN1_API void rn1_move_relative_arc_load(struct rn1_move_relative_arc *message,
+                                        const uint8_t *payload);
 
 /* --- maintenance ------------------------------------------------------------------------------ */
 
@@ -228,11 +239,12 @@ struct rn1_maintenance {
     } argument;
 };
 
-enum rn1_result rn1_maintenance_encode(const struct rn1_maintenance *message, uint8_t *payload,
-                                       size_t capacity, size_t *size);
-enum rn1_result rn1_maintenance_decode(struct rn1_maintenance *message, const uint8_t *payload,
-                                       size_t size);
-void rn1_maintenance_load(struct rn1_maintenance *message, const uint8_t *payload, size_t size);
+RN1_API enum rn1_result rn1_maintenance_encode(const struct rn1_maintenance *message,
+                                               uint8_t *payload, size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_maintenance_decode(struct rn1_maintenance *message,
+                                               const uint8_t *payload, size_t size);
+RN1_API void rn1_maintenance_load(struct rn1_maintenance *message, const uint8_t *payload,
+                                  size_t size);
 
 /* --- gyro ------------------------------------------------------------------------------------- */
 
@@ -254,10 +266,11 @@ struct rn1_gyro {
     int16_t int_z;
 };
 
-enum rn1_result rn1_gyro_encode(const struct rn1_gyro *message, uint8_t *payload, size_t capacity,
-                                size_t *size);
-enum rn1_result rn1_gyro_decode(struct rn1_gyro *message, const uint8_t *payload, size_t size);
-void rn1_gyro_load(struct rn1_gyro *message, const uint8_t *payload);
+RN1_API enum rn1_result rn1_gyro_encode(const struct rn1_gyro *message, uint8_t *payload,
+                                        size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_gyro_decode(struct rn1_gyro *message, const uint8_t *payload,
+                                        size_t size);
+RN1_API void rn1_gyro_load(struct rn1_gyro *message, const uint8_t *payload);
 
 /* --- xcel ------------------------------------------------------------------------------------- */
 
@@ -279,10 +292,11 @@ struct rn1_xcel {
     int16_t int_z;
 };
 
-enum rn1_result rn1_xcel_encode(const struct rn1_xcel *message, uint8_t *payload, size_t capacity,
-                                size_t *size);
-enum rn1_result rn1_xcel_decode(struct rn1_xcel *message, const uint8_t *payload, size_t size);
-void rn1_xcel_load(struct rn1_xcel *message, const uint8_t *payload);
+RN1_API enum rn1_result rn1_xcel_encode(const struct rn1_xcel *message, uint8_t *payload,
+                                        size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_xcel_decode(struct rn1_xcel *message, const uint8_t *payload,
+                                        size_t size);
+RN1_API void rn1_xcel_load(struct rn1_xcel *message, const uint8_t *payload);
 
 /* --- compass ---------------------------------------------------------------------------------- */
 
@@ -304,11 +318,11 @@ struct rn1_compass {
     int16_t avg_z;
 };
 
-enum rn1_result rn1_compass_encode(const struct rn1_compass *message, uint8_t *payload,
-                                   size_t capacity, size_t *size);
-enum rn1_result rn1_compass_decode(struct rn1_compass *message, const uint8_t *payload,
-                                   size_t size);
-void rn1_compass_load(struct rn1_compass *message, const uint8_t *payload);
+RN1_API enum rn1_result rn1_compass_encode(const struct rn1_compass *message, uint8_t *payload,
+                                           size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_compass_decode(struct rn1_compass *message, const uint8_t *payload,
+                                           size_t size);
+RN1_API void rn1_compass_load(struct rn1_compass *message, const uint8_t *payload);
 
 /* --- optflow ---------------------------------------------------------------------------------- */
 
@@ -330,11 +344,11 @@ struct rn1_optflow {
     uint8_t q;
 };
 
-enum rn1_result rn1_optflow_encode(const struct rn1_optflow *message, uint8_t *payload,
-                                   size_t capacity, size_t *size);
-enum rn1_result rn1_optflow_decode(struct rn1_optflow *message, const uint8_t *payload,
-                                   size_t size);
-void rn1_optflow_load(struct rn1_optflow *message, const uint8_t *payload);
+RN1_API enum rn1_result rn1_optflow_encode(const struct rn1_optflow *message, uint8_t *payload,
+                                           size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_optflow_decode(struct rn1_optflow *message, const uint8_t *payload,
+                                           size_t size);
+RN1_API void rn1_optflow_load(struct rn1_optflow *message, const uint8_t *payload);
 
 /* --- lidar ------------------------------------------------------------------------------------ */
 
@@ -363,10 +377,11 @@ struct rn1_lidar {
     uint16_t distances[360];
 };
 
-enum rn1_result rn1_lidar_encode(const struct rn1_lidar *message, uint8_t *payload, size_t capacity,
-                                 size_t *size);
-enum rn1_result rn1_lidar_decode(struct rn1_lidar *message, const uint8_t *payload, size_t size);
-void rn1_lidar_load(struct rn1_lidar *message, const uint8_t *payload);
+RN1_API enum rn1_result rn1_lidar_encode(const struct rn1_lidar *message, uint8_t *payload,
+                                         size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_lidar_decode(struct rn1_lidar *message, const uint8_t *payload,
+                                         size_t size);
+RN1_API void rn1_lidar_load(struct rn1_lidar *message, const uint8_t *payload);
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint16_t rn1_lidar_distances_at(const uint8_t *payload, size_t index) {
@@ -393,10 +408,11 @@ struct rn1_sonar {
     uint16_t distances[7];
 };
 
-enum rn1_result rn1_sonar_encode(const struct rn1_sonar *message, uint8_t *payload, size_t capacity,
-                                 size_t *size);
-enum rn1_result rn1_sonar_decode(struct rn1_sonar *message, const uint8_t *payload, size_t size);
-void rn1_sonar_load(struct rn1_sonar *message, const uint8_t *payload);
+RN1_API enum rn1_result rn1_sonar_encode(const struct rn1_sonar *message, uint8_t *payload,
+                                         size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_sonar_decode(struct rn1_sonar *message, const uint8_t *payload,
+                                         size_t size);
+RN1_API void rn1_sonar_load(struct rn1_sonar *message, const uint8_t *payload);
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint16_t rn1_sonar_distances_at(const uint8_t *payload, size_t index) {
@@ -424,10 +440,11 @@ struct rn1_facing {
     int16_t speed;
 };
 
-enum rn1_result rn1_facing_encode(const struct rn1_facing *message, uint8_t *payload,
-                                  size_t capacity, size_t *size);
-enum rn1_result rn1_facing_decode(struct rn1_facing *message, const uint8_t *payload, size_t size);
-void rn1_facing_load(struct rn1_facing *message, const uint8_t *payload);
+RN1_API enum rn1_result rn1_facing_encode(const struct rn1_facing *message, uint8_t *payload,
+                                          size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_facing_decode(struct rn1_facing *message, const uint8_t *payload,
+                                          size_t size);
+RN1_API void rn1_facing_load(struct rn1_facing *message, const uint8_t *payload);
 
 /* --- frames ----------------------------------------------------------------------------------- */
 
@@ -445,83 +462,85 @@ typedef void (*rn1_put)(void *user, uint8_t byte);
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_MOVE_MANUAL_FRAME_MAX 4U
 #define RN1_MOVE_MANUAL_FRAME_ROOM 4U
-enum rn1_result rn1_move_manual_frame(const struct rn1_move_manual *message, uint8_t *frame,
-                                      size_t capacity, size_t *size);
-enum rn1_result rn1_move_manual_send(const struct rn1_move_manual *message, rn1_put put,
-                                     void *user);
+RN1_API enum rn1_result rn1_move_manual_frame(const struct rn1_move_manual *message, uint8_t *frame,
+                                              size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_move_manual_send(const struct rn1_move_manual *message, rn1_put put,
+                                             void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_MOVE_RELATIVE_TWOSTEP_FRAME_MAX 6U
 #define RN1_MOVE_RELATIVE_TWOSTEP_FRAME_ROOM 6U
-enum rn1_result rn1_move_relative_twostep_frame(const struct rn1_move_relative_twostep *message,
-                                                uint8_t *frame, size_t capacity, size_t *size);
-enum rn1_result rn1_move_relative_twostep_send(const struct rn1_move_relative_twostep *message,
-                                               rn1_put put, void *user);
+RN1_API enum rn1_result rn1_move_relative_twostep_frame(
+    const struct rn1_move_relative_twostep *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_move_relative_twostep_send(
+    const struct rn1_move_relative_twostep *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_MOVE_RELATIVE_ARC_FRAME_MAX 6U
 #define RN1_MOVE_RELATIVE_ARC_FRAME_ROOM 6U
-enum rn1_result rn1_move_relative_arc_frame(const struct rn1_move_relative_arc *message,
-                                            uint8_t *frame, size_t capacity, size_t *size);
-enum rn1_result rn1_move_relative_arc_send(const struct rn1_move_relative_arc *message, rn1_put put,
-                                           void *user);
+RN1_API enum rn1_result rn1_move_relative_arc_frame(const struct rn1_move_relative_arc *message,
+                                                    uint8_t *frame, size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_move_relative_arc_send(const struct rn1_move_relative_arc *message,
+                                                   rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_MAINTENANCE_FRAME_MAX 9U
 #define RN1_MAINTENANCE_FRAME_ROOM 9U
-enum rn1_result rn1_maintenance_frame(const struct rn1_maintenance *message, uint8_t *frame,
-                                      size_t capacity, size_t *size);
-enum rn1_result rn1_maintenance_send(const struct rn1_maintenance *message, rn1_put put,
-                                     void *user);
+RN1_API enum rn1_result rn1_maintenance_frame(const struct rn1_maintenance *message, uint8_t *frame,
+                                              size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_maintenance_send(const struct rn1_maintenance *message, rn1_put put,
+                                             void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_GYRO_FRAME_MAX 8U
 #define RN1_GYRO_FRAME_ROOM 8U
-enum rn1_result rn1_gyro_frame(const struct rn1_gyro *message, uint8_t *frame, size_t capacity,
-                               size_t *size);
-enum rn1_result rn1_gyro_send(const struct rn1_gyro *message, rn1_put put, void *user);
+RN1_API enum rn1_result rn1_gyro_frame(const struct rn1_gyro *message, uint8_t *frame,
+                                       size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_gyro_send(const struct rn1_gyro *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_XCEL_FRAME_MAX 8U
 #define RN1_XCEL_FRAME_ROOM 8U
-enum rn1_result rn1_xcel_frame(const struct rn1_xcel *message, uint8_t *frame, size_t capacity,
-                               size_t *size);
-enum rn1_result rn1_xcel_send(const struct rn1_xcel *message, rn1_put put, void *user);
+RN1_API enum rn1_result rn1_xcel_frame(const struct rn1_xcel *message, uint8_t *frame,
+                                       size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_xcel_send(const struct rn1_xcel *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_COMPASS_FRAME_MAX 8U
 #define RN1_COMPASS_FRAME_ROOM 8U
-enum rn1_result rn1_compass_frame(const struct rn1_compass *message, uint8_t *frame,
-                                  size_t capacity, size_t *size);
-enum rn1_result rn1_compass_send(const struct rn1_compass *message, rn1_put put, void *user);
+RN1_API enum rn1_result rn1_compass_frame(const struct rn1_compass *message, uint8_t *frame,
+                                          size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_compass_send(const struct rn1_compass *message, rn1_put put,
+                                         void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_OPTFLOW_FRAME_MAX 7U
 #define RN1_OPTFLOW_FRAME_ROOM 7U
-enum rn1_result rn1_optflow_frame(const struct rn1_optflow *message, uint8_t *frame,
-                                  size_t capacity, size_t *size);
-enum rn1_result rn1_optflow_send(const struct rn1_optflow *message, rn1_put put, void *user);
+RN1_API enum rn1_result rn1_optflow_frame(const struct rn1_optflow *message, uint8_t *frame,
+                                          size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_optflow_send(const struct rn1_optflow *message, rn1_put put,
+                                         void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_LIDAR_FRAME_MAX 722U
 #define RN1_LIDAR_FRAME_ROOM 722U
-enum rn1_result rn1_lidar_frame(const struct rn1_lidar *message, uint8_t *frame, size_t capacity,
-                                size_t *size);
-enum rn1_result rn1_lidar_send(const struct rn1_lidar *message, rn1_put put, void *user);
+RN1_API enum rn1_result rn1_lidar_frame(const struct rn1_lidar *message, uint8_t *frame,
+                                        size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_lidar_send(const struct rn1_lidar *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_SONAR_FRAME_MAX 16U
 #define RN1_SONAR_FRAME_ROOM 16U
-enum rn1_result rn1_sonar_frame(const struct rn1_sonar *message, uint8_t *frame, size_t capacity,
-                                size_t *size);
-enum rn1_result rn1_sonar_send(const struct rn1_sonar *message, rn1_put put, void *user);
+RN1_API enum rn1_result rn1_sonar_frame(const struct rn1_sonar *message, uint8_t *frame,
+                                        size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_sonar_send(const struct rn1_sonar *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FACING_FRAME_MAX 6U
 #define RN1_FACING_FRAME_ROOM 6U
-enum rn1_result rn1_facing_frame(const struct rn1_facing *message, uint8_t *frame, size_t capacity,
-                                 size_t *size);
-enum rn1_result rn1_facing_send(const struct rn1_facing *message, rn1_put put, void *user);
+RN1_API enum rn1_result rn1_facing_frame(const struct rn1_facing *message, uint8_t *frame,
+                                         size_t capacity, size_t *size);
+RN1_API enum rn1_result rn1_facing_send(const struct rn1_facing *message, rn1_put put, void *user);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
 
@@ -608,16 +627,18 @@ struct rn1_host_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void rn1_host_decoder_init(struct rn1_host_decoder *decoder, rn1_host_handler handler, void *user);
+RN1_API void rn1_host_decoder_init(struct rn1_host_decoder *decoder, rn1_host_handler handler,
+                                   void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void rn1_host_decoder_push(struct rn1_host_decoder *decoder, uint8_t byte);
+RN1_API void rn1_host_decoder_push(struct rn1_host_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void rn1_host_decoder_feed(struct rn1_host_decoder *decoder, const uint8_t *data, size_t size);
+RN1_API void rn1_host_decoder_feed(struct rn1_host_decoder *decoder, const uint8_t *data,
+                                   size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void rn1_host_decoder_flush(struct rn1_host_decoder *decoder);
+RN1_API void rn1_host_decoder_flush(struct rn1_host_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define rn1_host_decoder_idle rn1_host_decoder_flush
@@ -687,17 +708,18 @@ struct rn1_brain_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void rn1_brain_decoder_init(struct rn1_brain_decoder *decoder, rn1_brain_handler handler,
-                            void *user);
+RN1_API void rn1_brain_decoder_init(struct rn1_brain_decoder *decoder, rn1_brain_handler handler,
+                                    void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void rn1_brain_decoder_push(struct rn1_brain_decoder *decoder, uint8_t byte);
+RN1_API void rn1_brain_decoder_push(struct rn1_brain_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void rn1_brain_decoder_feed(struct rn1_brain_decoder *decoder, const uint8_t *data, size_t size);
+RN1_API void rn1_brain_decoder_feed(struct rn1_brain_decoder *decoder, const uint8_t *data,
+                                    size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void rn1_brain_decoder_flush(struct rn1_brain_decoder *decoder);
+RN1_API void rn1_brain_decoder_flush(struct rn1_brain_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define rn1_brain_decoder_idle rn1_brain_decoder_flush
@@ -707,8 +729,9 @@ void rn1_brain_decoder_flush(struct rn1_brain_decoder *decoder);
 /*
  * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
  * function with it. Define those that you need; the others do nothing. They are weak where the
- * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
- * by defining RN1_NO_HANDLERS for the source.
+ * compiler knows weak functions. For another one, and where yours stand in the source that includes
+ * this one's source, define RN1_NO_WEAK and all of them, or leave out the dispatching by
+ * defining RN1_NO_HANDLERS for the source.
  */
 
 /** move_manual came from host. */
@@ -728,7 +751,7 @@ void rn1_on_maintenance(void *user, const struct rn1_maintenance *message,
                         const struct rn1_host_parts *parts);
 
 /** Calls the functions above; give it to rn1_host_decoder_init. */
-void rn1_host_dispatch(void *user, const struct rn1_host_event *event);
+RN1_API void rn1_host_dispatch(void *user, const struct rn1_host_event *event);
 
 /** gyro came from brain. */
 void rn1_on_gyro(void *user, const struct rn1_gyro *message, const struct rn1_brain_parts *parts);
@@ -755,7 +778,7 @@ void rn1_on_facing(void *user, const struct rn1_facing *message,
                    const struct rn1_brain_parts *parts);
 
 /** Calls the functions above; give it to rn1_brain_decoder_init. */
-void rn1_brain_dispatch(void *user, const struct rn1_brain_event *event);
+RN1_API void rn1_brain_dispatch(void *user, const struct rn1_brain_event *event);
 
 #ifdef __cplusplus
 }

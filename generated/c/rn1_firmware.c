@@ -3,6 +3,24 @@
 #include "rn1_firmware.h"
 
 /*
+ * What a function of the header needs is put into it, so that it is short and fast also where no
+ * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
+ * the function that calls it: define RN1_FIRMWARE_APART as `static` with -flto, or in one source.
+ */
+#if defined(__GNUC__)
+#define RN1_FIRMWARE_INLINE static inline __attribute__((always_inline))
+#else
+#define RN1_FIRMWARE_INLINE static inline
+#endif
+#ifndef RN1_FIRMWARE_APART
+#if defined(__GNUC__)
+#define RN1_FIRMWARE_APART static __attribute__((noinline))
+#else
+#define RN1_FIRMWARE_APART static
+#endif
+#endif
+
+/*
  * `feed` looks for whole frames first, eight bytes at a time. That needs some more flash, and is
  * done where pointers have more than 32 bits; define RN1_FIRMWARE_FAST_FEED as 1 or 0 to choose.
  * Define RN1_FIRMWARE_SSE2 as 1 for sixteen at a time on x86.
@@ -34,7 +52,7 @@ static int8_t rn1_firmware_load_s7(const uint8_t *at) {
     return (int8_t)((at[0] ^ 0x40U) - 0x40U);
 }
 
-static void rn1_firmware_store_u14be(uint8_t *at, uint16_t value) {
+RN1_FIRMWARE_INLINE void rn1_firmware_store_u14be(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
     at[1] = (uint8_t)(value & 0x7FU);
 }
@@ -56,7 +74,7 @@ static void rn1_firmware_copy(void *to, const void *from, size_t size) {
     }
 }
 
-static void rn1_firmware_store_u14le(uint8_t *at, uint16_t value) {
+RN1_FIRMWARE_INLINE void rn1_firmware_store_u14le(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)(value & 0x7FU);
     at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
 }
@@ -117,7 +135,7 @@ static int64_t rn1_firmware_load_s35be(const uint8_t *at) {
 
 /* --- move_manual ------------------------------------------------------------------------------ */
 
-static enum rn1_firmware_result rn1_firmware_move_manual_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_move_manual_validate(
     const struct rn1_firmware_move_manual *message) {
     if (message->speed < -64 || message->speed > 63) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -128,8 +146,8 @@ static enum rn1_firmware_result rn1_firmware_move_manual_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_move_manual_store(const struct rn1_firmware_move_manual *message,
-                                           uint8_t *payload) {
+RN1_FIRMWARE_INLINE void rn1_firmware_move_manual_store(
+    const struct rn1_firmware_move_manual *message, uint8_t *payload) {
     payload[0] = (uint8_t)((uint8_t)message->speed & 0x7FU);
     payload[1] = (uint8_t)((uint8_t)message->arc & 0x7FU);
 }
@@ -179,7 +197,7 @@ enum rn1_firmware_result rn1_firmware_move_manual_decode(struct rn1_firmware_mov
 
 /* --- move_relative_twostep -------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_move_relative_twostep_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_move_relative_twostep_validate(
     const struct rn1_firmware_move_relative_twostep *message) {
     if (message->angle < -8192 || message->angle > 8191) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -190,7 +208,7 @@ static enum rn1_firmware_result rn1_firmware_move_relative_twostep_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_move_relative_twostep_store(
+RN1_FIRMWARE_INLINE void rn1_firmware_move_relative_twostep_store(
     const struct rn1_firmware_move_relative_twostep *message, uint8_t *payload) {
     rn1_firmware_store_u14be(payload, (uint16_t)message->angle);
     rn1_firmware_store_u14be(payload + 2, (uint16_t)message->forward);
@@ -243,7 +261,7 @@ enum rn1_firmware_result rn1_firmware_move_relative_twostep_decode(
 
 /* --- decrease_phase_angle --------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_decrease_phase_angle_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_decrease_phase_angle_validate(
     const struct rn1_firmware_decrease_phase_angle *message) {
     if (message->ignored > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -251,7 +269,7 @@ static enum rn1_firmware_result rn1_firmware_decrease_phase_angle_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_decrease_phase_angle_store(
+RN1_FIRMWARE_INLINE void rn1_firmware_decrease_phase_angle_store(
     const struct rn1_firmware_decrease_phase_angle *message, uint8_t *payload) {
     payload[0] = message->ignored;
 }
@@ -301,7 +319,7 @@ enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(
 
 /* --- increase_phase_angle --------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_increase_phase_angle_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_increase_phase_angle_validate(
     const struct rn1_firmware_increase_phase_angle *message) {
     if (message->ignored > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -309,7 +327,7 @@ static enum rn1_firmware_result rn1_firmware_increase_phase_angle_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_increase_phase_angle_store(
+RN1_FIRMWARE_INLINE void rn1_firmware_increase_phase_angle_store(
     const struct rn1_firmware_increase_phase_angle *message, uint8_t *payload) {
     payload[0] = message->ignored;
 }
@@ -374,7 +392,7 @@ static size_t rn1_firmware_maintenance_measure(const struct rn1_firmware_mainten
     return size;
 }
 
-static enum rn1_firmware_result rn1_firmware_maintenance_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_maintenance_validate(
     const struct rn1_firmware_maintenance *message) {
     if (message->operation > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -401,8 +419,8 @@ static enum rn1_firmware_result rn1_firmware_maintenance_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_maintenance_store(const struct rn1_firmware_maintenance *message,
-                                           uint8_t *payload) {
+RN1_FIRMWARE_INLINE void rn1_firmware_maintenance_store(
+    const struct rn1_firmware_maintenance *message, uint8_t *payload) {
     payload[0] = 0x42U;
     payload[1] = 0x11U;
     payload[2] = 0x7AU;
@@ -529,7 +547,7 @@ enum rn1_firmware_result rn1_firmware_maintenance_decode(struct rn1_firmware_mai
 
 /* --- gyro ------------------------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_gyro_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_gyro_validate(
     const struct rn1_firmware_gyro *message) {
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -546,7 +564,8 @@ static enum rn1_firmware_result rn1_firmware_gyro_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_gyro_store(const struct rn1_firmware_gyro *message, uint8_t *payload) {
+RN1_FIRMWARE_INLINE void rn1_firmware_gyro_store(const struct rn1_firmware_gyro *message,
+                                                 uint8_t *payload) {
     payload[0] = message->status;
     rn1_firmware_store_u14le(payload + 1, (uint16_t)message->int_x);
     rn1_firmware_store_u14le(payload + 3, (uint16_t)message->int_y);
@@ -598,7 +617,7 @@ enum rn1_firmware_result rn1_firmware_gyro_decode(struct rn1_firmware_gyro *mess
 
 /* --- xcel ------------------------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_xcel_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_xcel_validate(
     const struct rn1_firmware_xcel *message) {
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -615,7 +634,8 @@ static enum rn1_firmware_result rn1_firmware_xcel_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_xcel_store(const struct rn1_firmware_xcel *message, uint8_t *payload) {
+RN1_FIRMWARE_INLINE void rn1_firmware_xcel_store(const struct rn1_firmware_xcel *message,
+                                                 uint8_t *payload) {
     payload[0] = message->status;
     rn1_firmware_store_u14le(payload + 1, (uint16_t)message->int_x);
     rn1_firmware_store_u14le(payload + 3, (uint16_t)message->int_y);
@@ -667,7 +687,7 @@ enum rn1_firmware_result rn1_firmware_xcel_decode(struct rn1_firmware_xcel *mess
 
 /* --- compass ---------------------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_compass_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_compass_validate(
     const struct rn1_firmware_compass *message) {
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -684,8 +704,8 @@ static enum rn1_firmware_result rn1_firmware_compass_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_compass_store(const struct rn1_firmware_compass *message,
-                                       uint8_t *payload) {
+RN1_FIRMWARE_INLINE void rn1_firmware_compass_store(const struct rn1_firmware_compass *message,
+                                                    uint8_t *payload) {
     payload[0] = message->status;
     rn1_firmware_store_u14le(payload + 1, (uint16_t)message->avg_x);
     rn1_firmware_store_u14le(payload + 3, (uint16_t)message->avg_y);
@@ -738,7 +758,7 @@ enum rn1_firmware_result rn1_firmware_compass_decode(struct rn1_firmware_compass
 
 /* --- lidar ------------------------------------------------------------------------------------ */
 
-static enum rn1_firmware_result rn1_firmware_lidar_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_lidar_validate(
     const struct rn1_firmware_lidar *message) {
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -749,7 +769,8 @@ static enum rn1_firmware_result rn1_firmware_lidar_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_lidar_store(const struct rn1_firmware_lidar *message, uint8_t *payload) {
+RN1_FIRMWARE_INLINE void rn1_firmware_lidar_store(const struct rn1_firmware_lidar *message,
+                                                  uint8_t *payload) {
     payload[0] = message->status;
     for (size_t i = 0; i < 360U; i++) {
         rn1_firmware_store_u14le(payload + 1 + 2 * i, message->distances[i]);
@@ -800,7 +821,7 @@ enum rn1_firmware_result rn1_firmware_lidar_decode(struct rn1_firmware_lidar *me
 
 /* --- sonar ------------------------------------------------------------------------------------ */
 
-static enum rn1_firmware_result rn1_firmware_sonar_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_sonar_validate(
     const struct rn1_firmware_sonar *message) {
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -811,7 +832,8 @@ static enum rn1_firmware_result rn1_firmware_sonar_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_sonar_store(const struct rn1_firmware_sonar *message, uint8_t *payload) {
+RN1_FIRMWARE_INLINE void rn1_firmware_sonar_store(const struct rn1_firmware_sonar *message,
+                                                  uint8_t *payload) {
     payload[0] = message->status;
     for (size_t i = 0; i < 3U; i++) {
         rn1_firmware_store_u14le(payload + 1 + 2 * i, message->distances[i]);
@@ -862,7 +884,7 @@ enum rn1_firmware_result rn1_firmware_sonar_decode(struct rn1_firmware_sonar *me
 
 /* --- facing ----------------------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_facing_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_facing_validate(
     const struct rn1_firmware_facing *message) {
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -876,7 +898,8 @@ static enum rn1_firmware_result rn1_firmware_facing_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_facing_store(const struct rn1_firmware_facing *message, uint8_t *payload) {
+RN1_FIRMWARE_INLINE void rn1_firmware_facing_store(const struct rn1_firmware_facing *message,
+                                                   uint8_t *payload) {
     payload[0] = message->status;
     rn1_firmware_store_u14le(payload + 1, (uint16_t)message->heading);
     rn1_firmware_store_u14le(payload + 3, (uint16_t)message->speed);
@@ -927,7 +950,7 @@ enum rn1_firmware_result rn1_firmware_facing_decode(struct rn1_firmware_facing *
 
 /* --- optflow_integral ------------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_optflow_integral_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_optflow_integral_validate(
     const struct rn1_firmware_optflow_integral *message) {
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -941,8 +964,8 @@ static enum rn1_firmware_result rn1_firmware_optflow_integral_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_optflow_integral_store(const struct rn1_firmware_optflow_integral *message,
-                                                uint8_t *payload) {
+RN1_FIRMWARE_INLINE void rn1_firmware_optflow_integral_store(
+    const struct rn1_firmware_optflow_integral *message, uint8_t *payload) {
     payload[0] = message->status;
     rn1_firmware_store_u14be(payload + 1, (uint16_t)message->int_x);
     rn1_firmware_store_u14be(payload + 3, (uint16_t)message->int_y);
@@ -995,7 +1018,7 @@ enum rn1_firmware_result rn1_firmware_optflow_integral_decode(
 
 /* --- motor_controller_message ----------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_motor_controller_message_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_motor_controller_message_validate(
     const struct rn1_firmware_motor_controller_message *message) {
     if (message->last_msg > 16383U) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -1003,7 +1026,7 @@ static enum rn1_firmware_result rn1_firmware_motor_controller_message_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_motor_controller_message_store(
+RN1_FIRMWARE_INLINE void rn1_firmware_motor_controller_message_store(
     const struct rn1_firmware_motor_controller_message *message, uint8_t *payload) {
     rn1_firmware_store_u14be(payload, message->last_msg);
 }
@@ -1054,7 +1077,7 @@ enum rn1_firmware_result rn1_firmware_motor_controller_message_decode(
 
 /* --- debug_numbers ---------------------------------------------------------------------------- */
 
-static enum rn1_firmware_result rn1_firmware_debug_numbers_validate(
+RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_debug_numbers_validate(
     const struct rn1_firmware_debug_numbers *message) {
     if (message->dbg1 < -2147483648LL || message->dbg1 > 2147483647L) {
         return RN1_FIRMWARE_ERROR_RANGE;
@@ -1071,8 +1094,8 @@ static enum rn1_firmware_result rn1_firmware_debug_numbers_validate(
     return RN1_FIRMWARE_OK;
 }
 
-static void rn1_firmware_debug_numbers_store(const struct rn1_firmware_debug_numbers *message,
-                                             uint8_t *payload) {
+RN1_FIRMWARE_INLINE void rn1_firmware_debug_numbers_store(
+    const struct rn1_firmware_debug_numbers *message, uint8_t *payload) {
     rn1_firmware_store_u35be(payload, (uint64_t)message->dbg1);
     rn1_firmware_store_u35be(payload + 5, (uint64_t)message->dbg2);
     rn1_firmware_store_u35be(payload + 10, (uint64_t)message->dbg3);
@@ -1269,7 +1292,8 @@ static void rn1_firmware_brain_send_head(rn1_firmware_put put, void *user, size_
     rn1_firmware_write(put, user, (uint8_t)start);
 }
 
-static void rn1_firmware_write_u14be(rn1_firmware_put put, void *user, uint16_t value) {
+RN1_FIRMWARE_INLINE void rn1_firmware_write_u14be(rn1_firmware_put put, void *user,
+                                                  uint16_t value) {
     rn1_firmware_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU));
     rn1_firmware_write(put, user, (uint8_t)(value & 0x7FU));
 }
@@ -1282,7 +1306,8 @@ static void rn1_firmware_write_bytes(rn1_firmware_put put, void *user, const voi
     }
 }
 
-static void rn1_firmware_write_u14le(rn1_firmware_put put, void *user, uint16_t value) {
+RN1_FIRMWARE_INLINE void rn1_firmware_write_u14le(rn1_firmware_put put, void *user,
+                                                  uint16_t value) {
     rn1_firmware_write(put, user, (uint8_t)(value & 0x7FU));
     rn1_firmware_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU));
 }
@@ -1295,30 +1320,30 @@ static void rn1_firmware_write_u35be(rn1_firmware_put put, void *user, uint64_t 
     rn1_firmware_write(put, user, (uint8_t)(value & 0x7FU));
 }
 
-static void rn1_firmware_move_manual_put(const struct rn1_firmware_move_manual *message,
-                                         rn1_firmware_put put, void *user) {
+RN1_FIRMWARE_INLINE void rn1_firmware_move_manual_put(
+    const struct rn1_firmware_move_manual *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, (uint8_t)((uint8_t)message->speed & 0x7FU));
     rn1_firmware_write(put, user, (uint8_t)((uint8_t)message->arc & 0x7FU));
 }
 
-static void rn1_firmware_move_relative_twostep_put(
+RN1_FIRMWARE_INLINE void rn1_firmware_move_relative_twostep_put(
     const struct rn1_firmware_move_relative_twostep *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write_u14be(put, user, (uint16_t)message->angle);
     rn1_firmware_write_u14be(put, user, (uint16_t)message->forward);
 }
 
-static void rn1_firmware_decrease_phase_angle_put(
+RN1_FIRMWARE_INLINE void rn1_firmware_decrease_phase_angle_put(
     const struct rn1_firmware_decrease_phase_angle *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->ignored);
 }
 
-static void rn1_firmware_increase_phase_angle_put(
+RN1_FIRMWARE_INLINE void rn1_firmware_increase_phase_angle_put(
     const struct rn1_firmware_increase_phase_angle *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->ignored);
 }
 
-static void rn1_firmware_maintenance_put(const struct rn1_firmware_maintenance *message,
-                                         rn1_firmware_put put, void *user) {
+RN1_FIRMWARE_INLINE void rn1_firmware_maintenance_put(
+    const struct rn1_firmware_maintenance *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, 0x42U);
     rn1_firmware_write(put, user, 0x11U);
     rn1_firmware_write(put, user, 0x7AU);
@@ -1337,67 +1362,67 @@ static void rn1_firmware_maintenance_put(const struct rn1_firmware_maintenance *
     }
 }
 
-static void rn1_firmware_gyro_put(const struct rn1_firmware_gyro *message,
-                                  rn1_firmware_put put, void *user) {
+RN1_FIRMWARE_INLINE void rn1_firmware_gyro_put(const struct rn1_firmware_gyro *message,
+                                               rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
     rn1_firmware_write_u14le(put, user, (uint16_t)message->int_x);
     rn1_firmware_write_u14le(put, user, (uint16_t)message->int_y);
     rn1_firmware_write_u14le(put, user, (uint16_t)message->int_z);
 }
 
-static void rn1_firmware_xcel_put(const struct rn1_firmware_xcel *message,
-                                  rn1_firmware_put put, void *user) {
+RN1_FIRMWARE_INLINE void rn1_firmware_xcel_put(const struct rn1_firmware_xcel *message,
+                                               rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
     rn1_firmware_write_u14le(put, user, (uint16_t)message->int_x);
     rn1_firmware_write_u14le(put, user, (uint16_t)message->int_y);
     rn1_firmware_write_u14le(put, user, (uint16_t)message->int_z);
 }
 
-static void rn1_firmware_compass_put(const struct rn1_firmware_compass *message,
-                                     rn1_firmware_put put, void *user) {
+RN1_FIRMWARE_INLINE void rn1_firmware_compass_put(const struct rn1_firmware_compass *message,
+                                                  rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
     rn1_firmware_write_u14le(put, user, (uint16_t)message->avg_x);
     rn1_firmware_write_u14le(put, user, (uint16_t)message->avg_y);
     rn1_firmware_write_u14le(put, user, (uint16_t)message->avg_z);
 }
 
-static void rn1_firmware_lidar_put(const struct rn1_firmware_lidar *message,
-                                   rn1_firmware_put put, void *user) {
+RN1_FIRMWARE_INLINE void rn1_firmware_lidar_put(const struct rn1_firmware_lidar *message,
+                                                rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
     for (size_t i = 0; i < 360U; i++) {
         rn1_firmware_write_u14le(put, user, message->distances[i]);
     }
 }
 
-static void rn1_firmware_sonar_put(const struct rn1_firmware_sonar *message,
-                                   rn1_firmware_put put, void *user) {
+RN1_FIRMWARE_INLINE void rn1_firmware_sonar_put(const struct rn1_firmware_sonar *message,
+                                                rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
     for (size_t i = 0; i < 3U; i++) {
         rn1_firmware_write_u14le(put, user, message->distances[i]);
     }
 }
 
-static void rn1_firmware_facing_put(const struct rn1_firmware_facing *message,
-                                    rn1_firmware_put put, void *user) {
+RN1_FIRMWARE_INLINE void rn1_firmware_facing_put(const struct rn1_firmware_facing *message,
+                                                 rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
     rn1_firmware_write_u14le(put, user, (uint16_t)message->heading);
     rn1_firmware_write_u14le(put, user, (uint16_t)message->speed);
 }
 
-static void rn1_firmware_optflow_integral_put(const struct rn1_firmware_optflow_integral *message,
-                                              rn1_firmware_put put, void *user) {
+RN1_FIRMWARE_INLINE void rn1_firmware_optflow_integral_put(
+    const struct rn1_firmware_optflow_integral *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
     rn1_firmware_write_u14be(put, user, (uint16_t)message->int_x);
     rn1_firmware_write_u14be(put, user, (uint16_t)message->int_y);
 }
 
-static void rn1_firmware_motor_controller_message_put(
+RN1_FIRMWARE_INLINE void rn1_firmware_motor_controller_message_put(
     const struct rn1_firmware_motor_controller_message *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write_u14be(put, user, message->last_msg);
 }
 
-static void rn1_firmware_debug_numbers_put(const struct rn1_firmware_debug_numbers *message,
-                                           rn1_firmware_put put, void *user) {
+RN1_FIRMWARE_INLINE void rn1_firmware_debug_numbers_put(
+    const struct rn1_firmware_debug_numbers *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write_u35be(put, user, (uint64_t)message->dbg1);
     rn1_firmware_write_u35be(put, user, (uint64_t)message->dbg2);
     rn1_firmware_write_u35be(put, user, (uint64_t)message->dbg3);
@@ -2734,7 +2759,7 @@ void rn1_firmware_brain_dispatch(void *user, const struct rn1_firmware_brain_eve
     }
 }
 
-#if defined(__GNUC__) || defined(__clang__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(RN1_FIRMWARE_NO_WEAK)
 
 __attribute__((weak)) void rn1_firmware_on_move_manual(
     void *user, const struct rn1_firmware_move_manual *message,

@@ -21,6 +21,14 @@
 extern "C" {
 #endif
 
+/**
+ * In front of each function that the source defines. Where the one source that calls them includes
+ * `rn1_firmware.c`, define this as `static inline`: then the compiler sees all calls.
+ */
+#ifndef RN1_FIRMWARE_API
+#define RN1_FIRMWARE_API
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define RN1_FIRMWARE_SPEC_HASH "4c7afc95c9fa156c5677328201c53396e1fd4021ec0f97509bbf1a949aefe311"
 
@@ -128,13 +136,13 @@ struct rn1_firmware_move_manual {
     int8_t arc;
 };
 
-enum rn1_firmware_result rn1_firmware_move_manual_encode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_manual_encode(
     const struct rn1_firmware_move_manual *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_move_manual_decode(struct rn1_firmware_move_manual *message,
-                                                         const uint8_t *payload, size_t size);
-void rn1_firmware_move_manual_load(struct rn1_firmware_move_manual *message,
-                                   const uint8_t *payload);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_manual_decode(
+    struct rn1_firmware_move_manual *message, const uint8_t *payload, size_t size);
+RN1_FIRMWARE_API void rn1_firmware_move_manual_load(struct rn1_firmware_move_manual *message,
+                                                    const uint8_t *payload);
 
 /* --- move_relative_twostep -------------------------------------------------------------------- */
 
@@ -162,13 +170,13 @@ struct rn1_firmware_move_relative_twostep {
     int16_t forward;
 };
 
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_encode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_relative_twostep_encode(
     const struct rn1_firmware_move_relative_twostep *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_decode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_relative_twostep_decode(
     struct rn1_firmware_move_relative_twostep *message, const uint8_t *payload, size_t size);
-void rn1_firmware_move_relative_twostep_load(struct rn1_firmware_move_relative_twostep *message,
-                                             const uint8_t *payload);
+RN1_FIRMWARE_API void rn1_firmware_move_relative_twostep_load(
+    struct rn1_firmware_move_relative_twostep *message, const uint8_t *payload);
 
 /* --- decrease_phase_angle --------------------------------------------------------------------- */
 
@@ -192,13 +200,13 @@ struct rn1_firmware_decrease_phase_angle {
     uint8_t ignored;
 };
 
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_encode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_decrease_phase_angle_encode(
     const struct rn1_firmware_decrease_phase_angle *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(
     struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload, size_t size);
-void rn1_firmware_decrease_phase_angle_load(struct rn1_firmware_decrease_phase_angle *message,
-                                            const uint8_t *payload);
+RN1_FIRMWARE_API void rn1_firmware_decrease_phase_angle_load(
+    struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload);
 
 /* --- increase_phase_angle --------------------------------------------------------------------- */
 
@@ -222,13 +230,13 @@ struct rn1_firmware_increase_phase_angle {
     uint8_t ignored;
 };
 
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_encode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_increase_phase_angle_encode(
     const struct rn1_firmware_increase_phase_angle *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(
     struct rn1_firmware_increase_phase_angle *message, const uint8_t *payload, size_t size);
-void rn1_firmware_increase_phase_angle_load(struct rn1_firmware_increase_phase_angle *message,
-                                            const uint8_t *payload);
+RN1_FIRMWARE_API void rn1_firmware_increase_phase_angle_load(
+    struct rn1_firmware_increase_phase_angle *message, const uint8_t *payload);
 
 /* --- maintenance ------------------------------------------------------------------------------ */
 
@@ -258,13 +266,13 @@ struct rn1_firmware_maintenance {
     } argument;
 };
 
-enum rn1_firmware_result rn1_firmware_maintenance_encode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_maintenance_encode(
     const struct rn1_firmware_maintenance *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_maintenance_decode(struct rn1_firmware_maintenance *message,
-                                                         const uint8_t *payload, size_t size);
-void rn1_firmware_maintenance_load(struct rn1_firmware_maintenance *message, const uint8_t *payload,
-                                   size_t size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_maintenance_decode(
+    struct rn1_firmware_maintenance *message, const uint8_t *payload, size_t size);
+RN1_FIRMWARE_API void rn1_firmware_maintenance_load(struct rn1_firmware_maintenance *message,
+                                                    const uint8_t *payload, size_t size);
 
 /* --- gyro ------------------------------------------------------------------------------------- */
 
@@ -299,11 +307,12 @@ struct rn1_firmware_gyro {
     int16_t int_z;
 };
 
-enum rn1_firmware_result rn1_firmware_gyro_encode(const struct rn1_firmware_gyro *message,
-                                                  uint8_t *payload, size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_gyro_decode(struct rn1_firmware_gyro *message,
-                                                  const uint8_t *payload, size_t size);
-void rn1_firmware_gyro_load(struct rn1_firmware_gyro *message, const uint8_t *payload);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_gyro_encode(
+    const struct rn1_firmware_gyro *message, uint8_t *payload, size_t capacity, size_t *size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_gyro_decode(
+    struct rn1_firmware_gyro *message, const uint8_t *payload, size_t size);
+RN1_FIRMWARE_API void rn1_firmware_gyro_load(struct rn1_firmware_gyro *message,
+                                             const uint8_t *payload);
 
 /* --- xcel ------------------------------------------------------------------------------------- */
 
@@ -338,11 +347,12 @@ struct rn1_firmware_xcel {
     int16_t int_z;
 };
 
-enum rn1_firmware_result rn1_firmware_xcel_encode(const struct rn1_firmware_xcel *message,
-                                                  uint8_t *payload, size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_xcel_decode(struct rn1_firmware_xcel *message,
-                                                  const uint8_t *payload, size_t size);
-void rn1_firmware_xcel_load(struct rn1_firmware_xcel *message, const uint8_t *payload);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_xcel_encode(
+    const struct rn1_firmware_xcel *message, uint8_t *payload, size_t capacity, size_t *size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_xcel_decode(
+    struct rn1_firmware_xcel *message, const uint8_t *payload, size_t size);
+RN1_FIRMWARE_API void rn1_firmware_xcel_load(struct rn1_firmware_xcel *message,
+                                             const uint8_t *payload);
 
 /* --- compass ---------------------------------------------------------------------------------- */
 
@@ -377,12 +387,12 @@ struct rn1_firmware_compass {
     int16_t avg_z;
 };
 
-enum rn1_firmware_result rn1_firmware_compass_encode(const struct rn1_firmware_compass *message,
-                                                     uint8_t *payload, size_t capacity,
-                                                     size_t *size);
-enum rn1_firmware_result rn1_firmware_compass_decode(struct rn1_firmware_compass *message,
-                                                     const uint8_t *payload, size_t size);
-void rn1_firmware_compass_load(struct rn1_firmware_compass *message, const uint8_t *payload);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_compass_encode(
+    const struct rn1_firmware_compass *message, uint8_t *payload, size_t capacity, size_t *size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_compass_decode(
+    struct rn1_firmware_compass *message, const uint8_t *payload, size_t size);
+RN1_FIRMWARE_API void rn1_firmware_compass_load(struct rn1_firmware_compass *message,
+                                                const uint8_t *payload);
 
 /* --- lidar ------------------------------------------------------------------------------------ */
 
@@ -411,11 +421,12 @@ struct rn1_firmware_lidar {
     uint16_t distances[360];
 };
 
-enum rn1_firmware_result rn1_firmware_lidar_encode(const struct rn1_firmware_lidar *message,
-                                                   uint8_t *payload, size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_lidar_decode(struct rn1_firmware_lidar *message,
-                                                   const uint8_t *payload, size_t size);
-void rn1_firmware_lidar_load(struct rn1_firmware_lidar *message, const uint8_t *payload);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_lidar_encode(
+    const struct rn1_firmware_lidar *message, uint8_t *payload, size_t capacity, size_t *size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_lidar_decode(
+    struct rn1_firmware_lidar *message, const uint8_t *payload, size_t size);
+RN1_FIRMWARE_API void rn1_firmware_lidar_load(struct rn1_firmware_lidar *message,
+                                              const uint8_t *payload);
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint16_t rn1_firmware_lidar_distances_at(const uint8_t *payload, size_t index) {
@@ -445,11 +456,12 @@ struct rn1_firmware_sonar {
     uint16_t distances[3];
 };
 
-enum rn1_firmware_result rn1_firmware_sonar_encode(const struct rn1_firmware_sonar *message,
-                                                   uint8_t *payload, size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_sonar_decode(struct rn1_firmware_sonar *message,
-                                                   const uint8_t *payload, size_t size);
-void rn1_firmware_sonar_load(struct rn1_firmware_sonar *message, const uint8_t *payload);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_sonar_encode(
+    const struct rn1_firmware_sonar *message, uint8_t *payload, size_t capacity, size_t *size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_sonar_decode(
+    struct rn1_firmware_sonar *message, const uint8_t *payload, size_t size);
+RN1_FIRMWARE_API void rn1_firmware_sonar_load(struct rn1_firmware_sonar *message,
+                                              const uint8_t *payload);
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint16_t rn1_firmware_sonar_distances_at(const uint8_t *payload, size_t index) {
@@ -482,12 +494,12 @@ struct rn1_firmware_facing {
     int16_t speed;
 };
 
-enum rn1_firmware_result rn1_firmware_facing_encode(const struct rn1_firmware_facing *message,
-                                                    uint8_t *payload, size_t capacity,
-                                                    size_t *size);
-enum rn1_firmware_result rn1_firmware_facing_decode(struct rn1_firmware_facing *message,
-                                                    const uint8_t *payload, size_t size);
-void rn1_firmware_facing_load(struct rn1_firmware_facing *message, const uint8_t *payload);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_facing_encode(
+    const struct rn1_firmware_facing *message, uint8_t *payload, size_t capacity, size_t *size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_facing_decode(
+    struct rn1_firmware_facing *message, const uint8_t *payload, size_t size);
+RN1_FIRMWARE_API void rn1_firmware_facing_load(struct rn1_firmware_facing *message,
+                                               const uint8_t *payload);
 
 /* --- optflow_integral ------------------------------------------------------------------------- */
 
@@ -513,13 +525,13 @@ struct rn1_firmware_optflow_integral {
     int16_t int_y;
 };
 
-enum rn1_firmware_result rn1_firmware_optflow_integral_encode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_optflow_integral_encode(
     const struct rn1_firmware_optflow_integral *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_optflow_integral_decode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_optflow_integral_decode(
     struct rn1_firmware_optflow_integral *message, const uint8_t *payload, size_t size);
-void rn1_firmware_optflow_integral_load(struct rn1_firmware_optflow_integral *message,
-                                        const uint8_t *payload);
+RN1_FIRMWARE_API void rn1_firmware_optflow_integral_load(
+    struct rn1_firmware_optflow_integral *message, const uint8_t *payload);
 
 /* --- motor_controller_message ----------------------------------------------------------------- */
 
@@ -535,12 +547,12 @@ struct rn1_firmware_motor_controller_message {
     uint16_t last_msg;
 };
 
-enum rn1_firmware_result rn1_firmware_motor_controller_message_encode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_motor_controller_message_encode(
     const struct rn1_firmware_motor_controller_message *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_motor_controller_message_decode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_motor_controller_message_decode(
     struct rn1_firmware_motor_controller_message *message, const uint8_t *payload, size_t size);
-void rn1_firmware_motor_controller_message_load(
+RN1_FIRMWARE_API void rn1_firmware_motor_controller_message_load(
     struct rn1_firmware_motor_controller_message *message, const uint8_t *payload);
 
 /* --- debug_numbers ---------------------------------------------------------------------------- */
@@ -568,13 +580,13 @@ struct rn1_firmware_debug_numbers {
     int64_t dbg4;
 };
 
-enum rn1_firmware_result rn1_firmware_debug_numbers_encode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_debug_numbers_encode(
     const struct rn1_firmware_debug_numbers *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_debug_numbers_decode(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_debug_numbers_decode(
     struct rn1_firmware_debug_numbers *message, const uint8_t *payload, size_t size);
-void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_numbers *message,
-                                     const uint8_t *payload);
+RN1_FIRMWARE_API void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_numbers *message,
+                                                      const uint8_t *payload);
 
 /* --- frames ----------------------------------------------------------------------------------- */
 
@@ -592,119 +604,119 @@ typedef void (*rn1_firmware_put)(void *user, uint8_t byte);
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_MOVE_MANUAL_FRAME_MAX 4U
 #define RN1_FIRMWARE_MOVE_MANUAL_FRAME_ROOM 4U
-enum rn1_firmware_result rn1_firmware_move_manual_frame(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_manual_frame(
     const struct rn1_firmware_move_manual *message, uint8_t *frame, size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_move_manual_send(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_manual_send(
     const struct rn1_firmware_move_manual *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_FRAME_MAX 6U
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_FRAME_ROOM 6U
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_frame(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_relative_twostep_frame(
     const struct rn1_firmware_move_relative_twostep *message, uint8_t *frame, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_send(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_relative_twostep_send(
     const struct rn1_firmware_move_relative_twostep *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_FRAME_MAX 3U
 #define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_FRAME_ROOM 3U
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_frame(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_decrease_phase_angle_frame(
     const struct rn1_firmware_decrease_phase_angle *message, uint8_t *frame, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_send(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_decrease_phase_angle_send(
     const struct rn1_firmware_decrease_phase_angle *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_FRAME_MAX 3U
 #define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_FRAME_ROOM 3U
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_frame(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_increase_phase_angle_frame(
     const struct rn1_firmware_increase_phase_angle *message, uint8_t *frame, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_send(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_increase_phase_angle_send(
     const struct rn1_firmware_increase_phase_angle *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_MAINTENANCE_FRAME_MAX 7U
 #define RN1_FIRMWARE_MAINTENANCE_FRAME_ROOM 7U
-enum rn1_firmware_result rn1_firmware_maintenance_frame(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_maintenance_frame(
     const struct rn1_firmware_maintenance *message, uint8_t *frame, size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_maintenance_send(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_maintenance_send(
     const struct rn1_firmware_maintenance *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_GYRO_FRAME_MAX 8U
 #define RN1_FIRMWARE_GYRO_FRAME_ROOM 8U
-enum rn1_firmware_result rn1_firmware_gyro_frame(const struct rn1_firmware_gyro *message,
-                                                 uint8_t *frame, size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_gyro_send(const struct rn1_firmware_gyro *message,
-                                                rn1_firmware_put put, void *user);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_gyro_frame(
+    const struct rn1_firmware_gyro *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_gyro_send(
+    const struct rn1_firmware_gyro *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_XCEL_FRAME_MAX 8U
 #define RN1_FIRMWARE_XCEL_FRAME_ROOM 8U
-enum rn1_firmware_result rn1_firmware_xcel_frame(const struct rn1_firmware_xcel *message,
-                                                 uint8_t *frame, size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_xcel_send(const struct rn1_firmware_xcel *message,
-                                                rn1_firmware_put put, void *user);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_xcel_frame(
+    const struct rn1_firmware_xcel *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_xcel_send(
+    const struct rn1_firmware_xcel *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_COMPASS_FRAME_MAX 8U
 #define RN1_FIRMWARE_COMPASS_FRAME_ROOM 8U
-enum rn1_firmware_result rn1_firmware_compass_frame(const struct rn1_firmware_compass *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_compass_send(const struct rn1_firmware_compass *message,
-                                                   rn1_firmware_put put, void *user);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_compass_frame(
+    const struct rn1_firmware_compass *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_compass_send(
+    const struct rn1_firmware_compass *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_LIDAR_FRAME_MAX 722U
 #define RN1_FIRMWARE_LIDAR_FRAME_ROOM 722U
-enum rn1_firmware_result rn1_firmware_lidar_frame(const struct rn1_firmware_lidar *message,
-                                                  uint8_t *frame, size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_lidar_send(const struct rn1_firmware_lidar *message,
-                                                 rn1_firmware_put put, void *user);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_lidar_frame(
+    const struct rn1_firmware_lidar *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_lidar_send(
+    const struct rn1_firmware_lidar *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_SONAR_FRAME_MAX 8U
 #define RN1_FIRMWARE_SONAR_FRAME_ROOM 8U
-enum rn1_firmware_result rn1_firmware_sonar_frame(const struct rn1_firmware_sonar *message,
-                                                  uint8_t *frame, size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_sonar_send(const struct rn1_firmware_sonar *message,
-                                                 rn1_firmware_put put, void *user);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_sonar_frame(
+    const struct rn1_firmware_sonar *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_sonar_send(
+    const struct rn1_firmware_sonar *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_FACING_FRAME_MAX 6U
 #define RN1_FIRMWARE_FACING_FRAME_ROOM 6U
-enum rn1_firmware_result rn1_firmware_facing_frame(const struct rn1_firmware_facing *message,
-                                                   uint8_t *frame, size_t capacity, size_t *size);
-enum rn1_firmware_result rn1_firmware_facing_send(const struct rn1_firmware_facing *message,
-                                                  rn1_firmware_put put, void *user);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_facing_frame(
+    const struct rn1_firmware_facing *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_facing_send(
+    const struct rn1_firmware_facing *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_OPTFLOW_INTEGRAL_FRAME_MAX 6U
 #define RN1_FIRMWARE_OPTFLOW_INTEGRAL_FRAME_ROOM 6U
-enum rn1_firmware_result rn1_firmware_optflow_integral_frame(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_optflow_integral_frame(
     const struct rn1_firmware_optflow_integral *message, uint8_t *frame, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_optflow_integral_send(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_optflow_integral_send(
     const struct rn1_firmware_optflow_integral *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_FRAME_MAX 3U
 #define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_FRAME_ROOM 3U
-enum rn1_firmware_result rn1_firmware_motor_controller_message_frame(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_motor_controller_message_frame(
     const struct rn1_firmware_motor_controller_message *message, uint8_t *frame, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_motor_controller_message_send(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_motor_controller_message_send(
     const struct rn1_firmware_motor_controller_message *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_DEBUG_NUMBERS_FRAME_MAX 21U
 #define RN1_FIRMWARE_DEBUG_NUMBERS_FRAME_ROOM 21U
-enum rn1_firmware_result rn1_firmware_debug_numbers_frame(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_debug_numbers_frame(
     const struct rn1_firmware_debug_numbers *message, uint8_t *frame, size_t capacity,
     size_t *size);
-enum rn1_firmware_result rn1_firmware_debug_numbers_send(
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_debug_numbers_send(
     const struct rn1_firmware_debug_numbers *message, rn1_firmware_put put, void *user);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
@@ -792,18 +804,19 @@ struct rn1_firmware_host_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void rn1_firmware_host_decoder_init(struct rn1_firmware_host_decoder *decoder,
-                                    rn1_firmware_host_handler handler, void *user);
+RN1_FIRMWARE_API void rn1_firmware_host_decoder_init(struct rn1_firmware_host_decoder *decoder,
+                                                     rn1_firmware_host_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void rn1_firmware_host_decoder_push(struct rn1_firmware_host_decoder *decoder, uint8_t byte);
+RN1_FIRMWARE_API void rn1_firmware_host_decoder_push(struct rn1_firmware_host_decoder *decoder,
+                                                     uint8_t byte);
 
 /** Take the next bytes. */
-void rn1_firmware_host_decoder_feed(struct rn1_firmware_host_decoder *decoder, const uint8_t *data,
-                                    size_t size);
+RN1_FIRMWARE_API void rn1_firmware_host_decoder_feed(struct rn1_firmware_host_decoder *decoder,
+                                                     const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void rn1_firmware_host_decoder_flush(struct rn1_firmware_host_decoder *decoder);
+RN1_FIRMWARE_API void rn1_firmware_host_decoder_flush(struct rn1_firmware_host_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define rn1_firmware_host_decoder_idle rn1_firmware_host_decoder_flush
@@ -874,18 +887,20 @@ struct rn1_firmware_brain_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void rn1_firmware_brain_decoder_init(struct rn1_firmware_brain_decoder *decoder,
-                                     rn1_firmware_brain_handler handler, void *user);
+RN1_FIRMWARE_API void rn1_firmware_brain_decoder_init(struct rn1_firmware_brain_decoder *decoder,
+                                                      rn1_firmware_brain_handler handler,
+                                                      void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void rn1_firmware_brain_decoder_push(struct rn1_firmware_brain_decoder *decoder, uint8_t byte);
+RN1_FIRMWARE_API void rn1_firmware_brain_decoder_push(struct rn1_firmware_brain_decoder *decoder,
+                                                      uint8_t byte);
 
 /** Take the next bytes. */
-void rn1_firmware_brain_decoder_feed(struct rn1_firmware_brain_decoder *decoder,
-                                     const uint8_t *data, size_t size);
+RN1_FIRMWARE_API void rn1_firmware_brain_decoder_feed(struct rn1_firmware_brain_decoder *decoder,
+                                                      const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void rn1_firmware_brain_decoder_flush(struct rn1_firmware_brain_decoder *decoder);
+RN1_FIRMWARE_API void rn1_firmware_brain_decoder_flush(struct rn1_firmware_brain_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define rn1_firmware_brain_decoder_idle rn1_firmware_brain_decoder_flush
@@ -895,8 +910,9 @@ void rn1_firmware_brain_decoder_flush(struct rn1_firmware_brain_decoder *decoder
 /*
  * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
  * function with it. Define those that you need; the others do nothing. They are weak where the
- * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
- * by defining RN1_FIRMWARE_NO_HANDLERS for the source.
+ * compiler knows weak functions. For another one, and where yours stand in the source that includes
+ * this one's source, define RN1_FIRMWARE_NO_WEAK and all of them, or leave out the dispatching by
+ * defining RN1_FIRMWARE_NO_HANDLERS for the source.
  */
 
 /** move_manual came from host. */
@@ -923,7 +939,8 @@ void rn1_firmware_on_maintenance(void *user, const struct rn1_firmware_maintenan
                                  const struct rn1_firmware_host_parts *parts);
 
 /** Calls the functions above; give it to rn1_firmware_host_decoder_init. */
-void rn1_firmware_host_dispatch(void *user, const struct rn1_firmware_host_event *event);
+RN1_FIRMWARE_API void rn1_firmware_host_dispatch(void *user,
+                                                 const struct rn1_firmware_host_event *event);
 
 /** gyro came from brain. */
 void rn1_firmware_on_gyro(void *user, const struct rn1_firmware_gyro *message,
@@ -964,7 +981,8 @@ void rn1_firmware_on_debug_numbers(void *user, const struct rn1_firmware_debug_n
                                    const struct rn1_firmware_brain_parts *parts);
 
 /** Calls the functions above; give it to rn1_firmware_brain_decoder_init. */
-void rn1_firmware_brain_dispatch(void *user, const struct rn1_firmware_brain_event *event);
+RN1_FIRMWARE_API void rn1_firmware_brain_dispatch(void *user,
+                                                  const struct rn1_firmware_brain_event *event);
 
 #ifdef __cplusplus
 }

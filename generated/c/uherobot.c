@@ -2,7 +2,25 @@
 /* SPDX-License-Identifier: 0BSD */
 #include "uherobot.h"
 
-static void uherobot_store_u16be(uint8_t *at, uint16_t value) {
+/*
+ * What a function of the header needs is put into it, so that it is short and fast also where no
+ * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
+ * the function that calls it: define UHEROBOT_APART as `static` with -flto, or in one source.
+ */
+#if defined(__GNUC__)
+#define UHEROBOT_INLINE static inline __attribute__((always_inline))
+#else
+#define UHEROBOT_INLINE static inline
+#endif
+#ifndef UHEROBOT_APART
+#if defined(__GNUC__)
+#define UHEROBOT_APART static __attribute__((noinline))
+#else
+#define UHEROBOT_APART static
+#endif
+#endif
+
+UHEROBOT_INLINE void uherobot_store_u16be(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)(value >> 8);
     at[1] = (uint8_t)value;
 }
@@ -13,8 +31,8 @@ static uint16_t uherobot_load_u16be(const uint8_t *at) {
 
 /* --- motors_servos_leds ----------------------------------------------------------------------- */
 
-static void uherobot_motors_servos_leds_store(const struct uherobot_motors_servos_leds *message,
-                                              uint8_t *payload) {
+UHEROBOT_INLINE void uherobot_motors_servos_leds_store(
+    const struct uherobot_motors_servos_leds *message, uint8_t *payload) {
     uherobot_store_u16be(payload, (uint16_t)message->motor_1);
     uherobot_store_u16be(payload + 2, (uint16_t)message->motor_2);
     for (size_t i = 0; i < 8U; i++) {
@@ -55,8 +73,8 @@ enum uherobot_result uherobot_motors_servos_leds_decode(struct uherobot_motors_s
 
 /* --- motors_two_servos ------------------------------------------------------------------------ */
 
-static void uherobot_motors_two_servos_store(const struct uherobot_motors_two_servos *message,
-                                             uint8_t *payload) {
+UHEROBOT_INLINE void uherobot_motors_two_servos_store(
+    const struct uherobot_motors_two_servos *message, uint8_t *payload) {
     uherobot_store_u16be(payload, (uint16_t)message->motor_1);
     uherobot_store_u16be(payload + 2, (uint16_t)message->motor_2);
     for (size_t i = 0; i < 2U; i++) {
@@ -95,7 +113,8 @@ enum uherobot_result uherobot_motors_two_servos_decode(struct uherobot_motors_tw
 
 /* --- motor_test ------------------------------------------------------------------------------- */
 
-static void uherobot_motor_test_store(const struct uherobot_motor_test *message, uint8_t *payload) {
+UHEROBOT_INLINE void uherobot_motor_test_store(const struct uherobot_motor_test *message,
+                                               uint8_t *payload) {
     uherobot_store_u16be(payload, (uint16_t)message->motor_1);
     uherobot_store_u16be(payload + 2, (uint16_t)message->motor_2);
 }
@@ -126,7 +145,8 @@ enum uherobot_result uherobot_motor_test_decode(struct uherobot_motor_test *mess
 
 /* --- status ----------------------------------------------------------------------------------- */
 
-static void uherobot_status_store(const struct uherobot_status *message, uint8_t *payload) {
+UHEROBOT_INLINE void uherobot_status_store(const struct uherobot_status *message,
+                                           uint8_t *payload) {
     uherobot_store_u16be(payload, (uint16_t)message->voltage);
     uherobot_store_u16be(payload + 2, (uint16_t)message->current);
     uherobot_store_u16be(payload + 4, (uint16_t)message->temperature);
@@ -283,8 +303,8 @@ static void uherobot_write_u16be(struct uherobot_writer *writer, uint16_t value)
     uherobot_write(writer, (uint8_t)value);
 }
 
-static void uherobot_motors_servos_leds_put(const struct uherobot_motors_servos_leds *message,
-                                            struct uherobot_writer *writer) {
+UHEROBOT_INLINE void uherobot_motors_servos_leds_put(
+    const struct uherobot_motors_servos_leds *message, struct uherobot_writer *writer) {
     uherobot_write_u16be(writer, (uint16_t)message->motor_1);
     uherobot_write_u16be(writer, (uint16_t)message->motor_2);
     for (size_t i = 0; i < 8U; i++) {
@@ -293,8 +313,8 @@ static void uherobot_motors_servos_leds_put(const struct uherobot_motors_servos_
     uherobot_write(writer, message->leds);
 }
 
-static void uherobot_motors_two_servos_put(const struct uherobot_motors_two_servos *message,
-                                           struct uherobot_writer *writer) {
+UHEROBOT_INLINE void uherobot_motors_two_servos_put(
+    const struct uherobot_motors_two_servos *message, struct uherobot_writer *writer) {
     uherobot_write_u16be(writer, (uint16_t)message->motor_1);
     uherobot_write_u16be(writer, (uint16_t)message->motor_2);
     for (size_t i = 0; i < 2U; i++) {
@@ -302,14 +322,14 @@ static void uherobot_motors_two_servos_put(const struct uherobot_motors_two_serv
     }
 }
 
-static void uherobot_motor_test_put(const struct uherobot_motor_test *message,
-                                    struct uherobot_writer *writer) {
+UHEROBOT_INLINE void uherobot_motor_test_put(const struct uherobot_motor_test *message,
+                                             struct uherobot_writer *writer) {
     uherobot_write_u16be(writer, (uint16_t)message->motor_1);
     uherobot_write_u16be(writer, (uint16_t)message->motor_2);
 }
 
-static void uherobot_status_put(const struct uherobot_status *message,
-                                struct uherobot_writer *writer) {
+UHEROBOT_INLINE void uherobot_status_put(const struct uherobot_status *message,
+                                         struct uherobot_writer *writer) {
     uherobot_write_u16be(writer, (uint16_t)message->voltage);
     uherobot_write_u16be(writer, (uint16_t)message->current);
     uherobot_write_u16be(writer, (uint16_t)message->temperature);
@@ -1083,7 +1103,7 @@ void uherobot_board_dispatch(void *user, const struct uherobot_board_event *even
     }
 }
 
-#if defined(__GNUC__) || defined(__clang__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(UHEROBOT_NO_WEAK)
 
 __attribute__((weak)) void uherobot_on_motors_servos_leds(
     void *user, const struct uherobot_motors_servos_leds *message,

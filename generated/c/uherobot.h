@@ -19,6 +19,14 @@
 extern "C" {
 #endif
 
+/**
+ * In front of each function that the source defines. Where the one source that calls them includes
+ * `uherobot.c`, define this as `static inline`: then the compiler sees all calls.
+ */
+#ifndef UHEROBOT_API
+#define UHEROBOT_API
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define UHEROBOT_SPEC_HASH "319850d58c204d8cbc2e7dde9a0ec863cee3d1caa80d06326176835ab5e5a4b4"
 
@@ -86,13 +94,13 @@ struct uherobot_motors_servos_leds {
     uint8_t leds;
 };
 
-enum uherobot_result uherobot_motors_servos_leds_encode(
+UHEROBOT_API enum uherobot_result uherobot_motors_servos_leds_encode(
     const struct uherobot_motors_servos_leds *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum uherobot_result uherobot_motors_servos_leds_decode(struct uherobot_motors_servos_leds *message,
-                                                        const uint8_t *payload, size_t size);
-void uherobot_motors_servos_leds_load(struct uherobot_motors_servos_leds *message,
-                                      const uint8_t *payload);
+UHEROBOT_API enum uherobot_result uherobot_motors_servos_leds_decode(
+    struct uherobot_motors_servos_leds *message, const uint8_t *payload, size_t size);
+UHEROBOT_API void uherobot_motors_servos_leds_load(struct uherobot_motors_servos_leds *message,
+                                                   const uint8_t *payload);
 
 /** Reads servos[index] from a payload that was received, unchecked. */
 static inline uint16_t uherobot_motors_servos_leds_servos_at(const uint8_t *payload, size_t index) {
@@ -118,13 +126,13 @@ struct uherobot_motors_two_servos {
     uint16_t servos[2];
 };
 
-enum uherobot_result uherobot_motors_two_servos_encode(
+UHEROBOT_API enum uherobot_result uherobot_motors_two_servos_encode(
     const struct uherobot_motors_two_servos *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum uherobot_result uherobot_motors_two_servos_decode(struct uherobot_motors_two_servos *message,
-                                                       const uint8_t *payload, size_t size);
-void uherobot_motors_two_servos_load(struct uherobot_motors_two_servos *message,
-                                     const uint8_t *payload);
+UHEROBOT_API enum uherobot_result uherobot_motors_two_servos_decode(
+    struct uherobot_motors_two_servos *message, const uint8_t *payload, size_t size);
+UHEROBOT_API void uherobot_motors_two_servos_load(struct uherobot_motors_two_servos *message,
+                                                  const uint8_t *payload);
 
 /** Reads servos[index] from a payload that was received, unchecked. */
 static inline uint16_t uherobot_motors_two_servos_servos_at(const uint8_t *payload, size_t index) {
@@ -148,11 +156,12 @@ struct uherobot_motor_test {
     int16_t motor_2;
 };
 
-enum uherobot_result uherobot_motor_test_encode(const struct uherobot_motor_test *message,
-                                                uint8_t *payload, size_t capacity, size_t *size);
-enum uherobot_result uherobot_motor_test_decode(struct uherobot_motor_test *message,
-                                                const uint8_t *payload, size_t size);
-void uherobot_motor_test_load(struct uherobot_motor_test *message, const uint8_t *payload);
+UHEROBOT_API enum uherobot_result uherobot_motor_test_encode(
+    const struct uherobot_motor_test *message, uint8_t *payload, size_t capacity, size_t *size);
+UHEROBOT_API enum uherobot_result uherobot_motor_test_decode(struct uherobot_motor_test *message,
+                                                             const uint8_t *payload, size_t size);
+UHEROBOT_API void uherobot_motor_test_load(struct uherobot_motor_test *message,
+                                           const uint8_t *payload);
 
 /* --- status ----------------------------------------------------------------------------------- */
 
@@ -183,11 +192,12 @@ struct uherobot_status {
     int16_t temperature;
 };
 
-enum uherobot_result uherobot_status_encode(const struct uherobot_status *message, uint8_t *payload,
-                                            size_t capacity, size_t *size);
-enum uherobot_result uherobot_status_decode(struct uherobot_status *message, const uint8_t *payload,
-                                            size_t size);
-void uherobot_status_load(struct uherobot_status *message, const uint8_t *payload);
+UHEROBOT_API enum uherobot_result uherobot_status_encode(const struct uherobot_status *message,
+                                                         uint8_t *payload, size_t capacity,
+                                                         size_t *size);
+UHEROBOT_API enum uherobot_result uherobot_status_decode(struct uherobot_status *message,
+                                                         const uint8_t *payload, size_t size);
+UHEROBOT_API void uherobot_status_load(struct uherobot_status *message, const uint8_t *payload);
 
 /* --- frames ----------------------------------------------------------------------------------- */
 
@@ -205,36 +215,37 @@ typedef void (*uherobot_put)(void *user, uint8_t byte);
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_MOTORS_SERVOS_LEDS_FRAME_MAX 48U
 #define UHEROBOT_MOTORS_SERVOS_LEDS_FRAME_ROOM 49U
-enum uherobot_result uherobot_motors_servos_leds_frame(
+UHEROBOT_API enum uherobot_result uherobot_motors_servos_leds_frame(
     const struct uherobot_motors_servos_leds *message, uint8_t *frame, size_t capacity,
     size_t *size);
-enum uherobot_result uherobot_motors_servos_leds_send(
+UHEROBOT_API enum uherobot_result uherobot_motors_servos_leds_send(
     const struct uherobot_motors_servos_leds *message, uherobot_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_MOTORS_TWO_SERVOS_FRAME_MAX 22U
 #define UHEROBOT_MOTORS_TWO_SERVOS_FRAME_ROOM 23U
-enum uherobot_result uherobot_motors_two_servos_frame(
+UHEROBOT_API enum uherobot_result uherobot_motors_two_servos_frame(
     const struct uherobot_motors_two_servos *message, uint8_t *frame, size_t capacity,
     size_t *size);
-enum uherobot_result uherobot_motors_two_servos_send(
+UHEROBOT_API enum uherobot_result uherobot_motors_two_servos_send(
     const struct uherobot_motors_two_servos *message, uherobot_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_MOTOR_TEST_FRAME_MAX 14U
 #define UHEROBOT_MOTOR_TEST_FRAME_ROOM 15U
-enum uherobot_result uherobot_motor_test_frame(const struct uherobot_motor_test *message,
-                                               uint8_t *frame, size_t capacity, size_t *size);
-enum uherobot_result uherobot_motor_test_send(const struct uherobot_motor_test *message,
-                                              uherobot_put put, void *user);
+UHEROBOT_API enum uherobot_result uherobot_motor_test_frame(
+    const struct uherobot_motor_test *message, uint8_t *frame, size_t capacity, size_t *size);
+UHEROBOT_API enum uherobot_result uherobot_motor_test_send(
+    const struct uherobot_motor_test *message, uherobot_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_STATUS_FRAME_MAX 18U
 #define UHEROBOT_STATUS_FRAME_ROOM 19U
-enum uherobot_result uherobot_status_frame(const struct uherobot_status *message, uint8_t *frame,
-                                           size_t capacity, size_t *size);
-enum uherobot_result uherobot_status_send(const struct uherobot_status *message, uherobot_put put,
-                                          void *user);
+UHEROBOT_API enum uherobot_result uherobot_status_frame(const struct uherobot_status *message,
+                                                        uint8_t *frame, size_t capacity,
+                                                        size_t *size);
+UHEROBOT_API enum uherobot_result uherobot_status_send(const struct uherobot_status *message,
+                                                       uherobot_put put, void *user);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
 
@@ -321,18 +332,19 @@ struct uherobot_daemon_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void uherobot_daemon_decoder_init(struct uherobot_daemon_decoder *decoder,
-                                  uherobot_daemon_handler handler, void *user);
+UHEROBOT_API void uherobot_daemon_decoder_init(struct uherobot_daemon_decoder *decoder,
+                                               uherobot_daemon_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void uherobot_daemon_decoder_push(struct uherobot_daemon_decoder *decoder, uint8_t byte);
+UHEROBOT_API void uherobot_daemon_decoder_push(struct uherobot_daemon_decoder *decoder,
+                                               uint8_t byte);
 
 /** Take the next bytes. */
-void uherobot_daemon_decoder_feed(struct uherobot_daemon_decoder *decoder, const uint8_t *data,
-                                  size_t size);
+UHEROBOT_API void uherobot_daemon_decoder_feed(struct uherobot_daemon_decoder *decoder,
+                                               const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void uherobot_daemon_decoder_flush(struct uherobot_daemon_decoder *decoder);
+UHEROBOT_API void uherobot_daemon_decoder_flush(struct uherobot_daemon_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define uherobot_daemon_decoder_idle uherobot_daemon_decoder_flush
@@ -400,18 +412,18 @@ struct uherobot_board_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void uherobot_board_decoder_init(struct uherobot_board_decoder *decoder,
-                                 uherobot_board_handler handler, void *user);
+UHEROBOT_API void uherobot_board_decoder_init(struct uherobot_board_decoder *decoder,
+                                              uherobot_board_handler handler, void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void uherobot_board_decoder_push(struct uherobot_board_decoder *decoder, uint8_t byte);
+UHEROBOT_API void uherobot_board_decoder_push(struct uherobot_board_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void uherobot_board_decoder_feed(struct uherobot_board_decoder *decoder, const uint8_t *data,
-                                 size_t size);
+UHEROBOT_API void uherobot_board_decoder_feed(struct uherobot_board_decoder *decoder,
+                                              const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void uherobot_board_decoder_flush(struct uherobot_board_decoder *decoder);
+UHEROBOT_API void uherobot_board_decoder_flush(struct uherobot_board_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define uherobot_board_decoder_idle uherobot_board_decoder_flush
@@ -421,8 +433,9 @@ void uherobot_board_decoder_flush(struct uherobot_board_decoder *decoder);
 /*
  * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
  * function with it. Define those that you need; the others do nothing. They are weak where the
- * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
- * by defining UHEROBOT_NO_HANDLERS for the source.
+ * compiler knows weak functions. For another one, and where yours stand in the source that includes
+ * this one's source, define UHEROBOT_NO_WEAK and all of them, or leave out the dispatching by
+ * defining UHEROBOT_NO_HANDLERS for the source.
  */
 
 /** motors_servos_leds came from daemon. */
@@ -438,14 +451,14 @@ void uherobot_on_motor_test(void *user, const struct uherobot_motor_test *messag
                             const struct uherobot_daemon_parts *parts);
 
 /** Calls the functions above; give it to uherobot_daemon_decoder_init. */
-void uherobot_daemon_dispatch(void *user, const struct uherobot_daemon_event *event);
+UHEROBOT_API void uherobot_daemon_dispatch(void *user, const struct uherobot_daemon_event *event);
 
 /** status came from board. */
 void uherobot_on_status(void *user, const struct uherobot_status *message,
                         const struct uherobot_board_parts *parts);
 
 /** Calls the functions above; give it to uherobot_board_decoder_init. */
-void uherobot_board_dispatch(void *user, const struct uherobot_board_event *event);
+UHEROBOT_API void uherobot_board_dispatch(void *user, const struct uherobot_board_event *event);
 
 #ifdef __cplusplus
 }

@@ -2,7 +2,25 @@
 /* SPDX-License-Identifier: 0BSD */
 #include "uherobot_daemon.h"
 
-static void uherobot_daemon_store_u16be(uint8_t *at, uint16_t value) {
+/*
+ * What a function of the header needs is put into it, so that it is short and fast also where no
+ * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
+ * the function that calls it: define UHEROBOT_DAEMON_APART as `static` with -flto, or in one source.
+ */
+#if defined(__GNUC__)
+#define UHEROBOT_DAEMON_INLINE static inline __attribute__((always_inline))
+#else
+#define UHEROBOT_DAEMON_INLINE static inline
+#endif
+#ifndef UHEROBOT_DAEMON_APART
+#if defined(__GNUC__)
+#define UHEROBOT_DAEMON_APART static __attribute__((noinline))
+#else
+#define UHEROBOT_DAEMON_APART static
+#endif
+#endif
+
+UHEROBOT_DAEMON_INLINE void uherobot_daemon_store_u16be(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)(value >> 8);
     at[1] = (uint8_t)value;
 }
@@ -13,7 +31,7 @@ static uint16_t uherobot_daemon_load_u16be(const uint8_t *at) {
 
 /* --- motors_servos_leds ----------------------------------------------------------------------- */
 
-static enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_validate(
+UHEROBOT_DAEMON_INLINE enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_validate(
     const struct uherobot_daemon_motors_servos_leds *message) {
     if (message->right_motor < -3200 || message->right_motor > 3200) {
         return UHEROBOT_DAEMON_ERROR_RANGE;
@@ -29,7 +47,7 @@ static enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_validate(
     return UHEROBOT_DAEMON_OK;
 }
 
-static void uherobot_daemon_motors_servos_leds_store(
+UHEROBOT_DAEMON_INLINE void uherobot_daemon_motors_servos_leds_store(
     const struct uherobot_daemon_motors_servos_leds *message, uint8_t *payload) {
     uherobot_daemon_store_u16be(payload, (uint16_t)message->right_motor);
     uherobot_daemon_store_u16be(payload + 2, (uint16_t)message->left_motor);
@@ -75,8 +93,8 @@ enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_decode(
 
 /* --- status ----------------------------------------------------------------------------------- */
 
-static void uherobot_daemon_status_store(const struct uherobot_daemon_status *message,
-                                         uint8_t *payload) {
+UHEROBOT_DAEMON_INLINE void uherobot_daemon_status_store(
+    const struct uherobot_daemon_status *message, uint8_t *payload) {
     uherobot_daemon_store_u16be(payload, (uint16_t)message->reserved);
     uherobot_daemon_store_u16be(payload + 2, (uint16_t)message->pcb_temperature);
     uherobot_daemon_store_u16be(payload + 4, message->cpu_current);
@@ -328,7 +346,7 @@ static void uherobot_daemon_write_u16be(struct uherobot_daemon_writer *writer, u
     uherobot_daemon_write(writer, (uint8_t)value);
 }
 
-static void uherobot_daemon_motors_servos_leds_put(
+UHEROBOT_DAEMON_INLINE void uherobot_daemon_motors_servos_leds_put(
     const struct uherobot_daemon_motors_servos_leds *message,
     struct uherobot_daemon_writer *writer) {
     uherobot_daemon_write_u16be(writer, (uint16_t)message->right_motor);
@@ -339,8 +357,8 @@ static void uherobot_daemon_motors_servos_leds_put(
     uherobot_daemon_write(writer, message->leds);
 }
 
-static void uherobot_daemon_status_put(const struct uherobot_daemon_status *message,
-                                       struct uherobot_daemon_writer *writer) {
+UHEROBOT_DAEMON_INLINE void uherobot_daemon_status_put(const struct uherobot_daemon_status *message,
+                                                       struct uherobot_daemon_writer *writer) {
     uherobot_daemon_write_u16be(writer, (uint16_t)message->reserved);
     uherobot_daemon_write_u16be(writer, (uint16_t)message->pcb_temperature);
     uherobot_daemon_write_u16be(writer, message->cpu_current);
@@ -1127,7 +1145,7 @@ void uherobot_daemon_board_dispatch(void *user, const struct uherobot_daemon_boa
     }
 }
 
-#if defined(__GNUC__) || defined(__clang__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(UHEROBOT_DAEMON_NO_WEAK)
 
 __attribute__((weak)) void uherobot_daemon_on_motors_servos_leds(
     void *user, const struct uherobot_daemon_motors_servos_leds *message,

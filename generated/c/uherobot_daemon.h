@@ -21,6 +21,14 @@
 extern "C" {
 #endif
 
+/**
+ * In front of each function that the source defines. Where the one source that calls them includes
+ * `uherobot_daemon.c`, define this as `static inline`: then the compiler sees all calls.
+ */
+#ifndef UHEROBOT_DAEMON_API
+#define UHEROBOT_DAEMON_API
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define UHEROBOT_DAEMON_SPEC_HASH "8b7e96f33f6c769cdeb33f021dbf58a2505572a20e487dd7673d7bc09041d4a8"
 
@@ -104,13 +112,13 @@ struct uherobot_daemon_motors_servos_leds {
     uint8_t leds;
 };
 
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_encode(
+UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_encode(
     const struct uherobot_daemon_motors_servos_leds *message, uint8_t *payload, size_t capacity,
     size_t *size);
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_decode(
+UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_decode(
     struct uherobot_daemon_motors_servos_leds *message, const uint8_t *payload, size_t size);
-void uherobot_daemon_motors_servos_leds_load(struct uherobot_daemon_motors_servos_leds *message,
-                                             const uint8_t *payload);
+UHEROBOT_DAEMON_API void uherobot_daemon_motors_servos_leds_load(
+    struct uherobot_daemon_motors_servos_leds *message, const uint8_t *payload);
 
 /** Reads servos[index] from a payload that was received, unchecked. */
 static inline uint16_t uherobot_daemon_motors_servos_leds_servos_at(const uint8_t *payload,
@@ -158,11 +166,12 @@ struct uherobot_daemon_status {
     uint16_t motor_voltage;
 };
 
-enum uherobot_daemon_result uherobot_daemon_status_encode(
+UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_status_encode(
     const struct uherobot_daemon_status *message, uint8_t *payload, size_t capacity, size_t *size);
-enum uherobot_daemon_result uherobot_daemon_status_decode(struct uherobot_daemon_status *message,
-                                                          const uint8_t *payload, size_t size);
-void uherobot_daemon_status_load(struct uherobot_daemon_status *message, const uint8_t *payload);
+UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_status_decode(
+    struct uherobot_daemon_status *message, const uint8_t *payload, size_t size);
+UHEROBOT_DAEMON_API void uherobot_daemon_status_load(struct uherobot_daemon_status *message,
+                                                     const uint8_t *payload);
 
 /* --- frames ----------------------------------------------------------------------------------- */
 
@@ -180,18 +189,18 @@ typedef void (*uherobot_daemon_put)(void *user, uint8_t byte);
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_MAX 48U
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_ROOM 49U
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_frame(
+UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_frame(
     const struct uherobot_daemon_motors_servos_leds *message, uint8_t *frame, size_t capacity,
     size_t *size);
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_send(
+UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_send(
     const struct uherobot_daemon_motors_servos_leds *message, uherobot_daemon_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_DAEMON_STATUS_FRAME_MAX 31U
 #define UHEROBOT_DAEMON_STATUS_FRAME_ROOM 32U
-enum uherobot_daemon_result uherobot_daemon_status_frame(
+UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_status_frame(
     const struct uherobot_daemon_status *message, uint8_t *frame, size_t capacity, size_t *size);
-enum uherobot_daemon_result uherobot_daemon_status_send(
+UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_status_send(
     const struct uherobot_daemon_status *message, uherobot_daemon_put put, void *user);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
@@ -280,19 +289,21 @@ struct uherobot_daemon_daemon_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void uherobot_daemon_daemon_decoder_init(struct uherobot_daemon_daemon_decoder *decoder,
-                                         uherobot_daemon_daemon_handler handler, void *user);
+UHEROBOT_DAEMON_API void uherobot_daemon_daemon_decoder_init(
+    struct uherobot_daemon_daemon_decoder *decoder, uherobot_daemon_daemon_handler handler,
+    void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void uherobot_daemon_daemon_decoder_push(struct uherobot_daemon_daemon_decoder *decoder,
-                                         uint8_t byte);
+UHEROBOT_DAEMON_API void uherobot_daemon_daemon_decoder_push(
+    struct uherobot_daemon_daemon_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void uherobot_daemon_daemon_decoder_feed(struct uherobot_daemon_daemon_decoder *decoder,
-                                         const uint8_t *data, size_t size);
+UHEROBOT_DAEMON_API void uherobot_daemon_daemon_decoder_feed(
+    struct uherobot_daemon_daemon_decoder *decoder, const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void uherobot_daemon_daemon_decoder_flush(struct uherobot_daemon_daemon_decoder *decoder);
+UHEROBOT_DAEMON_API void uherobot_daemon_daemon_decoder_flush(
+    struct uherobot_daemon_daemon_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define uherobot_daemon_daemon_decoder_idle uherobot_daemon_daemon_decoder_flush
@@ -363,19 +374,21 @@ struct uherobot_daemon_board_decoder {
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
  * needs its handler alone.
  */
-void uherobot_daemon_board_decoder_init(struct uherobot_daemon_board_decoder *decoder,
-                                        uherobot_daemon_board_handler handler, void *user);
+UHEROBOT_DAEMON_API void uherobot_daemon_board_decoder_init(
+    struct uherobot_daemon_board_decoder *decoder, uherobot_daemon_board_handler handler,
+    void *user);
 
 /** Take the next byte. Calls the handler for each event that is certain now: none, one or more. */
-void uherobot_daemon_board_decoder_push(struct uherobot_daemon_board_decoder *decoder,
-                                        uint8_t byte);
+UHEROBOT_DAEMON_API void uherobot_daemon_board_decoder_push(
+    struct uherobot_daemon_board_decoder *decoder, uint8_t byte);
 
 /** Take the next bytes. */
-void uherobot_daemon_board_decoder_feed(struct uherobot_daemon_board_decoder *decoder,
-                                        const uint8_t *data, size_t size);
+UHEROBOT_DAEMON_API void uherobot_daemon_board_decoder_feed(
+    struct uherobot_daemon_board_decoder *decoder, const uint8_t *data, size_t size);
 
 /** Take the end of the input, or a silence on the line: what is left becomes events. */
-void uherobot_daemon_board_decoder_flush(struct uherobot_daemon_board_decoder *decoder);
+UHEROBOT_DAEMON_API void uherobot_daemon_board_decoder_flush(
+    struct uherobot_daemon_board_decoder *decoder);
 
 /** The same, under the name for a silence. */
 #define uherobot_daemon_board_decoder_idle uherobot_daemon_board_decoder_flush
@@ -385,8 +398,9 @@ void uherobot_daemon_board_decoder_flush(struct uherobot_daemon_board_decoder *d
 /*
  * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
  * function with it. Define those that you need; the others do nothing. They are weak where the
- * compiler knows weak functions. For another one, define all of them, or leave out the dispatching
- * by defining UHEROBOT_DAEMON_NO_HANDLERS for the source.
+ * compiler knows weak functions. For another one, and where yours stand in the source that includes
+ * this one's source, define UHEROBOT_DAEMON_NO_WEAK and all of them, or leave out the dispatching by
+ * defining UHEROBOT_DAEMON_NO_HANDLERS for the source.
  */
 
 /** motors_servos_leds came from daemon. */
@@ -395,14 +409,16 @@ void uherobot_daemon_on_motors_servos_leds(void *user,
                                            const struct uherobot_daemon_daemon_parts *parts);
 
 /** Calls the functions above; give it to uherobot_daemon_daemon_decoder_init. */
-void uherobot_daemon_daemon_dispatch(void *user, const struct uherobot_daemon_daemon_event *event);
+UHEROBOT_DAEMON_API void uherobot_daemon_daemon_dispatch(
+    void *user, const struct uherobot_daemon_daemon_event *event);
 
 /** status came from board. */
 void uherobot_daemon_on_status(void *user, const struct uherobot_daemon_status *message,
                                const struct uherobot_daemon_board_parts *parts);
 
 /** Calls the functions above; give it to uherobot_daemon_board_decoder_init. */
-void uherobot_daemon_board_dispatch(void *user, const struct uherobot_daemon_board_event *event);
+UHEROBOT_DAEMON_API void uherobot_daemon_board_dispatch(
+    void *user, const struct uherobot_daemon_board_event *event);
 
 #ifdef __cplusplus
 }

@@ -54,8 +54,13 @@ static void take_{prefix}(void *user, const struct {prefix}_event *event) {{
 {step}"""
 _ENDLESS = """static void prove_{prefix}_push(void) {{
     struct {prefix}_decoder decoder;
-    Frama_C_make_unknown((char *)&decoder, sizeof decoder);
-    {prefix}_decoder_init({init});
+    static const struct {prefix}_decoder zeros;
+    if (any) {{
+        Frama_C_make_unknown((char *)&decoder, sizeof decoder);
+        {prefix}_decoder_init({init});
+    }} else {{
+        decoder = zeros;
+{handler}    }}
     //@ widen_hints global:"all", {bounds};
 {apart}    while (any) {{
         if (any) {{
@@ -100,19 +105,23 @@ _IDLE = """    /* Until a frame's size is known the limit is nought, which is no
 _CALLS = {
     "step": "",
     "init": "&decoder, take_{prefix}, NULL",
+    "handler": "        decoder.handler = take_{prefix};\n",
     "push": "{prefix}_decoder_push(&decoder, Frama_C_unsigned_char_interval(0, 255));",
 }
 _POLLED = {
     "step": """static void step_{prefix}(struct {prefix}_decoder *decoder) {{
-    struct {prefix}_event event; /* Nothing is in it but what `push` puts there with a message. */
     const uint8_t byte = Frama_C_unsigned_char_interval(0, 255);
-    if ({prefix}_decoder_push(decoder, byte, &event) != {upper}_NO_MESSAGE) {{
+    const enum {lower}_message message = {prefix}_decoder_push(decoder, byte);
+    if (message != {upper}_NO_MESSAGE) {{
+        struct {prefix}_event event;
+        {prefix}_decoder_event(decoder, message, &event);
         take_{prefix}(NULL, &event);
     }}
 }}
 
 """,
     "init": "&decoder",
+    "handler": "",
     "push": "step_{prefix}(&decoder);",
 }
 _PAYLOAD = """
@@ -190,7 +199,7 @@ def push_driver(protocol: Protocol, header: str, *, reads_ends: bool = True) -> 
     """Any number of bytes and ends of input, for each sender's decoder.
 
     The handler reads payloads: both ends, or the first byte alone. The decoder's memory holds
-    anything before it is initialised.
+    anything before it is initialised, or it is not, and its memory holds zeros.
     """
     prefixes, polled = _PUSH.findall(header), set(_POLLS.findall(header))
     limited = polled & set(_LIMIT.findall(header))
@@ -247,7 +256,10 @@ def _apart(prefixes: Sequence[str]) -> tuple[str, ...]:
 
 def _decoder(proof: str, prefix: str, upper: str, *, polls: object, **given: object) -> str:
     calls = _POLLED if polls else _CALLS
-    words = {name: text.format(prefix=prefix, upper=upper) for name, text in calls.items()}
+    words = {
+        name: text.format(prefix=prefix, upper=upper, lower=upper.lower())
+        for name, text in calls.items()
+    }
     return f"{_TAKE}{proof}".format(prefix=prefix, **words, **given)
 
 

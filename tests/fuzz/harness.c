@@ -57,8 +57,10 @@ static void JOIN(PREFIX, _start)(struct JOIN(PREFIX, _decoder) * decoder, struct
 
 static void JOIN(PREFIX, _push)(struct JOIN(PREFIX, _decoder) * decoder, uint8_t byte, struct JOIN(PREFIX, _seen) * seen) {
 #if POLLS
-    struct JOIN(PREFIX, _event) event;
-    if (JOIN(PREFIX, _decoder_push)(decoder, byte, &event) != NO_MESSAGE) {
+    const int message = (int)JOIN(PREFIX, _decoder_push)(decoder, byte);
+    if (message != NO_MESSAGE) {
+        struct JOIN(PREFIX, _event) event;
+        JOIN(PREFIX, _decoder_event)(decoder, message, &event);
         JOIN(PREFIX, _take)(seen, &event);
     }
 #else

@@ -25,7 +25,7 @@ _MACROS = """
 ok error_size error_value error_encoding error_range error_space spec_hash version h implementation
 implemented message unknown invalid no_message no_reason size value encoding noise checksum length
 stuffing truncated seeking taking failed lost known open searching measuring empty needless before
-inside after frame stuffed fast_feed sse2 expect each has no_handlers
+inside after frame stuffed fast_feed sse2 expect each has no_handlers no_weak api inline apart
 """
 _TAGS = "result message event_kind reason writer"
 _TYPES = "put float64"
@@ -34,11 +34,12 @@ _TAGS_OF_A_SENDER = "parts event decoder"
 _TYPES_OF_A_SENDER = "handler"
 _FUNCTIONS_OF_A_SENDER = """
 accept add_noise added begins close close_at_flush close_open compare complete cross decide
-decoder_feed decoder_flush decoder_idle decoder_init decoder_push dispatch drop end_noise ends_early
-enter_payload find_size finish_region follow_end follow_start give_up hand_over has_special identify
-invalid is_idle is_plain judge looks_idle measure measure_head open pass payload reach read_length
-release reopen reset resume room run search seek seek_on send_head send_tail set_payload specials
-stuff surplus take take_head take_tail take_whole unstuff unstuff_to wire_end wrap write
+decoder_event decoder_feed decoder_flush decoder_idle decoder_init decoder_push dispatch drop
+end_noise ends_early enter_payload find_size finish_region fitted follow_end follow_start give_up
+hand_over has_special identify invalid is_idle is_plain judge looks_idle measure measure_head open
+pass payload reach read_length release reopen reset resume room run search seek seek_on send_head
+send_tail set_payload show specials stuff surplus take take_byte take_head take_tail take_whole
+unstuff unstuff_to wire_end wrap write
 """
 _MACROS_OF_A_SENDER = "frame_max idle_us"
 _FUNCTIONS_OF_A_CANDIDATE = "begun begun_byte end fill_up mark read step"

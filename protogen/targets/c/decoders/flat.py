@@ -61,6 +61,18 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         return 0 if is_nothing else self.buffer_size + 1
 
     @property
+    def size_member(self) -> str:
+        """The counter that still has the size of content when a frame is complete."""
+        return "content" if self.idle_member == "limit" else "limit"
+
+    @property
+    def shown_size(self) -> str:
+        """The payload's size of a complete frame, as an argument in front of others."""
+        if self.only_size is not None:
+            return ""
+        return f"({self.counter})(decoder->{self.size_member} - {self.around}U), "
+
+    @property
     def has_no_room(self) -> str:
         """The condition that no byte of content is due."""
         if self.only_size is None:

@@ -30,6 +30,8 @@ from protogen.targets.c.spelling import Names
 _AT = "const uint8_t *at"
 _MOST_TERMS = 4
 """Bytes that are joined in one expression; more of them are joined in a loop."""
+_SHORT = 2
+"""Bytes of numbers that are written where they stand, and not by a call."""
 
 _LOAD_RUN = """\
 size_t i = 0;
@@ -115,6 +117,8 @@ class _Helper(msgspec.Struct):
     body: Lines
     is_public: bool = False
     """True if an inline function of the header calls it."""
+    is_short: bool = False
+    """True if it is put where it is called, which takes no more room than the call."""
 
     def text(self, words: str) -> str:
         """The definition."""
@@ -146,7 +150,9 @@ class Helpers:
     @property
     def texts(self) -> tuple[str, ...]:
         """The definitions of the functions that only the source calls."""
-        return tuple(item.text("static") for item in self._helpers.values() if not item.is_public)
+        inline = f"{self._upper}_INLINE"
+        found = (item for item in self._helpers.values() if not item.is_public)
+        return tuple(item.text(inline if item.is_short else "static") for item in found)
 
     @property
     def public_texts(self) -> tuple[str, ...]:
@@ -162,13 +168,20 @@ class Helpers:
         self._is_public = False
 
     def helper(
-        self, key: str, result: str, arguments: tuple[str, ...], body: str | Iterable[str]
+        self,
+        key: str,
+        result: str,
+        arguments: tuple[str, ...],
+        body: str | Iterable[str],
+        *,
+        is_short: bool = False,
     ) -> str:
         """The name of a helper, which is added where it is not there yet."""
         if key not in self._helpers:
             lines = Lines()
             lines.add(*(body.splitlines() if isinstance(body, str) else body))
-            self._helpers[key] = _Helper(self._names.claim_helper(key), result, arguments, lines)
+            name = self._names.claim_helper(key)
+            self._helpers[key] = _Helper(name, result, arguments, lines, is_short=is_short)
         found = self._helpers[key]
         found.is_public |= self._is_public
         return found.name
@@ -270,14 +283,19 @@ class Helpers:
         layout = _cut(type_)
         arguments = ("uint8_t *at", f"{unsigned_type(type_.bits)} value")
         body = _stored(layout)
-        return self.helper(f"store_{layout_name(layout)}", "void", arguments, body)
+        name, is_short = f"store_{layout_name(layout)}", layout.size <= _SHORT
+        return self.helper(name, "void", arguments, body, is_short=is_short)
 
     def write(self, type_: NumberType) -> str:
         """The function that hands an unsigned number to a writer, byte by byte."""
         layout, names = _cut(type_), self._names
         body = _written(layout, f"{names.prefix}_write({names.writing}")
         arguments = (names.writer, f"{unsigned_type(type_.bits)} value")
-        return self.helper(f"write_{layout_name(layout)}", "void", arguments, body)
+        # A writer is one argument; a function and what it is called with are two, which have to be
+        # kept from one byte to the next.
+        is_short = layout.size <= _SHORT and names.writing == "put, user"
+        name = f"write_{layout_name(layout)}"
+        return self.helper(name, "void", arguments, body, is_short=is_short)
 
     def write_bytes(self) -> str:
         """The function that hands several bytes to a writer."""

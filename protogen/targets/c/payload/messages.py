@@ -158,11 +158,12 @@ class _Codec:
         message, given = f"{struct} *message", f"const {struct} *message"
         payload = "const uint8_t *payload"
         size = ("size_t size",) if self.fixed is None else ()
+        inline = f"{self._upper}_INLINE"
         self._signatures: dict[str, tuple[str, tuple[str, ...]]] = {
             "measure": ("static size_t", (given,)),
-            "validate": (f"static {result}", (given,)),
-            "store": ("static void", (given, "uint8_t *payload")),
-            "put": ("static void", (given, printer.names.writer)),
+            "validate": (f"{inline} {result}", (given,)),
+            "store": (f"{inline} void", (given, "uint8_t *payload")),
+            "put": (f"{inline} void", (given, printer.names.writer)),
             "encode": (result, (given, "uint8_t *payload", "size_t capacity", "size_t *size")),
             "check": (f"static {result}", (payload, "size_t size", "size_t *need", *held)),
             "load": ("void", (message, payload, *size, *held)),
@@ -176,7 +177,8 @@ class _Codec:
 
     def prototypes(self) -> tuple[str, ...]:
         """Declarations for the header."""
-        return tuple(prototype(*self._head(word)) for word in ("encode", "decode", "load"))
+        heads = (self._head(word) for word in ("encode", "decode", "load"))
+        return tuple(prototype(f"{self._upper}_API {head}", args) for head, args in heads)
 
     def functions(self) -> tuple[str, ...]:
         """All but `put`."""
