@@ -958,7 +958,7 @@ static void dagny_host_send_tail(struct dagny_writer *writer, size_t payload, ui
     writer->put(writer->user, 0x0AU);
 }
 
-static void dagny_write(struct dagny_writer *writer, uint8_t byte) {
+DAGNY_INLINE void dagny_write(struct dagny_writer *writer, uint8_t byte) {
     dagny_host_write(writer, byte);
 }
 

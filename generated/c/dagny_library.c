@@ -671,7 +671,7 @@ static void dagny_library_host_send_tail(struct dagny_library_writer *writer, si
     writer->put(writer->user, 0x0DU);
 }
 
-static void dagny_library_write(struct dagny_library_writer *writer, uint8_t byte) {
+DAGNY_LIBRARY_INLINE void dagny_library_write(struct dagny_library_writer *writer, uint8_t byte) {
     dagny_library_host_write(writer, byte);
 }
 

@@ -671,7 +671,7 @@ static void matty_pc_send_tail(struct matty_writer *writer, size_t payload, uint
     }
 }
 
-static void matty_write(struct matty_writer *writer, uint8_t byte) {
+MATTY_INLINE void matty_write(struct matty_writer *writer, uint8_t byte) {
     matty_pc_write(writer, byte);
 }
 

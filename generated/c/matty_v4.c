@@ -799,7 +799,7 @@ static void matty_v4_pc_send_tail(struct matty_v4_writer *writer, size_t payload
     }
 }
 
-static void matty_v4_write(struct matty_v4_writer *writer, uint8_t byte) {
+MATTY_V4_INLINE void matty_v4_write(struct matty_v4_writer *writer, uint8_t byte) {
     matty_v4_pc_write(writer, byte);
 }
 

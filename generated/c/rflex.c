@@ -1118,7 +1118,7 @@ static void rflex_linux_send_tail(struct rflex_writer *writer, size_t payload, u
     writer->put(writer->user, 0x03U);
 }
 
-static void rflex_write(struct rflex_writer *writer, uint8_t byte) {
+RFLEX_INLINE void rflex_write(struct rflex_writer *writer, uint8_t byte) {
     rflex_linux_write(writer, byte);
 }
 

@@ -1374,7 +1374,7 @@ static void rflex_drivers_linux_send_tail(struct rflex_drivers_writer *writer, s
     writer->put(writer->user, 0x03U);
 }
 
-static void rflex_drivers_write(struct rflex_drivers_writer *writer, uint8_t byte) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_write(struct rflex_drivers_writer *writer, uint8_t byte) {
     rflex_drivers_linux_write(writer, byte);
 }
 

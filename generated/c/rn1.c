@@ -1044,7 +1044,7 @@ static size_t rn1_brain_wrap(uint8_t *frame, size_t payload, uint8_t start) {
 
 /* --- frames, byte by byte --------------------------------------------------------------------- */
 
-static inline void rn1_write(rn1_put put, void *user, uint8_t byte) {
+RN1_INLINE void rn1_write(rn1_put put, void *user, uint8_t byte) {
     put(user, byte);
 }
 

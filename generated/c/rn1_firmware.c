@@ -1269,7 +1269,7 @@ static size_t rn1_firmware_brain_wrap(uint8_t *frame, size_t payload, uint8_t st
 
 /* --- frames, byte by byte --------------------------------------------------------------------- */
 
-static inline void rn1_firmware_write(rn1_firmware_put put, void *user, uint8_t byte) {
+RN1_FIRMWARE_INLINE void rn1_firmware_write(rn1_firmware_put put, void *user, uint8_t byte) {
     put(user, byte);
 }
 

@@ -294,7 +294,7 @@ static void uherobot_daemon_send_tail(struct uherobot_writer *writer, size_t pay
     writer->put(writer->user, 0x65U);
 }
 
-static void uherobot_write(struct uherobot_writer *writer, uint8_t byte) {
+UHEROBOT_INLINE void uherobot_write(struct uherobot_writer *writer, uint8_t byte) {
     uherobot_daemon_write(writer, byte);
 }
 
