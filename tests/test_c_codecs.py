@@ -50,6 +50,7 @@ from protogen.runtime.errors import EncodeError
 from protogen.targets.c import options
 from protogen.targets.c.emit import emit, unit_of
 from protogen.targets.c.options import COptions
+from protogen.version import VERSION
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
 
@@ -624,6 +625,9 @@ int main(void) {
     if (SAMPLER_RANGES_ANGLE_SCALE_NUM * 10 != SAMPLER_RANGES_ANGLE_SCALE_DEN ||
         SAMPLER_RANGES_OFFSET_OFFSET_NUM != -40 || SAMPLER_RANGES_OFFSET_OFFSET_DEN != 1 ||
         SAMPLER_RANGES_OFFSET_DEFAULT != 7u || SAMPLER_RANGES_ANGLE_OFF != 32767 ||
+        SAMPLER_RANGES_PERCENT_MIN != 0 || SAMPLER_RANGES_PERCENT_MAX != 100u ||
+        0 -SAMPLER_RANGES_ANGLE_MIN != 1800 || SAMPLER_RANGES_ANGLE_MAX != 1800 ||
+        RN1_BAUD != 115200 || strcmp(RN1_PROTOGEN_VERSION, PROTOGEN) != 0 ||
         SAMPLER_FAR_FAR != 0x80000000u || RN1_LIDAR_DISTANCES_NO_DATAPOINT != 0u) {
         return 6;
     }
@@ -644,7 +648,7 @@ MACHINES = {"little": ("cc", []), "big": ("s390x-linux-gnu-gcc", ["qemu-s390x"])
 def test_macros_and_inline_functions(machine: str, tmp_path: Path) -> None:
     for path in (SAMPLER, ROOT / "schemas" / "rn1.yaml"):
         written(path, tmp_path)
-    (tmp_path / "main.c").write_text(PROGRAM)
+    (tmp_path / "main.c").write_text(f'#define PROTOGEN "{VERSION}"\n{PROGRAM}')
     execute(machine, ["main.c", "rn1.c", "sampler.c"], tmp_path)
 
 

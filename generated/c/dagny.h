@@ -30,6 +30,10 @@ extern "C" {
 
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define DAGNY_SPEC_HASH "1d5a69e6f0daa3cc6de17b9b7bdfa067dee73b6a3f07294530412990adc6f795"
+/** Version of the protogen that made this file. */
+#define DAGNY_PROTOGEN_VERSION "0.1.0"
+/** Bits per second on the line. */
+#define DAGNY_BAUD 115200UL
 
 /** What came of an encoder or a decoder. */
 enum dagny_result {

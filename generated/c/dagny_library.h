@@ -30,6 +30,10 @@ extern "C" {
 
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define DAGNY_LIBRARY_SPEC_HASH "a7092ead0b8db66d126ced8180d3166654ee1bcf3b0a0c7a4a08e8970ec47ae4"
+/** Version of the protogen that made this file. */
+#define DAGNY_LIBRARY_PROTOGEN_VERSION "0.1.0"
+/** Bits per second on the line. */
+#define DAGNY_LIBRARY_BAUD 115200UL
 
 /** What came of an encoder or a decoder. */
 enum dagny_library_result {

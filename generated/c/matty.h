@@ -29,6 +29,12 @@ extern "C" {
 
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define MATTY_SPEC_HASH "cdb67c5317565b9738a484dc5d94d77752d0a1f43af67ee7e89c512ed9794d13"
+/** Version of the protogen that made this file. */
+#define MATTY_PROTOGEN_VERSION "0.1.0"
+/** Bits per second on the line. */
+#define MATTY_BAUD 115200UL
+/** Milliseconds of silence that end whatever was going on. */
+#define MATTY_IDLE_TIMEOUT_MS 20UL
 
 /** What came of an encoder or a decoder. */
 enum matty_result {

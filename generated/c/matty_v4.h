@@ -28,6 +28,12 @@ extern "C" {
 
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define MATTY_V4_SPEC_HASH "dceb8649d3dbb04ae2ad9f286946464ed2f6905f4664ab2a8cf2b210b638d828"
+/** Version of the protogen that made this file. */
+#define MATTY_V4_PROTOGEN_VERSION "0.1.0"
+/** Bits per second on the line. */
+#define MATTY_V4_BAUD 115200UL
+/** Milliseconds of silence that end whatever was going on. */
+#define MATTY_V4_IDLE_TIMEOUT_MS 20UL
 
 /** What came of an encoder or a decoder. */
 enum matty_v4_result {

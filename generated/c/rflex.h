@@ -30,6 +30,10 @@ extern "C" {
 
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define RFLEX_SPEC_HASH "bdc0dbf75479fc3117451c2780def69871f73fedb48120ce349c7ab8d25414f4"
+/** Version of the protogen that made this file. */
+#define RFLEX_PROTOGEN_VERSION "0.1.0"
+/** Bits per second on the line. */
+#define RFLEX_BAUD 115200UL
 
 /** What came of an encoder or a decoder. */
 enum rflex_result {

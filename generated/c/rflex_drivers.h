@@ -30,6 +30,10 @@ extern "C" {
 
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define RFLEX_DRIVERS_SPEC_HASH "6b293ff835f71a294248ac2f82f2aaa6e6ca9f1f9520933d977de3ead1d21d2d"
+/** Version of the protogen that made this file. */
+#define RFLEX_DRIVERS_PROTOGEN_VERSION "0.1.0"
+/** Bits per second on the line. */
+#define RFLEX_DRIVERS_BAUD 115200UL
 
 /** What came of an encoder or a decoder. */
 enum rflex_drivers_result {

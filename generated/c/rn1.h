@@ -31,6 +31,10 @@ extern "C" {
 
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define RN1_SPEC_HASH "52b96749db6c04ab62c29308f0a6a960c2ec0a24307e498c3bbbfb5cc9f6c2bc"
+/** Version of the protogen that made this file. */
+#define RN1_PROTOGEN_VERSION "0.1.0"
+/** Bits per second on the line. */
+#define RN1_BAUD 115200UL
 
 /** What came of an encoder or a decoder. */
 enum rn1_result {
@@ -118,6 +122,9 @@ struct rn1_maintenance_argument_reconfig_uart {
 };
 
 /* --- maintenance_argument_run_motor_controller_flasher ---------------------------------------- */
+
+#define RN1_MAINTENANCE_ARGUMENT_RUN_MOTOR_CONTROLLER_FLASHER_MOTOR_CONTROLLER_MIN 1U
+#define RN1_MAINTENANCE_ARGUMENT_RUN_MOTOR_CONTROLLER_FLASHER_MOTOR_CONTROLLER_MAX 4U
 
 /** The motor controller. */
 struct rn1_maintenance_argument_run_motor_controller_flasher {

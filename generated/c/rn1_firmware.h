@@ -31,6 +31,10 @@ extern "C" {
 
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define RN1_FIRMWARE_SPEC_HASH "4c7afc95c9fa156c5677328201c53396e1fd4021ec0f97509bbf1a949aefe311"
+/** Version of the protogen that made this file. */
+#define RN1_FIRMWARE_PROTOGEN_VERSION "0.1.0"
+/** Bits per second on the line. */
+#define RN1_FIRMWARE_BAUD 115200UL
 
 /** What came of an encoder or a decoder. */
 enum rn1_firmware_result {
@@ -103,6 +107,9 @@ enum rn1_firmware_compass_status {
 #define RN1_FIRMWARE_SONAR_STATUS_SONAR_2 0x04U
 
 /* --- maintenance_argument_run_motor_controller_flasher ---------------------------------------- */
+
+#define RN1_FIRMWARE_MAINTENANCE_ARGUMENT_RUN_MOTOR_CONTROLLER_FLASHER_MOTOR_CONTROLLER_MIN 1U
+#define RN1_FIRMWARE_MAINTENANCE_ARGUMENT_RUN_MOTOR_CONTROLLER_FLASHER_MOTOR_CONTROLLER_MAX 4U
 
 /** The motor controller. */
 struct rn1_firmware_maintenance_argument_run_motor_controller_flasher {
@@ -562,6 +569,14 @@ RN1_FIRMWARE_API void rn1_firmware_motor_controller_message_load(
 #define RN1_FIRMWARE_DEBUG_NUMBERS_PAYLOAD_MIN 20U
 #define RN1_FIRMWARE_DEBUG_NUMBERS_PAYLOAD_MAX 20U
 #define RN1_FIRMWARE_DEBUG_NUMBERS_SPEC_HASH "e875c5ea77e9d463db7b7905ce8f9ad3a35b180a4acb6fba75e87a0ad27be7c4"
+#define RN1_FIRMWARE_DEBUG_NUMBERS_DBG1_MIN (-2147483648LL)
+#define RN1_FIRMWARE_DEBUG_NUMBERS_DBG1_MAX 2147483647L
+#define RN1_FIRMWARE_DEBUG_NUMBERS_DBG2_MIN (-2147483648LL)
+#define RN1_FIRMWARE_DEBUG_NUMBERS_DBG2_MAX 2147483647L
+#define RN1_FIRMWARE_DEBUG_NUMBERS_DBG3_MIN (-2147483648LL)
+#define RN1_FIRMWARE_DEBUG_NUMBERS_DBG3_MAX 2147483647L
+#define RN1_FIRMWARE_DEBUG_NUMBERS_DBG4_MIN (-2147483648LL)
+#define RN1_FIRMWARE_DEBUG_NUMBERS_DBG4_MAX 2147483647L
 
 /**
  * Debugging, four numbers that a developer picks (main.c, lines 946-971).

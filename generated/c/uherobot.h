@@ -29,6 +29,8 @@ extern "C" {
 
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define UHEROBOT_SPEC_HASH "319850d58c204d8cbc2e7dde9a0ec863cee3d1caa80d06326176835ab5e5a4b4"
+/** Version of the protogen that made this file. */
+#define UHEROBOT_PROTOGEN_VERSION "0.1.0"
 
 /** What came of an encoder or a decoder. */
 enum uherobot_result {

@@ -31,6 +31,10 @@ extern "C" {
 
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define UHEROBOT_DAEMON_SPEC_HASH "8b7e96f33f6c769cdeb33f021dbf58a2505572a20e487dd7673d7bc09041d4a8"
+/** Version of the protogen that made this file. */
+#define UHEROBOT_DAEMON_PROTOGEN_VERSION "0.1.0"
+/** Bits per second on the line. */
+#define UHEROBOT_DAEMON_BAUD 57600UL
 
 /** What came of an encoder or a decoder. */
 enum uherobot_daemon_result {
@@ -86,9 +90,15 @@ enum uherobot_daemon_message {
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_RIGHT_MOTOR_SCALE_NUM 1
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_RIGHT_MOTOR_SCALE_DEN 32
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_RIGHT_MOTOR_UNIT "percent"
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_RIGHT_MOTOR_MIN (-3200)
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_RIGHT_MOTOR_MAX 3200
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEFT_MOTOR_SCALE_NUM 1
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEFT_MOTOR_SCALE_DEN 32
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEFT_MOTOR_UNIT "percent"
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEFT_MOTOR_MIN (-3200)
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEFT_MOTOR_MAX 3200
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_SERVOS_MIN 0U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_SERVOS_MAX 250U
 
 /**
  * Set both motors, eight servos and the LEDs (robotboard2interpreter.cpp, lines 55-296).

@@ -35,7 +35,7 @@ _TELLS = re.compile(
     r"(?:void|bool) ((\w+)_decoder_tell_\w+)\(\s*struct \w+ \*decoder,\s*(uint\d+_t) \w+\);"
 )
 """What tells a decoder a part that is not sent."""
-_POLLS = re.compile(r"void (\w+)_decoder_init\(struct \w+ \*decoder\);")
+_POLLS = re.compile(r"void (\w+)_decoder_init\(\s*struct \w+ \*decoder\);")
 """A decoder whose `push` returns which message is complete, and takes no handler."""
 
 _HEAD = """#define {upper}_FAST_FEED 0 /* memcpy, which only `feed` needs; fuzzed against `push` */

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
+from math import ceil
 
 import msgspec
 
 from protogen.model.messages import Message
 from protogen.model.payload_builder import plan_of
 from protogen.model.payload_plan import IntegerStep, RecordStep, every_step
-from protogen.model.protocol import Protocol
+from protogen.model.protocol import Link, Protocol
 from protogen.targets import descriptions
 from protogen.targets.c import comments
 from protogen.targets.c.named import EnumView, enum_view, flags_view, string
@@ -19,6 +21,7 @@ from protogen.targets.c.payload.messages import MessagePrinter, MessageView
 from protogen.targets.c.payload.records import Records, StructView
 from protogen.targets.c.spelling import Names
 from protogen.targets.naming import named_type
+from protogen.version import VERSION
 
 
 class Module(msgspec.Struct, frozen=True):
@@ -32,6 +35,10 @@ class Module(msgspec.Struct, frozen=True):
     doc: tuple[str, ...]
     spec_hash: str
     version: str | None
+    made_by: str
+    """The version of protogen."""
+    baud: str | None
+    idle_timeout_ms: str | None
     enums: tuple[EnumView, ...]
     flags: tuple[EnumView, ...]
     structs: tuple[StructView, ...]
@@ -84,6 +91,9 @@ def view(protocol: Protocol, options: COptions, names: Names, helpers: Helpers) 
         doc=comments.comment(comments.of_protocol(protocol)),
         spec_hash=protocol.spec_hash,
         version=None if protocol.version is None else string(protocol.version),
+        made_by=VERSION,
+        baud=_baud(protocol.link),
+        idle_timeout_ms=_milliseconds(protocol.link.idle_timeout),
         enums=enums,
         flags=flags,
         structs=struct_views,
@@ -94,6 +104,16 @@ def view(protocol: Protocol, options: COptions, names: Names, helpers: Helpers) 
         sinks=sinks.texts,
         floats=frozenset(helpers.floats | sinks.floats),
     )
+
+
+def _baud(link: Link) -> str | None:
+    """The rate of the line; `int` may have 16 bits."""
+    return None if link.baud is None else f"{link.baud}UL"
+
+
+def _milliseconds(seconds: Fraction | None) -> str | None:
+    """A time in whole milliseconds: more rather than less, as less would cut a frame."""
+    return None if seconds is None else f"{ceil(seconds * 1000)}UL"
 
 
 def _used(messages: Sequence[Message]) -> set[str]:

@@ -136,6 +136,9 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
         yield macro("unit", string(field.unit))
     integer = field.integer
     if integer is not None:
+        for word, bound in (("min", field.least), ("max", field.greatest)):
+            if field.ranged and bound is not None:
+                yield macro(word, _operand(constant(int(bound), integer)))
         for item in field.special:
             thing = inside(record, "special value", field.name, "special", item.name)
             value = constant(item.value, integer)
@@ -145,6 +148,11 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
     elif isinstance(field.element, Float) and isinstance(field.default, int | float):
         suffix = "f" if field.element.bits == 32 else ""
         yield macro("default", repr(float(field.default)) + suffix)
+
+
+def _operand(text: str) -> str:
+    """A number that may stand behind any operator."""
+    return f"({text})" if text.startswith("-") else text
 
 
 def _fraction(macro: object, word: str, value: Fraction) -> Iterable[Macro]:
