@@ -136,9 +136,8 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
         yield macro("unit", string(field.unit))
     integer = field.integer
     if integer is not None:
-        for word, bound in (("min", field.least), ("max", field.greatest)):
-            if field.ranged and bound is not None:
-                yield macro(word, _operand(constant(int(bound), integer)))
+        for word, bound in _bounds(field):
+            yield macro(word, _operand(constant(bound, integer)))
         for item in field.special:
             thing = inside(record, "special value", field.name, "special", item.name)
             value = constant(item.value, integer)
@@ -148,6 +147,13 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
     elif isinstance(field.element, Float) and isinstance(field.default, int | float):
         suffix = "f" if field.element.bits == 32 else ""
         yield macro("default", repr(float(field.default)) + suffix)
+
+
+def _bounds(field: Field) -> Iterable[tuple[str, int]]:
+    """The least and the greatest raw value that the schema states."""
+    for word, bound in (("min", field.least), ("max", field.greatest)):
+        if field.ranged and bound is not None:
+            yield word, int(bound)
 
 
 def _operand(text: str) -> str:
