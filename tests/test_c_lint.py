@@ -129,7 +129,7 @@ def test_cplusplus_calls_generated_c(path: Path, tmp_path: Path) -> None:
     made = generate(protocol, tmp_path)
     assert made.source is not None
     calls = "".join(
-        f"    {{ static {prefix}_decoder decoder;\n"
+        f"    {{ static {prefix}_decoder decoder = {prefix.upper()}_DECODER_INIT;\n"
         f"      {prefix}_decoder_init(&decoder, {prefix}_dispatch, nullptr);\n"
         f"      {prefix}_decoder_push(&decoder, 0x55); }}\n"
         for prefix in (f"{protocol.name}_{sender.name}" for sender in protocol.senders)

@@ -635,6 +635,14 @@ enum dagny_reason {
     DAGNY_TRUNCATED  /**< The frame is cut off. */
 };
 
+#ifdef __cplusplus
+#define DAGNY_ZEROS \
+    {}
+#else
+#define DAGNY_ZEROS \
+    { 0 }
+#endif
+
 /* --- what host sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of host on the wire, in bytes. */
@@ -705,6 +713,9 @@ struct dagny_host_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[515];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define DAGNY_HOST_DECODER_INIT DAGNY_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
@@ -796,6 +807,9 @@ struct dagny_robot_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[515];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define DAGNY_ROBOT_DECODER_INIT DAGNY_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and

@@ -632,6 +632,14 @@ enum dagny_library_reason {
     DAGNY_LIBRARY_TRUNCATED  /**< The frame is cut off. */
 };
 
+#ifdef __cplusplus
+#define DAGNY_LIBRARY_ZEROS \
+    {}
+#else
+#define DAGNY_LIBRARY_ZEROS \
+    { 0 }
+#endif
+
 /* --- what host sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of host on the wire, in bytes. */
@@ -695,6 +703,9 @@ struct dagny_library_host_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[1027];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define DAGNY_LIBRARY_HOST_DECODER_INIT DAGNY_LIBRARY_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
@@ -781,6 +792,9 @@ struct dagny_library_robot_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[1027];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define DAGNY_LIBRARY_ROBOT_DECODER_INIT DAGNY_LIBRARY_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and

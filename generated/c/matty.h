@@ -510,6 +510,14 @@ enum matty_reason {
     MATTY_TRUNCATED  /**< The frame is cut off. */
 };
 
+#ifdef __cplusplus
+#define MATTY_ZEROS \
+    {}
+#else
+#define MATTY_ZEROS \
+    { 0 }
+#endif
+
 /* --- what pc sends ---------------------------------------------------------------------------- */
 
 /** The greatest frame of pc on the wire, in bytes. */
@@ -567,6 +575,9 @@ struct matty_pc_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[126];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define MATTY_PC_DECODER_INIT MATTY_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
@@ -645,6 +656,9 @@ struct matty_esp_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[126];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define MATTY_ESP_DECODER_INIT MATTY_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and

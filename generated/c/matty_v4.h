@@ -669,6 +669,14 @@ enum matty_v4_reason {
     MATTY_V4_TRUNCATED  /**< The frame is cut off. */
 };
 
+#ifdef __cplusplus
+#define MATTY_V4_ZEROS \
+    {}
+#else
+#define MATTY_V4_ZEROS \
+    { 0 }
+#endif
+
 /* --- what pc sends ---------------------------------------------------------------------------- */
 
 /** The greatest frame of pc on the wire, in bytes. */
@@ -726,6 +734,9 @@ struct matty_v4_pc_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[127];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define MATTY_V4_PC_DECODER_INIT MATTY_V4_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
@@ -804,6 +815,9 @@ struct matty_v4_esp_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[127];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define MATTY_V4_ESP_DECODER_INIT MATTY_V4_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and

@@ -994,6 +994,14 @@ enum rflex_reason {
     RFLEX_TRUNCATED  /**< The frame is cut off. */
 };
 
+#ifdef __cplusplus
+#define RFLEX_ZEROS \
+    {}
+#else
+#define RFLEX_ZEROS \
+    { 0 }
+#endif
+
 /* --- what linux sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of linux on the wire, in bytes. */
@@ -1062,6 +1070,9 @@ struct rflex_linux_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[262];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define RFLEX_LINUX_DECODER_INIT RFLEX_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
@@ -1151,6 +1162,9 @@ struct rflex_flex_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[262];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define RFLEX_FLEX_DECODER_INIT RFLEX_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and

@@ -1225,6 +1225,14 @@ enum rflex_drivers_reason {
     RFLEX_DRIVERS_TRUNCATED  /**< The frame is cut off. */
 };
 
+#ifdef __cplusplus
+#define RFLEX_DRIVERS_ZEROS \
+    {}
+#else
+#define RFLEX_DRIVERS_ZEROS \
+    { 0 }
+#endif
+
 /* --- what linux sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of linux on the wire, in bytes. */
@@ -1294,6 +1302,9 @@ struct rflex_drivers_linux_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[262];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define RFLEX_DRIVERS_LINUX_DECODER_INIT RFLEX_DRIVERS_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
@@ -1387,6 +1398,9 @@ struct rflex_drivers_flex_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[262];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define RFLEX_DRIVERS_FLEX_DECODER_INIT RFLEX_DRIVERS_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and

@@ -571,6 +571,14 @@ enum rn1_reason {
     RN1_TRUNCATED  /**< The frame is cut off. */
 };
 
+#ifdef __cplusplus
+#define RN1_ZEROS \
+    {}
+#else
+#define RN1_ZEROS \
+    { 0 }
+#endif
+
 /* --- what host sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of host on the wire, in bytes. */
@@ -629,6 +637,9 @@ struct rn1_host_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[9];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define RN1_HOST_DECODER_INIT RN1_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
@@ -710,6 +721,9 @@ struct rn1_brain_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[722];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define RN1_BRAIN_DECODER_INIT RN1_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and

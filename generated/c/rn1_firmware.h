@@ -756,6 +756,14 @@ enum rn1_firmware_reason {
     RN1_FIRMWARE_TRUNCATED  /**< The frame is cut off. */
 };
 
+#ifdef __cplusplus
+#define RN1_FIRMWARE_ZEROS \
+    {}
+#else
+#define RN1_FIRMWARE_ZEROS \
+    { 0 }
+#endif
+
 /* --- what host sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of host on the wire, in bytes. */
@@ -814,6 +822,9 @@ struct rn1_firmware_host_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[7];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define RN1_FIRMWARE_HOST_DECODER_INIT RN1_FIRMWARE_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
@@ -897,6 +908,9 @@ struct rn1_firmware_brain_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[722];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define RN1_FIRMWARE_BRAIN_DECODER_INIT RN1_FIRMWARE_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and

@@ -271,6 +271,14 @@ enum uherobot_reason {
     UHEROBOT_TRUNCATED  /**< The frame is cut off. */
 };
 
+#ifdef __cplusplus
+#define UHEROBOT_ZEROS \
+    {}
+#else
+#define UHEROBOT_ZEROS \
+    { 0 }
+#endif
+
 /* --- what daemon sends ------------------------------------------------------------------------ */
 
 /** The greatest frame of daemon on the wire, in bytes. */
@@ -329,6 +337,9 @@ struct uherobot_daemon_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[256];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define UHEROBOT_DAEMON_DECODER_INIT UHEROBOT_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
@@ -409,6 +420,9 @@ struct uherobot_board_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[256];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define UHEROBOT_BOARD_DECODER_INIT UHEROBOT_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and

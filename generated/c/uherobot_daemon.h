@@ -235,6 +235,14 @@ enum uherobot_daemon_reason {
     UHEROBOT_DAEMON_TRUNCATED  /**< The frame is cut off. */
 };
 
+#ifdef __cplusplus
+#define UHEROBOT_DAEMON_ZEROS \
+    {}
+#else
+#define UHEROBOT_DAEMON_ZEROS \
+    { 0 }
+#endif
+
 /* --- what daemon sends ------------------------------------------------------------------------ */
 
 /** The greatest frame of daemon on the wire, in bytes. */
@@ -294,6 +302,9 @@ struct uherobot_daemon_daemon_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[256];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define UHEROBOT_DAEMON_DAEMON_DECODER_INIT UHEROBOT_DAEMON_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and
@@ -379,6 +390,9 @@ struct uherobot_daemon_board_decoder {
     /** Bytes of the candidate. */
     uint8_t buffer[258];
 };
+
+/** Zeros, for those who like to say them where a decoder is defined. */
+#define UHEROBOT_DAEMON_BOARD_DECODER_INIT UHEROBOT_DAEMON_ZEROS
 
 /**
  * Start at the beginning of an input. A decoder whose memory is all zeros is there already, and

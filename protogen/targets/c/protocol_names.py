@@ -26,7 +26,7 @@ ok error_size error_value error_encoding error_range error_space spec_hash versi
 implemented message unknown invalid no_message no_reason size value encoding noise checksum length
 stuffing truncated seeking taking failed lost known open searching measuring empty needless before
 inside after frame stuffed fast_feed sse2 expect each has no_handlers no_weak api inline apart
-baud idle_timeout_ms protogen_version
+baud idle_timeout_ms protogen_version zeros
 """
 _TAGS = "result message event_kind reason writer"
 _TYPES = "put float64"
@@ -42,14 +42,14 @@ pass payload reach read_length release reopen reset resume room run search seek 
 send_tail set_payload show specials stuff surplus take take_byte take_head take_tail take_whole
 unstuff unstuff_to wire_end wrap write
 """
-_MACROS_OF_A_SENDER = "frame_max idle_us"
+_MACROS_OF_A_SENDER = "frame_max idle_us decoder_init"
 _FUNCTIONS_OF_A_CANDIDATE = "begun begun_byte end fill_up mark read step"
 _TAGS_OF_FORMS = "decoder event form"
 _FUNCTIONS_OF_FORMS = """
 add_noise choose decoder_feed decoder_flush decoder_idle decoder_init decoder_push dispatch drop
 end_noise fail follow_end give invalid judge mark open reset resume run seek seek_on take
 """
-_MACROS_OF_FORMS = "frame_max no_form no_start may_start is_start"
+_MACROS_OF_FORMS = "frame_max decoder_init no_form no_start may_start is_start"
 
 
 def names_of(protocol: Protocol) -> Names:
