@@ -652,6 +652,37 @@ def test_macros_and_inline_functions(machine: str, tmp_path: Path) -> None:
     execute(machine, ["main.c", "rn1.c", "sampler.c"], tmp_path)
 
 
+NAMES = """
+#include <string.h>
+#include "rn1.h"
+#include "sampler.h"
+
+static int differs(const char *name, const char *expected) {
+    return strcmp(name, expected) != 0;
+}
+
+int main(void) {
+    return differs(rn1_message_name(RN1_MESSAGE_GYRO), "gyro") ||
+           differs(rn1_message_name(RN1_NO_MESSAGE), "?") ||
+           differs(rn1_result_name(RN1_OK), "ok") ||
+           differs(rn1_result_name(RN1_ERROR_RANGE), "range") ||
+           differs(rn1_reason_name(RN1_TRUNCATED), "truncated") ||
+           differs(rn1_reason_name(RN1_NO_REASON), "?") ||
+           differs(sampler_settings_mode_name(SAMPLER_SETTINGS_MODE_BUSY), "busy") ||
+           differs(sampler_settings_mode_name(255), "?");
+}
+"""
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_names_for_logs(machine: str, tmp_path: Path) -> None:
+    for path in (SAMPLER, ROOT / "schemas" / "rn1.yaml"):
+        written(path, tmp_path)
+    (tmp_path / "main.c").write_text(NAMES)
+    defined = ["-DRN1_NAMES", "-DSAMPLER_NAMES"]
+    execute(machine, [*defined, "main.c", "rn1.c", "sampler.c"], tmp_path)
+
+
 ROUND_TRIP = """
 static int trip_{name}(const uint8_t *payload, size_t size) {{
     {struct} message;

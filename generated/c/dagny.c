@@ -2481,3 +2481,118 @@ __attribute__((weak)) void dagny_on_command_from_robot(void *user,
 
 #endif
 #endif
+
+#ifdef DAGNY_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+const char *dagny_message_name(enum dagny_message message) {
+    switch (message) {
+    case DAGNY_MESSAGE_SONAR:
+        return "sonar";
+    case DAGNY_MESSAGE_GPS:
+        return "gps";
+    case DAGNY_MESSAGE_BUMP:
+        return "bump";
+    case DAGNY_MESSAGE_ODOMETRY:
+        return "odometry";
+    case DAGNY_MESSAGE_SPEED:
+        return "speed";
+    case DAGNY_MESSAGE_WHEEL_SLIP:
+        return "wheel_slip";
+    case DAGNY_MESSAGE_BATTERY:
+        return "battery";
+    case DAGNY_MESSAGE_REFLEX_SETTINGS:
+        return "reflex_settings";
+    case DAGNY_MESSAGE_HARDWARE_STATUS:
+        return "hardware_status";
+    case DAGNY_MESSAGE_MOTOR:
+        return "motor";
+    case DAGNY_MESSAGE_STEERING:
+        return "steering";
+    case DAGNY_MESSAGE_REFLEX:
+        return "reflex";
+    case DAGNY_MESSAGE_POWER_DOWN:
+        return "power_down";
+    case DAGNY_MESSAGE_POWER:
+        return "power";
+    case DAGNY_MESSAGE_LASER:
+        return "laser";
+    case DAGNY_MESSAGE_COMMAND:
+        return "command";
+    default:
+        return "?";
+    }
+}
+
+const char *dagny_result_name(enum dagny_result result) {
+    switch (result) {
+    case DAGNY_OK:
+        return "ok";
+    case DAGNY_ERROR_SIZE:
+        return "size";
+    case DAGNY_ERROR_VALUE:
+        return "value";
+    case DAGNY_ERROR_ENCODING:
+        return "encoding";
+    case DAGNY_ERROR_RANGE:
+        return "range";
+    case DAGNY_ERROR_SPACE:
+        return "space";
+    default:
+        return "?";
+    }
+}
+
+const char *dagny_reason_name(enum dagny_reason reason) {
+    switch (reason) {
+    case DAGNY_SIZE:
+        return "size";
+    case DAGNY_VALUE:
+        return "value";
+    case DAGNY_ENCODING:
+        return "encoding";
+    case DAGNY_NOISE:
+        return "noise";
+    case DAGNY_CHECKSUM:
+        return "checksum";
+    case DAGNY_LENGTH:
+        return "length";
+    case DAGNY_STUFFING:
+        return "stuffing";
+    case DAGNY_TRUNCATED:
+        return "truncated";
+    default:
+        return "?";
+    }
+}
+
+const char *dagny_reflex_reflex_command_name(uint8_t value) {
+    switch (value) {
+    case DAGNY_REFLEX_REFLEX_COMMAND_QUERY:
+        return "query";
+    case DAGNY_REFLEX_REFLEX_COMMAND_ENABLE:
+        return "enable";
+    case DAGNY_REFLEX_REFLEX_COMMAND_DISABLE:
+        return "disable";
+    default:
+        return "?";
+    }
+}
+
+const char *dagny_power_code_name(uint8_t value) {
+    switch (value) {
+    case DAGNY_POWER_CODE_QUERY:
+        return "query";
+    case DAGNY_POWER_CODE_ENABLE:
+        return "enable";
+    case DAGNY_POWER_CODE_DISABLE:
+        return "disable";
+    case DAGNY_POWER_CODE_TIMED_POWER_DOWN:
+        return "timed_power_down";
+    default:
+        return "?";
+    }
+}
+
+#endif

@@ -911,6 +911,22 @@ void dagny_on_command_from_robot(void *user, const struct dagny_command *message
 /** Calls the functions above; give it to dagny_robot_decoder_init. */
 DAGNY_API void dagny_robot_dispatch(void *user, const struct dagny_robot_event *event);
 
+#ifdef DAGNY_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+/*
+ * They are there where DAGNY_NAMES is defined, for all sources alike. What has no name is "?".
+ */
+
+DAGNY_API const char *dagny_message_name(enum dagny_message message);
+DAGNY_API const char *dagny_result_name(enum dagny_result result);
+DAGNY_API const char *dagny_reason_name(enum dagny_reason reason);
+DAGNY_API const char *dagny_reflex_reflex_command_name(uint8_t value);
+DAGNY_API const char *dagny_power_code_name(uint8_t value);
+
+#endif
+
 #ifdef __cplusplus
 }
 #endif

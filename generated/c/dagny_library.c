@@ -2090,3 +2090,97 @@ __attribute__((weak)) void dagny_library_on_shutdown_from_robot(
 
 #endif
 #endif
+
+#ifdef DAGNY_LIBRARY_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+const char *dagny_library_message_name(enum dagny_library_message message) {
+    switch (message) {
+    case DAGNY_LIBRARY_MESSAGE_SONAR:
+        return "sonar";
+    case DAGNY_LIBRARY_MESSAGE_GPS:
+        return "gps";
+    case DAGNY_LIBRARY_MESSAGE_ODOMETRY:
+        return "odometry";
+    case DAGNY_LIBRARY_MESSAGE_BATTERY:
+        return "battery";
+    case DAGNY_LIBRARY_MESSAGE_COMPASS:
+        return "compass";
+    case DAGNY_LIBRARY_MESSAGE_MOTOR:
+        return "motor";
+    case DAGNY_LIBRARY_MESSAGE_DRIVE:
+        return "drive";
+    case DAGNY_LIBRARY_MESSAGE_STEERING:
+        return "steering";
+    case DAGNY_LIBRARY_MESSAGE_POWER:
+        return "power";
+    case DAGNY_LIBRARY_MESSAGE_GPS_POSITION:
+        return "gps_position";
+    case DAGNY_LIBRARY_MESSAGE_LASER:
+        return "laser";
+    case DAGNY_LIBRARY_MESSAGE_SHUTDOWN:
+        return "shutdown";
+    default:
+        return "?";
+    }
+}
+
+const char *dagny_library_result_name(enum dagny_library_result result) {
+    switch (result) {
+    case DAGNY_LIBRARY_OK:
+        return "ok";
+    case DAGNY_LIBRARY_ERROR_SIZE:
+        return "size";
+    case DAGNY_LIBRARY_ERROR_VALUE:
+        return "value";
+    case DAGNY_LIBRARY_ERROR_ENCODING:
+        return "encoding";
+    case DAGNY_LIBRARY_ERROR_RANGE:
+        return "range";
+    case DAGNY_LIBRARY_ERROR_SPACE:
+        return "space";
+    default:
+        return "?";
+    }
+}
+
+const char *dagny_library_reason_name(enum dagny_library_reason reason) {
+    switch (reason) {
+    case DAGNY_LIBRARY_SIZE:
+        return "size";
+    case DAGNY_LIBRARY_VALUE:
+        return "value";
+    case DAGNY_LIBRARY_ENCODING:
+        return "encoding";
+    case DAGNY_LIBRARY_NOISE:
+        return "noise";
+    case DAGNY_LIBRARY_CHECKSUM:
+        return "checksum";
+    case DAGNY_LIBRARY_LENGTH:
+        return "length";
+    case DAGNY_LIBRARY_STUFFING:
+        return "stuffing";
+    case DAGNY_LIBRARY_TRUNCATED:
+        return "truncated";
+    default:
+        return "?";
+    }
+}
+
+const char *dagny_library_power_code_name(uint8_t value) {
+    switch (value) {
+    case DAGNY_LIBRARY_POWER_CODE_QUERY:
+        return "query";
+    case DAGNY_LIBRARY_POWER_CODE_ENABLE:
+        return "enable";
+    case DAGNY_LIBRARY_POWER_CODE_DISABLE:
+        return "disable";
+    case DAGNY_LIBRARY_POWER_CODE_TIMED_POWER_DOWN:
+        return "timed_power_down";
+    default:
+        return "?";
+    }
+}
+
+#endif

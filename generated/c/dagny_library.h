@@ -893,6 +893,21 @@ void dagny_library_on_shutdown_from_robot(void *user, const struct dagny_library
 DAGNY_LIBRARY_API void dagny_library_robot_dispatch(void *user,
                                                     const struct dagny_library_robot_event *event);
 
+#ifdef DAGNY_LIBRARY_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+/*
+ * They are there where DAGNY_LIBRARY_NAMES is defined, for all sources alike. What has no name is "?".
+ */
+
+DAGNY_LIBRARY_API const char *dagny_library_message_name(enum dagny_library_message message);
+DAGNY_LIBRARY_API const char *dagny_library_result_name(enum dagny_library_result result);
+DAGNY_LIBRARY_API const char *dagny_library_reason_name(enum dagny_library_reason reason);
+DAGNY_LIBRARY_API const char *dagny_library_power_code_name(uint8_t value);
+
+#endif
+
 #ifdef __cplusplus
 }
 #endif

@@ -2235,3 +2235,104 @@ __attribute__((weak)) void matty_on_gps(void *user, const struct matty_gps *mess
 
 #endif
 #endif
+
+#ifdef MATTY_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+const char *matty_message_name(enum matty_message message) {
+    switch (message) {
+    case MATTY_MESSAGE_STOP:
+        return "stop";
+    case MATTY_MESSAGE_RESET:
+        return "reset";
+    case MATTY_MESSAGE_MODE:
+        return "mode";
+    case MATTY_MESSAGE_GO:
+        return "go";
+    case MATTY_MESSAGE_LIMITS:
+        return "limits";
+    case MATTY_MESSAGE_TIMING:
+        return "timing";
+    case MATTY_MESSAGE_GPS_MODE:
+        return "gps_mode";
+    case MATTY_MESSAGE_ACK:
+        return "ack";
+    case MATTY_MESSAGE_NACK:
+        return "nack";
+    case MATTY_MESSAGE_STATUS:
+        return "status";
+    case MATTY_MESSAGE_GPS:
+        return "gps";
+    default:
+        return "?";
+    }
+}
+
+const char *matty_result_name(enum matty_result result) {
+    switch (result) {
+    case MATTY_OK:
+        return "ok";
+    case MATTY_ERROR_SIZE:
+        return "size";
+    case MATTY_ERROR_VALUE:
+        return "value";
+    case MATTY_ERROR_ENCODING:
+        return "encoding";
+    case MATTY_ERROR_RANGE:
+        return "range";
+    case MATTY_ERROR_SPACE:
+        return "space";
+    default:
+        return "?";
+    }
+}
+
+const char *matty_reason_name(enum matty_reason reason) {
+    switch (reason) {
+    case MATTY_SIZE:
+        return "size";
+    case MATTY_VALUE:
+        return "value";
+    case MATTY_ENCODING:
+        return "encoding";
+    case MATTY_NOISE:
+        return "noise";
+    case MATTY_CHECKSUM:
+        return "checksum";
+    case MATTY_LENGTH:
+        return "length";
+    case MATTY_STUFFING:
+        return "stuffing";
+    case MATTY_TRUNCATED:
+        return "truncated";
+    default:
+        return "?";
+    }
+}
+
+const char *matty_robot_mode_name(uint8_t value) {
+    switch (value) {
+    case MATTY_ROBOT_MODE_IDLE:
+        return "idle";
+    case MATTY_ROBOT_MODE_REMOTE:
+        return "remote";
+    case MATTY_ROBOT_MODE_AUTONOMOUS:
+        return "autonomous";
+    default:
+        return "?";
+    }
+}
+
+const char *matty_gps_mode_mode_name(uint8_t value) {
+    switch (value) {
+    case MATTY_GPS_MODE_MODE_SWITCHED_OFF:
+        return "switched_off";
+    case MATTY_GPS_MODE_MODE_RAW_DATA:
+        return "raw_data";
+    default:
+        return "?";
+    }
+}
+
+#endif

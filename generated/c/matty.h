@@ -737,6 +737,22 @@ void matty_on_gps(void *user, const struct matty_gps *message, const struct matt
 /** Calls the functions above; give it to matty_esp_decoder_init. */
 MATTY_API void matty_esp_dispatch(void *user, const struct matty_esp_event *event);
 
+#ifdef MATTY_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+/*
+ * They are there where MATTY_NAMES is defined, for all sources alike. What has no name is "?".
+ */
+
+MATTY_API const char *matty_message_name(enum matty_message message);
+MATTY_API const char *matty_result_name(enum matty_result result);
+MATTY_API const char *matty_reason_name(enum matty_reason reason);
+MATTY_API const char *matty_robot_mode_name(uint8_t value);
+MATTY_API const char *matty_gps_mode_mode_name(uint8_t value);
+
+#endif
+
 #ifdef __cplusplus
 }
 #endif

@@ -2536,3 +2536,123 @@ __attribute__((weak)) void matty_v4_on_version(void *user, const struct matty_v4
 
 #endif
 #endif
+
+#ifdef MATTY_V4_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+const char *matty_v4_message_name(enum matty_v4_message message) {
+    switch (message) {
+    case MATTY_V4_MESSAGE_STOP:
+        return "stop";
+    case MATTY_V4_MESSAGE_RESET:
+        return "reset";
+    case MATTY_V4_MESSAGE_MODE:
+        return "mode";
+    case MATTY_V4_MESSAGE_GO:
+        return "go";
+    case MATTY_V4_MESSAGE_LIMITS:
+        return "limits";
+    case MATTY_V4_MESSAGE_TIMING:
+        return "timing";
+    case MATTY_V4_MESSAGE_GPS_MODE:
+        return "gps_mode";
+    case MATTY_V4_MESSAGE_VERSION_QUERY:
+        return "version_query";
+    case MATTY_V4_MESSAGE_LED:
+        return "led";
+    case MATTY_V4_MESSAGE_ACK:
+        return "ack";
+    case MATTY_V4_MESSAGE_NACK:
+        return "nack";
+    case MATTY_V4_MESSAGE_STATUS:
+        return "status";
+    case MATTY_V4_MESSAGE_GPS:
+        return "gps";
+    case MATTY_V4_MESSAGE_VERSION:
+        return "version";
+    default:
+        return "?";
+    }
+}
+
+const char *matty_v4_result_name(enum matty_v4_result result) {
+    switch (result) {
+    case MATTY_V4_OK:
+        return "ok";
+    case MATTY_V4_ERROR_SIZE:
+        return "size";
+    case MATTY_V4_ERROR_VALUE:
+        return "value";
+    case MATTY_V4_ERROR_ENCODING:
+        return "encoding";
+    case MATTY_V4_ERROR_RANGE:
+        return "range";
+    case MATTY_V4_ERROR_SPACE:
+        return "space";
+    default:
+        return "?";
+    }
+}
+
+const char *matty_v4_reason_name(enum matty_v4_reason reason) {
+    switch (reason) {
+    case MATTY_V4_SIZE:
+        return "size";
+    case MATTY_V4_VALUE:
+        return "value";
+    case MATTY_V4_ENCODING:
+        return "encoding";
+    case MATTY_V4_NOISE:
+        return "noise";
+    case MATTY_V4_CHECKSUM:
+        return "checksum";
+    case MATTY_V4_LENGTH:
+        return "length";
+    case MATTY_V4_STUFFING:
+        return "stuffing";
+    case MATTY_V4_TRUNCATED:
+        return "truncated";
+    default:
+        return "?";
+    }
+}
+
+const char *matty_v4_stop_mode_name(uint8_t value) {
+    switch (value) {
+    case MATTY_V4_STOP_MODE_STOP:
+        return "stop";
+    case MATTY_V4_STOP_MODE_BRAKE:
+        return "brake";
+    case MATTY_V4_STOP_MODE_POWER_OFF:
+        return "power_off";
+    default:
+        return "?";
+    }
+}
+
+const char *matty_v4_robot_mode_name(uint8_t value) {
+    switch (value) {
+    case MATTY_V4_ROBOT_MODE_IDLE:
+        return "idle";
+    case MATTY_V4_ROBOT_MODE_REMOTE:
+        return "remote";
+    case MATTY_V4_ROBOT_MODE_AUTONOMOUS:
+        return "autonomous";
+    default:
+        return "?";
+    }
+}
+
+const char *matty_v4_gps_mode_mode_name(uint8_t value) {
+    switch (value) {
+    case MATTY_V4_GPS_MODE_MODE_SWITCHED_OFF:
+        return "switched_off";
+    case MATTY_V4_GPS_MODE_MODE_RAW_DATA:
+        return "raw_data";
+    default:
+        return "?";
+    }
+}
+
+#endif

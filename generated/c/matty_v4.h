@@ -911,6 +911,23 @@ void matty_v4_on_version(void *user, const struct matty_v4_version *message,
 /** Calls the functions above; give it to matty_v4_esp_decoder_init. */
 MATTY_V4_API void matty_v4_esp_dispatch(void *user, const struct matty_v4_esp_event *event);
 
+#ifdef MATTY_V4_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+/*
+ * They are there where MATTY_V4_NAMES is defined, for all sources alike. What has no name is "?".
+ */
+
+MATTY_V4_API const char *matty_v4_message_name(enum matty_v4_message message);
+MATTY_V4_API const char *matty_v4_result_name(enum matty_v4_result result);
+MATTY_V4_API const char *matty_v4_reason_name(enum matty_v4_reason reason);
+MATTY_V4_API const char *matty_v4_stop_mode_name(uint8_t value);
+MATTY_V4_API const char *matty_v4_robot_mode_name(uint8_t value);
+MATTY_V4_API const char *matty_v4_gps_mode_mode_name(uint8_t value);
+
+#endif
+
 #ifdef __cplusplus
 }
 #endif

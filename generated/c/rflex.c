@@ -3604,3 +3604,157 @@ __attribute__((weak)) void rflex_on_changed_byte(void *user,
 
 #endif
 #endif
+
+#ifdef RFLEX_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+const char *rflex_message_name(enum rflex_message message) {
+    switch (message) {
+    case RFLEX_MESSAGE_REQUEST_SYSTEM_STATUS:
+        return "request_system_status";
+    case RFLEX_MESSAGE_SYSTEM_STATUS:
+        return "system_status";
+    case RFLEX_MESSAGE_MOTOR_00:
+        return "motor_00";
+    case RFLEX_MESSAGE_MOTOR_COMMAND:
+        return "motor_command";
+    case RFLEX_MESSAGE_CONFIRM_MOTOR_COMMAND:
+        return "confirm_motor_command";
+    case RFLEX_MESSAGE_MOTOR_0A:
+        return "motor_0a";
+    case RFLEX_MESSAGE_MOTOR_0C:
+        return "motor_0c";
+    case RFLEX_MESSAGE_MOTOR_0C_ANSWER:
+        return "motor_0c_answer";
+    case RFLEX_MESSAGE_READ_MOTOR:
+        return "read_motor";
+    case RFLEX_MESSAGE_START_STOP_MOTOR_PACKETS:
+        return "start_stop_motor_packets";
+    case RFLEX_MESSAGE_CONFIRM_START_STOP_MOTOR_PACKETS:
+        return "confirm_start_stop_motor_packets";
+    case RFLEX_MESSAGE_REQUEST_JOYSTICK_DATA:
+        return "request_joystick_data";
+    case RFLEX_MESSAGE_JOYSTICK_DATA:
+        return "joystick_data";
+    case RFLEX_MESSAGE_START_STOP_SONAR_PACKETS:
+        return "start_stop_sonar_packets";
+    case RFLEX_MESSAGE_CONFIRM_START_STOP_SONAR_PACKETS:
+        return "confirm_start_stop_sonar_packets";
+    case RFLEX_MESSAGE_SONAR_DATA:
+        return "sonar_data";
+    case RFLEX_MESSAGE_INITIALIZE_DIGITAL_IO:
+        return "initialize_digital_io";
+    case RFLEX_MESSAGE_CONFIRM_INITIALIZE_DIGITAL_IO:
+        return "confirm_initialize_digital_io";
+    case RFLEX_MESSAGE_CHANGED_BUMPERS:
+        return "changed_bumpers";
+    case RFLEX_MESSAGE_CHECK_IO_CHANGED:
+        return "check_io_changed";
+    case RFLEX_MESSAGE_CHECK_IO_CHANGED_ANSWER:
+        return "check_io_changed_answer";
+    case RFLEX_MESSAGE_CHANGED_BYTE:
+        return "changed_byte";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_result_name(enum rflex_result result) {
+    switch (result) {
+    case RFLEX_OK:
+        return "ok";
+    case RFLEX_ERROR_SIZE:
+        return "size";
+    case RFLEX_ERROR_VALUE:
+        return "value";
+    case RFLEX_ERROR_ENCODING:
+        return "encoding";
+    case RFLEX_ERROR_RANGE:
+        return "range";
+    case RFLEX_ERROR_SPACE:
+        return "space";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_reason_name(enum rflex_reason reason) {
+    switch (reason) {
+    case RFLEX_SIZE:
+        return "size";
+    case RFLEX_VALUE:
+        return "value";
+    case RFLEX_ENCODING:
+        return "encoding";
+    case RFLEX_NOISE:
+        return "noise";
+    case RFLEX_CHECKSUM:
+        return "checksum";
+    case RFLEX_LENGTH:
+        return "length";
+    case RFLEX_STUFFING:
+        return "stuffing";
+    case RFLEX_TRUNCATED:
+        return "truncated";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_system_status_brake_name(uint8_t value) {
+    switch (value) {
+    case RFLEX_SYSTEM_STATUS_BRAKE_OFF:
+        return "off";
+    case RFLEX_SYSTEM_STATUS_BRAKE_ON:
+        return "on";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_axis_name(uint8_t value) {
+    switch (value) {
+    case RFLEX_AXIS_LINEAR:
+        return "linear";
+    case RFLEX_AXIS_ANGULAR:
+        return "angular";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_motor_command_direction_name(uint8_t value) {
+    switch (value) {
+    case RFLEX_MOTOR_COMMAND_DIRECTION_BACKWARD_OR_RIGHT:
+        return "backward_or_right";
+    case RFLEX_MOTOR_COMMAND_DIRECTION_FORWARD_OR_LEFT:
+        return "forward_or_left";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_start_stop_motor_packets_start_stop_name(uint8_t value) {
+    switch (value) {
+    case RFLEX_START_STOP_MOTOR_PACKETS_START_STOP_STOP:
+        return "stop";
+    case RFLEX_START_STOP_MOTOR_PACKETS_START_STOP_START:
+        return "start";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_start_stop_sonar_packets_start_stop_name(uint8_t value) {
+    switch (value) {
+    case RFLEX_START_STOP_SONAR_PACKETS_START_STOP_STOP:
+        return "stop";
+    case RFLEX_START_STOP_SONAR_PACKETS_START_STOP_START:
+        return "start";
+    default:
+        return "?";
+    }
+}
+
+#endif

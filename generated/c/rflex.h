@@ -1296,6 +1296,25 @@ void rflex_on_changed_byte(void *user, const struct rflex_changed_byte *message,
 /** Calls the functions above; give it to rflex_flex_decoder_init. */
 RFLEX_API void rflex_flex_dispatch(void *user, const struct rflex_flex_event *event);
 
+#ifdef RFLEX_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+/*
+ * They are there where RFLEX_NAMES is defined, for all sources alike. What has no name is "?".
+ */
+
+RFLEX_API const char *rflex_message_name(enum rflex_message message);
+RFLEX_API const char *rflex_result_name(enum rflex_result result);
+RFLEX_API const char *rflex_reason_name(enum rflex_reason reason);
+RFLEX_API const char *rflex_system_status_brake_name(uint8_t value);
+RFLEX_API const char *rflex_axis_name(uint8_t value);
+RFLEX_API const char *rflex_motor_command_direction_name(uint8_t value);
+RFLEX_API const char *rflex_start_stop_motor_packets_start_stop_name(uint8_t value);
+RFLEX_API const char *rflex_start_stop_sonar_packets_start_stop_name(uint8_t value);
+
+#endif
+
 #ifdef __cplusplus
 }
 #endif

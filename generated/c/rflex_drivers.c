@@ -4172,3 +4172,165 @@ __attribute__((weak)) void rflex_drivers_on_ir_report(
 
 #endif
 #endif
+
+#ifdef RFLEX_DRIVERS_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+const char *rflex_drivers_message_name(enum rflex_drivers_message message) {
+    switch (message) {
+    case RFLEX_DRIVERS_MESSAGE_REQUEST_SYSTEM_STATUS:
+        return "request_system_status";
+    case RFLEX_DRIVERS_MESSAGE_SYSTEM_STATUS:
+        return "system_status";
+    case RFLEX_DRIVERS_MESSAGE_LCD_DUMP:
+        return "lcd_dump";
+    case RFLEX_DRIVERS_MESSAGE_AXIS_GET_SYSTEM:
+        return "axis_get_system";
+    case RFLEX_DRIVERS_MESSAGE_MOTOR_COMMAND:
+        return "motor_command";
+    case RFLEX_DRIVERS_MESSAGE_CONFIRM_MOTOR_COMMAND:
+        return "confirm_motor_command";
+    case RFLEX_DRIVERS_MESSAGE_SET_DEFAULTS:
+        return "set_defaults";
+    case RFLEX_DRIVERS_MESSAGE_BRAKE_SET:
+        return "brake_set";
+    case RFLEX_DRIVERS_MESSAGE_BRAKE_RELEASE:
+        return "brake_release";
+    case RFLEX_DRIVERS_MESSAGE_BRAKE_RELEASE_ANSWER:
+        return "brake_release_answer";
+    case RFLEX_DRIVERS_MESSAGE_READ_MOTOR:
+        return "read_motor";
+    case RFLEX_DRIVERS_MESSAGE_START_STOP_MOTOR_PACKETS:
+        return "start_stop_motor_packets";
+    case RFLEX_DRIVERS_MESSAGE_CONFIRM_START_STOP_MOTOR_PACKETS:
+        return "confirm_start_stop_motor_packets";
+    case RFLEX_DRIVERS_MESSAGE_REQUEST_JOYSTICK_DATA:
+        return "request_joystick_data";
+    case RFLEX_DRIVERS_MESSAGE_JOYSTICK_DATA:
+        return "joystick_data";
+    case RFLEX_DRIVERS_MESSAGE_START_STOP_SONAR_PACKETS:
+        return "start_stop_sonar_packets";
+    case RFLEX_DRIVERS_MESSAGE_CONFIRM_START_STOP_SONAR_PACKETS:
+        return "confirm_start_stop_sonar_packets";
+    case RFLEX_DRIVERS_MESSAGE_SONAR_DATA:
+        return "sonar_data";
+    case RFLEX_DRIVERS_MESSAGE_INITIALIZE_DIGITAL_IO:
+        return "initialize_digital_io";
+    case RFLEX_DRIVERS_MESSAGE_CONFIRM_INITIALIZE_DIGITAL_IO:
+        return "confirm_initialize_digital_io";
+    case RFLEX_DRIVERS_MESSAGE_CHANGED_BUMPERS:
+        return "changed_bumpers";
+    case RFLEX_DRIVERS_MESSAGE_CHECK_IO_CHANGED:
+        return "check_io_changed";
+    case RFLEX_DRIVERS_MESSAGE_CHECK_IO_CHANGED_ANSWER:
+        return "check_io_changed_answer";
+    case RFLEX_DRIVERS_MESSAGE_CHANGED_BYTE:
+        return "changed_byte";
+    case RFLEX_DRIVERS_MESSAGE_IR_RUN:
+        return "ir_run";
+    case RFLEX_DRIVERS_MESSAGE_IR_REPORT:
+        return "ir_report";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_drivers_result_name(enum rflex_drivers_result result) {
+    switch (result) {
+    case RFLEX_DRIVERS_OK:
+        return "ok";
+    case RFLEX_DRIVERS_ERROR_SIZE:
+        return "size";
+    case RFLEX_DRIVERS_ERROR_VALUE:
+        return "value";
+    case RFLEX_DRIVERS_ERROR_ENCODING:
+        return "encoding";
+    case RFLEX_DRIVERS_ERROR_RANGE:
+        return "range";
+    case RFLEX_DRIVERS_ERROR_SPACE:
+        return "space";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_drivers_reason_name(enum rflex_drivers_reason reason) {
+    switch (reason) {
+    case RFLEX_DRIVERS_SIZE:
+        return "size";
+    case RFLEX_DRIVERS_VALUE:
+        return "value";
+    case RFLEX_DRIVERS_ENCODING:
+        return "encoding";
+    case RFLEX_DRIVERS_NOISE:
+        return "noise";
+    case RFLEX_DRIVERS_CHECKSUM:
+        return "checksum";
+    case RFLEX_DRIVERS_LENGTH:
+        return "length";
+    case RFLEX_DRIVERS_STUFFING:
+        return "stuffing";
+    case RFLEX_DRIVERS_TRUNCATED:
+        return "truncated";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_drivers_system_status_brake_name(uint8_t value) {
+    switch (value) {
+    case RFLEX_DRIVERS_SYSTEM_STATUS_BRAKE_OFF:
+        return "off";
+    case RFLEX_DRIVERS_SYSTEM_STATUS_BRAKE_ON:
+        return "on";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_drivers_axis_name(uint8_t value) {
+    switch (value) {
+    case RFLEX_DRIVERS_AXIS_LINEAR:
+        return "linear";
+    case RFLEX_DRIVERS_AXIS_ANGULAR:
+        return "angular";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_drivers_motor_command_direction_name(uint8_t value) {
+    switch (value) {
+    case RFLEX_DRIVERS_MOTOR_COMMAND_DIRECTION_BACKWARD_OR_RIGHT:
+        return "backward_or_right";
+    case RFLEX_DRIVERS_MOTOR_COMMAND_DIRECTION_FORWARD_OR_LEFT:
+        return "forward_or_left";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_drivers_start_stop_sonar_packets_mode_name(uint8_t value) {
+    switch (value) {
+    case RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_MODE_OFF:
+        return "off";
+    case RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_MODE_ON:
+        return "on";
+    default:
+        return "?";
+    }
+}
+
+const char *rflex_drivers_ir_run_mode_name(uint8_t value) {
+    switch (value) {
+    case RFLEX_DRIVERS_IR_RUN_MODE_OFF:
+        return "off";
+    case RFLEX_DRIVERS_IR_RUN_MODE_ON:
+        return "on";
+    default:
+        return "?";
+    }
+}
+
+#endif

@@ -1560,6 +1560,25 @@ void rflex_drivers_on_ir_report(void *user, const struct rflex_drivers_ir_report
 RFLEX_DRIVERS_API void rflex_drivers_flex_dispatch(void *user,
                                                    const struct rflex_drivers_flex_event *event);
 
+#ifdef RFLEX_DRIVERS_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+/*
+ * They are there where RFLEX_DRIVERS_NAMES is defined, for all sources alike. What has no name is "?".
+ */
+
+RFLEX_DRIVERS_API const char *rflex_drivers_message_name(enum rflex_drivers_message message);
+RFLEX_DRIVERS_API const char *rflex_drivers_result_name(enum rflex_drivers_result result);
+RFLEX_DRIVERS_API const char *rflex_drivers_reason_name(enum rflex_drivers_reason reason);
+RFLEX_DRIVERS_API const char *rflex_drivers_system_status_brake_name(uint8_t value);
+RFLEX_DRIVERS_API const char *rflex_drivers_axis_name(uint8_t value);
+RFLEX_DRIVERS_API const char *rflex_drivers_motor_command_direction_name(uint8_t value);
+RFLEX_DRIVERS_API const char *rflex_drivers_start_stop_sonar_packets_mode_name(uint8_t value);
+RFLEX_DRIVERS_API const char *rflex_drivers_ir_run_mode_name(uint8_t value);
+
+#endif
+
 #ifdef __cplusplus
 }
 #endif

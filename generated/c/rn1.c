@@ -2419,3 +2419,122 @@ __attribute__((weak)) void rn1_on_facing(void *user, const struct rn1_facing *me
 
 #endif
 #endif
+
+#ifdef RN1_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+const char *rn1_message_name(enum rn1_message message) {
+    switch (message) {
+    case RN1_MESSAGE_MOVE_MANUAL:
+        return "move_manual";
+    case RN1_MESSAGE_MOVE_RELATIVE_TWOSTEP:
+        return "move_relative_twostep";
+    case RN1_MESSAGE_MOVE_RELATIVE_ARC:
+        return "move_relative_arc";
+    case RN1_MESSAGE_MAINTENANCE:
+        return "maintenance";
+    case RN1_MESSAGE_GYRO:
+        return "gyro";
+    case RN1_MESSAGE_XCEL:
+        return "xcel";
+    case RN1_MESSAGE_COMPASS:
+        return "compass";
+    case RN1_MESSAGE_OPTFLOW:
+        return "optflow";
+    case RN1_MESSAGE_LIDAR:
+        return "lidar";
+    case RN1_MESSAGE_SONAR:
+        return "sonar";
+    case RN1_MESSAGE_FACING:
+        return "facing";
+    default:
+        return "?";
+    }
+}
+
+const char *rn1_result_name(enum rn1_result result) {
+    switch (result) {
+    case RN1_OK:
+        return "ok";
+    case RN1_ERROR_SIZE:
+        return "size";
+    case RN1_ERROR_VALUE:
+        return "value";
+    case RN1_ERROR_ENCODING:
+        return "encoding";
+    case RN1_ERROR_RANGE:
+        return "range";
+    case RN1_ERROR_SPACE:
+        return "space";
+    default:
+        return "?";
+    }
+}
+
+const char *rn1_reason_name(enum rn1_reason reason) {
+    switch (reason) {
+    case RN1_SIZE:
+        return "size";
+    case RN1_VALUE:
+        return "value";
+    case RN1_ENCODING:
+        return "encoding";
+    case RN1_NOISE:
+        return "noise";
+    case RN1_CHECKSUM:
+        return "checksum";
+    case RN1_LENGTH:
+        return "length";
+    case RN1_STUFFING:
+        return "stuffing";
+    case RN1_TRUNCATED:
+        return "truncated";
+    default:
+        return "?";
+    }
+}
+
+const char *rn1_maintenance_operation_name(uint8_t value) {
+    switch (value) {
+    case RN1_MAINTENANCE_OPERATION_RECONFIG_UART:
+        return "reconfig_uart";
+    case RN1_MAINTENANCE_OPERATION_KILL_PWR:
+        return "kill_pwr";
+    case RN1_MAINTENANCE_OPERATION_RUN_FLASHER:
+        return "run_flasher";
+    case RN1_MAINTENANCE_OPERATION_RUN_MOTOR_CONTROLLER_FLASHER:
+        return "run_motor_controller_flasher";
+    default:
+        return "?";
+    }
+}
+
+const char *rn1_gyro_status_name(uint8_t value) {
+    switch (value) {
+    case RN1_GYRO_STATUS_OK:
+        return "ok";
+    default:
+        return "?";
+    }
+}
+
+const char *rn1_xcel_status_name(uint8_t value) {
+    switch (value) {
+    case RN1_XCEL_STATUS_OK:
+        return "ok";
+    default:
+        return "?";
+    }
+}
+
+const char *rn1_compass_status_name(uint8_t value) {
+    switch (value) {
+    case RN1_COMPASS_STATUS_OK:
+        return "ok";
+    default:
+        return "?";
+    }
+}
+
+#endif

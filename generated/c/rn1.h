@@ -801,6 +801,24 @@ void rn1_on_facing(void *user, const struct rn1_facing *message,
 /** Calls the functions above; give it to rn1_brain_decoder_init. */
 RN1_API void rn1_brain_dispatch(void *user, const struct rn1_brain_event *event);
 
+#ifdef RN1_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+/*
+ * They are there where RN1_NAMES is defined, for all sources alike. What has no name is "?".
+ */
+
+RN1_API const char *rn1_message_name(enum rn1_message message);
+RN1_API const char *rn1_result_name(enum rn1_result result);
+RN1_API const char *rn1_reason_name(enum rn1_reason reason);
+RN1_API const char *rn1_maintenance_operation_name(uint8_t value);
+RN1_API const char *rn1_gyro_status_name(uint8_t value);
+RN1_API const char *rn1_xcel_status_name(uint8_t value);
+RN1_API const char *rn1_compass_status_name(uint8_t value);
+
+#endif
+
 #ifdef __cplusplus
 }
 #endif

@@ -2873,3 +2873,124 @@ __attribute__((weak)) void rn1_firmware_on_debug_numbers(
 
 #endif
 #endif
+
+#ifdef RN1_FIRMWARE_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+const char *rn1_firmware_message_name(enum rn1_firmware_message message) {
+    switch (message) {
+    case RN1_FIRMWARE_MESSAGE_MOVE_MANUAL:
+        return "move_manual";
+    case RN1_FIRMWARE_MESSAGE_MOVE_RELATIVE_TWOSTEP:
+        return "move_relative_twostep";
+    case RN1_FIRMWARE_MESSAGE_DECREASE_PHASE_ANGLE:
+        return "decrease_phase_angle";
+    case RN1_FIRMWARE_MESSAGE_INCREASE_PHASE_ANGLE:
+        return "increase_phase_angle";
+    case RN1_FIRMWARE_MESSAGE_MAINTENANCE:
+        return "maintenance";
+    case RN1_FIRMWARE_MESSAGE_GYRO:
+        return "gyro";
+    case RN1_FIRMWARE_MESSAGE_XCEL:
+        return "xcel";
+    case RN1_FIRMWARE_MESSAGE_COMPASS:
+        return "compass";
+    case RN1_FIRMWARE_MESSAGE_LIDAR:
+        return "lidar";
+    case RN1_FIRMWARE_MESSAGE_SONAR:
+        return "sonar";
+    case RN1_FIRMWARE_MESSAGE_FACING:
+        return "facing";
+    case RN1_FIRMWARE_MESSAGE_OPTFLOW_INTEGRAL:
+        return "optflow_integral";
+    case RN1_FIRMWARE_MESSAGE_MOTOR_CONTROLLER_MESSAGE:
+        return "motor_controller_message";
+    case RN1_FIRMWARE_MESSAGE_DEBUG_NUMBERS:
+        return "debug_numbers";
+    default:
+        return "?";
+    }
+}
+
+const char *rn1_firmware_result_name(enum rn1_firmware_result result) {
+    switch (result) {
+    case RN1_FIRMWARE_OK:
+        return "ok";
+    case RN1_FIRMWARE_ERROR_SIZE:
+        return "size";
+    case RN1_FIRMWARE_ERROR_VALUE:
+        return "value";
+    case RN1_FIRMWARE_ERROR_ENCODING:
+        return "encoding";
+    case RN1_FIRMWARE_ERROR_RANGE:
+        return "range";
+    case RN1_FIRMWARE_ERROR_SPACE:
+        return "space";
+    default:
+        return "?";
+    }
+}
+
+const char *rn1_firmware_reason_name(enum rn1_firmware_reason reason) {
+    switch (reason) {
+    case RN1_FIRMWARE_SIZE:
+        return "size";
+    case RN1_FIRMWARE_VALUE:
+        return "value";
+    case RN1_FIRMWARE_ENCODING:
+        return "encoding";
+    case RN1_FIRMWARE_NOISE:
+        return "noise";
+    case RN1_FIRMWARE_CHECKSUM:
+        return "checksum";
+    case RN1_FIRMWARE_LENGTH:
+        return "length";
+    case RN1_FIRMWARE_STUFFING:
+        return "stuffing";
+    case RN1_FIRMWARE_TRUNCATED:
+        return "truncated";
+    default:
+        return "?";
+    }
+}
+
+const char *rn1_firmware_maintenance_operation_name(uint8_t value) {
+    switch (value) {
+    case RN1_FIRMWARE_MAINTENANCE_OPERATION_RUN_FLASHER:
+        return "run_flasher";
+    case RN1_FIRMWARE_MAINTENANCE_OPERATION_RUN_MOTOR_CONTROLLER_FLASHER:
+        return "run_motor_controller_flasher";
+    default:
+        return "?";
+    }
+}
+
+const char *rn1_firmware_gyro_status_name(uint8_t value) {
+    switch (value) {
+    case RN1_FIRMWARE_GYRO_STATUS_OK:
+        return "ok";
+    default:
+        return "?";
+    }
+}
+
+const char *rn1_firmware_xcel_status_name(uint8_t value) {
+    switch (value) {
+    case RN1_FIRMWARE_XCEL_STATUS_OK:
+        return "ok";
+    default:
+        return "?";
+    }
+}
+
+const char *rn1_firmware_compass_status_name(uint8_t value) {
+    switch (value) {
+    case RN1_FIRMWARE_COMPASS_STATUS_OK:
+        return "ok";
+    default:
+        return "?";
+    }
+}
+
+#endif

@@ -1013,6 +1013,24 @@ void rn1_firmware_on_debug_numbers(void *user, const struct rn1_firmware_debug_n
 RN1_FIRMWARE_API void rn1_firmware_brain_dispatch(void *user,
                                                   const struct rn1_firmware_brain_event *event);
 
+#ifdef RN1_FIRMWARE_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+/*
+ * They are there where RN1_FIRMWARE_NAMES is defined, for all sources alike. What has no name is "?".
+ */
+
+RN1_FIRMWARE_API const char *rn1_firmware_message_name(enum rn1_firmware_message message);
+RN1_FIRMWARE_API const char *rn1_firmware_result_name(enum rn1_firmware_result result);
+RN1_FIRMWARE_API const char *rn1_firmware_reason_name(enum rn1_firmware_reason reason);
+RN1_FIRMWARE_API const char *rn1_firmware_maintenance_operation_name(uint8_t value);
+RN1_FIRMWARE_API const char *rn1_firmware_gyro_status_name(uint8_t value);
+RN1_FIRMWARE_API const char *rn1_firmware_xcel_status_name(uint8_t value);
+RN1_FIRMWARE_API const char *rn1_firmware_compass_status_name(uint8_t value);
+
+#endif
+
 #ifdef __cplusplus
 }
 #endif

@@ -1138,3 +1138,66 @@ __attribute__((weak)) void uherobot_on_status(void *user, const struct uherobot_
 
 #endif
 #endif
+
+#ifdef UHEROBOT_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+const char *uherobot_message_name(enum uherobot_message message) {
+    switch (message) {
+    case UHEROBOT_MESSAGE_MOTORS_SERVOS_LEDS:
+        return "motors_servos_leds";
+    case UHEROBOT_MESSAGE_MOTORS_TWO_SERVOS:
+        return "motors_two_servos";
+    case UHEROBOT_MESSAGE_MOTOR_TEST:
+        return "motor_test";
+    case UHEROBOT_MESSAGE_STATUS:
+        return "status";
+    default:
+        return "?";
+    }
+}
+
+const char *uherobot_result_name(enum uherobot_result result) {
+    switch (result) {
+    case UHEROBOT_OK:
+        return "ok";
+    case UHEROBOT_ERROR_SIZE:
+        return "size";
+    case UHEROBOT_ERROR_VALUE:
+        return "value";
+    case UHEROBOT_ERROR_ENCODING:
+        return "encoding";
+    case UHEROBOT_ERROR_RANGE:
+        return "range";
+    case UHEROBOT_ERROR_SPACE:
+        return "space";
+    default:
+        return "?";
+    }
+}
+
+const char *uherobot_reason_name(enum uherobot_reason reason) {
+    switch (reason) {
+    case UHEROBOT_SIZE:
+        return "size";
+    case UHEROBOT_VALUE:
+        return "value";
+    case UHEROBOT_ENCODING:
+        return "encoding";
+    case UHEROBOT_NOISE:
+        return "noise";
+    case UHEROBOT_CHECKSUM:
+        return "checksum";
+    case UHEROBOT_LENGTH:
+        return "length";
+    case UHEROBOT_STUFFING:
+        return "stuffing";
+    case UHEROBOT_TRUNCATED:
+        return "truncated";
+    default:
+        return "?";
+    }
+}
+
+#endif

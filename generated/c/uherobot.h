@@ -476,6 +476,20 @@ void uherobot_on_status(void *user, const struct uherobot_status *message,
 /** Calls the functions above; give it to uherobot_board_decoder_init. */
 UHEROBOT_API void uherobot_board_dispatch(void *user, const struct uherobot_board_event *event);
 
+#ifdef UHEROBOT_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+/*
+ * They are there where UHEROBOT_NAMES is defined, for all sources alike. What has no name is "?".
+ */
+
+UHEROBOT_API const char *uherobot_message_name(enum uherobot_message message);
+UHEROBOT_API const char *uherobot_result_name(enum uherobot_result result);
+UHEROBOT_API const char *uherobot_reason_name(enum uherobot_reason reason);
+
+#endif
+
 #ifdef __cplusplus
 }
 #endif

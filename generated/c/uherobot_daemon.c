@@ -1165,3 +1165,62 @@ __attribute__((weak)) void uherobot_daemon_on_status(
 
 #endif
 #endif
+
+#ifdef UHEROBOT_DAEMON_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+const char *uherobot_daemon_message_name(enum uherobot_daemon_message message) {
+    switch (message) {
+    case UHEROBOT_DAEMON_MESSAGE_MOTORS_SERVOS_LEDS:
+        return "motors_servos_leds";
+    case UHEROBOT_DAEMON_MESSAGE_STATUS:
+        return "status";
+    default:
+        return "?";
+    }
+}
+
+const char *uherobot_daemon_result_name(enum uherobot_daemon_result result) {
+    switch (result) {
+    case UHEROBOT_DAEMON_OK:
+        return "ok";
+    case UHEROBOT_DAEMON_ERROR_SIZE:
+        return "size";
+    case UHEROBOT_DAEMON_ERROR_VALUE:
+        return "value";
+    case UHEROBOT_DAEMON_ERROR_ENCODING:
+        return "encoding";
+    case UHEROBOT_DAEMON_ERROR_RANGE:
+        return "range";
+    case UHEROBOT_DAEMON_ERROR_SPACE:
+        return "space";
+    default:
+        return "?";
+    }
+}
+
+const char *uherobot_daemon_reason_name(enum uherobot_daemon_reason reason) {
+    switch (reason) {
+    case UHEROBOT_DAEMON_SIZE:
+        return "size";
+    case UHEROBOT_DAEMON_VALUE:
+        return "value";
+    case UHEROBOT_DAEMON_ENCODING:
+        return "encoding";
+    case UHEROBOT_DAEMON_NOISE:
+        return "noise";
+    case UHEROBOT_DAEMON_CHECKSUM:
+        return "checksum";
+    case UHEROBOT_DAEMON_LENGTH:
+        return "length";
+    case UHEROBOT_DAEMON_STUFFING:
+        return "stuffing";
+    case UHEROBOT_DAEMON_TRUNCATED:
+        return "truncated";
+    default:
+        return "?";
+    }
+}
+
+#endif

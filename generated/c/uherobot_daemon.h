@@ -444,6 +444,20 @@ void uherobot_daemon_on_status(void *user, const struct uherobot_daemon_status *
 UHEROBOT_DAEMON_API void uherobot_daemon_board_dispatch(
     void *user, const struct uherobot_daemon_board_event *event);
 
+#ifdef UHEROBOT_DAEMON_NAMES
+
+/* --- names, for logs -------------------------------------------------------------------------- */
+
+/*
+ * They are there where UHEROBOT_DAEMON_NAMES is defined, for all sources alike. What has no name is "?".
+ */
+
+UHEROBOT_DAEMON_API const char *uherobot_daemon_message_name(enum uherobot_daemon_message message);
+UHEROBOT_DAEMON_API const char *uherobot_daemon_result_name(enum uherobot_daemon_result result);
+UHEROBOT_DAEMON_API const char *uherobot_daemon_reason_name(enum uherobot_daemon_reason reason);
+
+#endif
+
 #ifdef __cplusplus
 }
 #endif

@@ -20,6 +20,7 @@ from protogen.targets.c.frame.framing import FramingView, framing_view
 from protogen.targets.c.frame.stuffing import StuffingKind
 from protogen.targets.c.lines import mentions, prototype
 from protogen.targets.c.module import Module, view
+from protogen.targets.c.named import string
 from protogen.targets.c.options import COptions
 from protogen.targets.c.package import package_files
 from protogen.targets.c.payload.helpers import Helpers
@@ -132,4 +133,5 @@ def c_environment() -> Environment:
     found.filters["equals"] = expressions.equals
     found.filters["plus"] = expressions.plus
     found.filters["mentions"] = mentions
+    found.filters["literal"] = string
     return found

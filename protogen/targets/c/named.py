@@ -37,6 +37,12 @@ class EnumView(msgspec.Struct, frozen=True):
     doc: tuple[str, ...]
     values: tuple[Macro, ...]
     macros: bool
+    number: str = ""
+    """A type that holds every value; of an enum alone."""
+    name_of: str = ""
+    """The function that says the name of a value; of an enum alone."""
+    names: tuple[tuple[str, str], ...] = ()
+    """The values, and their names in the schema as literals."""
 
 
 def enum_view(item: Enum, names: Names) -> EnumView:
@@ -46,7 +52,23 @@ def enum_view(item: Enum, names: Names) -> EnumView:
     write = unsigned if unsigned_ones and not fits else number
     values = tuple(_named(item, entry, write(entry.value), names, INDENT) for entry in item.values)
     tag = names.claim_tag(named_type(item.name), item.name)
-    return EnumView(tag, _doc_of(item), values, not fits)
+    spelled = [string(entry.name) for entry in item.values]
+    return EnumView(
+        tag,
+        _doc_of(item),
+        values,
+        not fits,
+        _number_type([entry.value for entry in item.values]),
+        names.claim(named_type(item.name), item.name, "name"),
+        tuple(zip([value.name for value in values], spelled, strict=True)),
+    )
+
+
+def _number_type(values: Sequence[int]) -> str:
+    """The narrowest type of numbers that holds these values."""
+    least, greatest = min(values, default=0), max(values, default=0)
+    bits = max(greatest.bit_length(), (-least - 1).bit_length()) + 1
+    return unsigned_type(max(bits - 1, 1)) if least >= 0 else unsigned_type(bits)[1:]
 
 
 def flags_view(item: Flags, names: Names) -> EnumView:

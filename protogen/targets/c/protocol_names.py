@@ -26,11 +26,11 @@ ok error_size error_value error_encoding error_range error_space spec_hash versi
 implemented message unknown invalid no_message no_reason size value encoding noise checksum length
 stuffing truncated seeking taking failed lost known open searching measuring empty needless before
 inside after frame stuffed fast_feed sse2 expect each has no_handlers no_weak api inline apart
-baud idle_timeout_ms protogen_version zeros
+baud idle_timeout_ms protogen_version zeros names
 """
 _TAGS = "result message event_kind reason writer"
 _TYPES = "put float64"
-_FUNCTIONS = "write first is_high mask sum_of xor_of"
+_FUNCTIONS = "write first is_high mask sum_of xor_of message_name result_name reason_name"
 _TAGS_OF_A_SENDER = "parts event decoder"
 _TYPES_OF_A_SENDER = "handler"
 _FUNCTIONS_OF_A_SENDER = """
