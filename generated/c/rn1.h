@@ -123,9 +123,6 @@ struct rn1_maintenance_argument_reconfig_uart {
 
 /* --- maintenance_argument_run_motor_controller_flasher ---------------------------------------- */
 
-#define RN1_MAINTENANCE_ARGUMENT_RUN_MOTOR_CONTROLLER_FLASHER_MOTOR_CONTROLLER_MIN 1U
-#define RN1_MAINTENANCE_ARGUMENT_RUN_MOTOR_CONTROLLER_FLASHER_MOTOR_CONTROLLER_MAX 4U
-
 /** The motor controller. */
 struct rn1_maintenance_argument_run_motor_controller_flasher {
     /** Number of the motor controller, 1..4 (line 53). */

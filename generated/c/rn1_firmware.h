@@ -108,9 +108,6 @@ enum rn1_firmware_compass_status {
 
 /* --- maintenance_argument_run_motor_controller_flasher ---------------------------------------- */
 
-#define RN1_FIRMWARE_MAINTENANCE_ARGUMENT_RUN_MOTOR_CONTROLLER_FLASHER_MOTOR_CONTROLLER_MIN 1U
-#define RN1_FIRMWARE_MAINTENANCE_ARGUMENT_RUN_MOTOR_CONTROLLER_FLASHER_MOTOR_CONTROLLER_MAX 4U
-
 /** The motor controller. */
 struct rn1_firmware_maintenance_argument_run_motor_controller_flasher {
     /** Number of the motor controller, 1..4 (000_c7d74cf9c866b63b.txt, line 53). */

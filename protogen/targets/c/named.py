@@ -20,6 +20,8 @@ from protogen.targets.escape import one_line, paragraphs
 from protogen.targets.naming import Thing, inside, named_type
 
 _LEAST_INT, _GREATEST_INT = -0x8000, 0x7FFF
+_SIGNIFICANT = 63
+"""Characters by which C tells names apart: two bounds differ in their last word alone."""
 
 
 class Macro(msgspec.Struct, frozen=True):
@@ -159,7 +161,8 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
     integer = field.integer
     if integer is not None:
         for word, bound in _bounds(field):
-            yield macro(word, _operand(constant(bound, integer)))
+            if len("_".join((names.prefix, record, field.name, word))) <= _SIGNIFICANT:
+                yield macro(word, _operand(constant(bound, integer)))
         for item in field.special:
             thing = inside(record, "special value", field.name, "special", item.name)
             value = constant(item.value, integer)
