@@ -160,9 +160,8 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
         yield macro("unit", string(field.unit))
     integer = field.integer
     if integer is not None:
-        for word, bound in _bounds(field):
-            if len("_".join((names.prefix, record, field.name, word))) <= _SIGNIFICANT:
-                yield macro(word, _operand(constant(bound, integer)))
+        for word, bound in _bounds(field, f"{names.prefix}_{record}_{field.name}_"):
+            yield macro(word, _operand(constant(bound, integer)))
         for item in field.special:
             thing = inside(record, "special value", field.name, "special", item.name)
             value = constant(item.value, integer)
@@ -174,11 +173,12 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
         yield macro("default", repr(float(field.default)) + suffix)
 
 
-def _bounds(field: Field) -> Iterable[tuple[str, int]]:
-    """The least and the greatest raw value that the schema states."""
-    for word, bound in (("min", field.least), ("max", field.greatest)):
-        if field.ranged and bound is not None:
-            yield word, int(bound)
+def _bounds(field: Field, start: str) -> Iterable[tuple[str, int]]:
+    """The least and the greatest raw value that the schema states, as words behind `start`."""
+    if field.ranged and len(start) + len("min") <= _SIGNIFICANT:
+        for word, bound in (("min", field.least), ("max", field.greatest)):
+            if bound is not None:
+                yield word, int(bound)
 
 
 def _operand(text: str) -> str:
