@@ -26,7 +26,7 @@ ok error_size error_value error_encoding error_range error_space spec_hash versi
 implemented message unknown invalid no_message no_reason size value encoding noise checksum length
 stuffing truncated seeking taking failed lost known open searching measuring empty needless before
 inside after frame stuffed fast_feed sse2 expect each has no_handlers no_weak api inline apart
-baud idle_timeout_ms protogen_version zeros names
+baud idle_timeout_ms protogen_version zeros names small_crc flash flash_8 flash_16 flash_32 flash_64
 """
 _TAGS = "result message event_kind reason writer"
 _TYPES = "put float64"
@@ -122,7 +122,7 @@ def _claim_own(names: Names) -> None:
 def _claim_checksums(names: Names, senders: Iterable[Sender]) -> None:
     for item in (item for sender in senders for item in sender.frame.checksums):
         function = checksum_name(names.prefix, item.algorithm)
-        for word in ("reversed", "step", "run", "final"):
+        for word in ("reversed", "table", "after", "step", "run", "final"):
             names.others.add(f"{function}_{word}")
 
 

@@ -9,7 +9,7 @@ import msgspec
 from protogen.model.protocol import Protocol, Sender
 from protogen.targets.c.decoders.decoder import DecoderView, decoder_view
 from protogen.targets.c.decoders.forms import FormsDecoder, forms_decoders
-from protogen.targets.c.frame.algorithms import Algorithm
+from protogen.targets.c.frame.algorithms import Checksums
 from protogen.targets.c.frame.frames import FrameView
 from protogen.targets.c.frame.handlers import Dispatch, dispatches
 from protogen.targets.c.frame.message_frames import MessageFrame, SenderFrames
@@ -32,7 +32,7 @@ class FramingView(msgspec.Struct, frozen=True):
     frames: tuple[FrameView, ...]
     """One of each kind: senders with the same frame share what builds it."""
     messages: tuple[MessageFrame, ...]
-    checksums: tuple[Algorithm, ...]
+    checksums: Checksums
     sums: dict[str, str]
     """Types of the registers of checksums that are worked out while a frame is written."""
     sinks: tuple[str, ...]
@@ -77,9 +77,9 @@ class FramingView(msgspec.Struct, frozen=True):
         return any(decoder.whole and decoder.stuffing for decoder in self.decoders)
 
     @property
-    def sums_blocks(self) -> tuple[str, ...]:
-        """The kinds of checksums that add sixteen bytes at a time."""
-        return tuple(sorted({c.spec.kind for c in self.checksums if c.spec.is_folded_byte}))
+    def has_fast_ways(self) -> bool:
+        """True if hosts do something in another way than small machines."""
+        return self.takes_whole or self.checksums.have_blocks
 
     @property
     def finds_high(self) -> bool:
@@ -115,7 +115,7 @@ def framing_view(
         together=forms_decoders(names, senders, decoders, options.events),
         frames=distinct,
         messages=message_frames,
-        checksums=tuple({item.function: item for item in algorithms}.values()),
+        checksums=Checksums(tuple({item.function: item for item in algorithms}.values())),
         sums={
             f"{frame.decoder.name}_{item.name}": item.checksum.type
             for frame in distinct
