@@ -13,6 +13,8 @@ import selection
 import tooling
 from hypothesis import HealthCheck, settings
 
+from protogen.native.compiler import Compiler
+
 # Deadlines measure the machine rather than the code; the CPU is shared with other workers. Whoever
 # waits for `make test` gets the few examples of the default, and CI tries more.
 settings.register_profile(
@@ -101,6 +103,32 @@ def settled_objects() -> None:
     """
     gc.collect()
     gc.freeze()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def quick_libraries() -> Iterator[None]:
+    """Libraries for columns and rows are compiled with less optimisation, in half the time.
+
+    Commands that run in a process of their own have them as users do, and so has
+    `compiled_as_for_users`.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Compiler, "build", _build_quickly)
+        yield
+
+
+_build = Compiler.build
+
+
+def _build_quickly(compiler: Compiler, source: Path, library: Path) -> None:
+    _build(Compiler(compiler.command, (*compiler.flags, "-O1")), source, library)
+
+
+@pytest.fixture
+def compiled_as_for_users(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Libraries are compiled anew, with the optimisation that users have."""
+    monkeypatch.setattr(Compiler, "build", _build)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
 
 
 @pytest.fixture(scope="session")
