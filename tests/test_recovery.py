@@ -270,7 +270,8 @@ def test_a_torrent_of_noise_fills_no_memory(path: Path) -> None:
 def memory_of(work: Callable[[], None]) -> tuple[int, int]:
     """The bytes that a piece of work holds at most, and those that it leaves behind."""
     # What is there already is not looked at again, so that work may collect as often as it likes.
-    # If it didn't, the peak would be a matter of when the interpreter last collected.
+    # If it didn't, the peak would be a matter of when the interpreter last collected. It stays
+    # frozen, as in `settled_objects`: else the next test would take seconds to look through it.
     gc.collect()
     gc.freeze()
     # Once unmeasured: the interpreter keeps what it learns about code that runs for the first time.
@@ -283,7 +284,6 @@ def memory_of(work: Callable[[], None]) -> tuple[int, int]:
         left, _ = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-        gc.unfreeze()
     return peak, left
 
 
