@@ -11,13 +11,14 @@ from typing import Any
 
 import handwritten_streams
 import pytest
+from amounts import OF_TWO_ENGINES, STREAMS_OF_TWO_ENGINES
 from c_engine import (
     Process,
     assert_same_steps,
     check_events,
     process_of,
 )
-from compiled import DOCUMENTS, ROOT, SCHEMAS, module_at, name_of, protocol_of
+from compiled import DOCUMENTS, ROOT, SCHEMAS, covering, module_at, name_of, protocol_of
 from corpus import joined, marks_of, material_of, portions, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -31,7 +32,7 @@ from protogen.live.codec import module_of
 from protogen.model.messages import Message, given_parts
 from protogen.model.protocol import Sender
 from protogen.passes.selection import select
-from protogen.targets.c.options import COptions
+from protogen.targets.c.options import EVENTS, COptions
 
 ALL = COptions()
 MESSAGES = COptions(events="messages")
@@ -40,8 +41,21 @@ SENDERS = [
     (path, sender.name) for path in (*SCHEMAS, *SAMPLERS) for sender in protocol_of(path).senders
 ]
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), SENDERS, ids=name_of)
-EXAMPLES = settings().max_examples
-SEEDS = range(max(8, EXAMPLES // 10))
+OTHER_PATHS = {
+    *covering(),
+    *(path for path in SAMPLERS if path.stem in ("sampler", "part_bits", "mirrors", "measured")),
+}
+"""Schemas whose decoders without events of bytes that are no message are tried, too."""
+OTHERS = [(path, sender) for path, sender in SENDERS if path in OTHER_PATHS]
+SOME_SENDERS = pytest.mark.parametrize(("path", "sender"), OTHERS, ids=name_of)
+BUILDS = [
+    *(pytest.param(ALL, *sender, id=f"all-{name_of(sender[0])}-{sender[1]}") for sender in SENDERS),
+    *(
+        pytest.param(MESSAGES, *sender, id=f"messages-{name_of(sender[0])}-{sender[1]}")
+        for sender in OTHERS
+    ),
+]
+SEEDS = range(STREAMS_OF_TWO_ENGINES)
 PIECES = 40
 
 
@@ -99,7 +113,7 @@ def test_short_payloads_of_any_kind_have_the_events_that_python_finds(
 
 
 @EVERY_SENDER
-@settings(max_examples=max(15, EXAMPLES // 4))
+@settings(max_examples=OF_TWO_ENGINES)
 @given(data=st.data())
 def test_any_mixture_has_the_events_that_python_finds(
     path: Path, sender: str, data: st.DataObject
@@ -120,8 +134,7 @@ def drawn_steps(draw: st.DrawFn, data: bytes) -> list[Step]:
     return [*((kind, part) for part in parts), ("flush",)]
 
 
-@EVERY_SENDER
-@pytest.mark.parametrize("options", [ALL, MESSAGES], ids=["all", "messages"])
+@pytest.mark.parametrize(("options", "path", "sender"), BUILDS)
 def test_a_decoder_in_memory_of_zeros_is_like_one_that_was_initialised(
     options: COptions, path: Path, sender: str
 ) -> None:
@@ -153,12 +166,12 @@ def test_offsets_count_on_beyond_the_end_of_an_input() -> None:
 # --- other builds ---------------------------------------------------------------------------------
 
 
-@EVERY_SENDER
+@SOME_SENDERS
 def test_the_messages_alone_are_those_that_python_finds(path: Path, sender: str) -> None:
     check_corpus(process_of(path, MESSAGES), module_at(path), sender, path)
 
 
-@EVERY_SENDER
+@SOME_SENDERS
 def test_the_messages_alone_in_streams_of_telling_bytes(path: Path, sender: str) -> None:
     spec = module_at(path).PROTOCOL.sender(sender)
     for seed in SEEDS:
@@ -167,10 +180,10 @@ def test_the_messages_alone_in_streams_of_telling_bytes(path: Path, sender: str)
         check_events(process_of(path, MESSAGES), module_at(path), sender, steps_of(data, dice))
 
 
-@pytest.mark.parametrize("events", ["all", "messages"])
 @pytest.mark.parametrize("path", DOCUMENTS, ids=name_of)
-def test_a_single_header_decodes_alike(path: Path, events: Any) -> None:
-    process = Process(protocol_of(path), COptions(style="single", events=events))
+def test_a_single_header_decodes_alike(path: Path) -> None:
+    """It has the same code, as test_c_lint.py shows of all schemas."""
+    process = Process(protocol_of(path), COptions(style="single"))
     for sender in protocol_of(path).senders:
         check_corpus(process, module_at(path), sender.name, path)
     process.close()
@@ -192,8 +205,11 @@ def selections() -> list[tuple[Path, tuple[str, ...] | None, tuple[str, ...] | N
     return found
 
 
-@pytest.mark.parametrize("events", ["all", "messages"])
-@pytest.mark.parametrize(("path", "only", "senders"), selections(), ids=str)
+@pytest.mark.parametrize(
+    ("path", "only", "senders", "events"),
+    [(*chosen, EVENTS[number % 2]) for number, chosen in enumerate(selections())],
+    ids=str,
+)
 def test_a_selection_decodes_as_the_same_selection_does_in_python(
     path: Path, only: tuple[str, ...] | None, senders: tuple[str, ...] | None, events: Any
 ) -> None:

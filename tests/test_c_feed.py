@@ -9,10 +9,10 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from amounts import STREAMS_OF_TWO_ENGINES
 from c_engine import SANITIZERS, Process, check_events, process_of
 from compiled import DIALECTS, DOCUMENTS, FRAMINGS, module_at, name_of, protocol_of
 from corpus import material_of, stream_of
-from hypothesis import settings
 
 from protogen.fuzzing.c_calls import Step
 from protogen.model.protocol import Protocol
@@ -21,7 +21,7 @@ from protogen.targets.c.options import COptions, Events
 
 MACROS = {"none": "_FAST_FEED=0", "sse2": "_SSE2=1"}
 """What is defined for a way. Without, it is the portable one, which other tests compile as well."""
-SEEDS = range(max(6, settings().max_examples // 8))
+SEEDS = range(STREAMS_OF_TWO_ENGINES)
 
 
 def takes_whole(protocol: Protocol) -> bool:

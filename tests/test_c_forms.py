@@ -9,12 +9,13 @@ from typing import Any
 
 import handwritten_streams
 import pytest
+from amounts import OF_TWO_ENGINES
 from c_engine import check_events, process_of
 from compiled import FRAMINGS, ROOT, module_at, name_of, protocol_of
 from corpus import Material, joined, marks_of, material_of, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_c_decoder import ALL, EXAMPLES, MESSAGES, PIECES, SEEDS, drawn_steps, steps_of
+from test_c_decoder import ALL, MESSAGES, PIECES, SEEDS, drawn_steps, steps_of
 from test_forms import TRIO
 from test_forms import stream as trio_stream
 from test_recovery import drawn_pieces
@@ -80,7 +81,7 @@ def test_short_payloads_of_any_kind_have_the_events_that_python_finds(
 
 
 @EVERY_ENDPOINT
-@settings(max_examples=max(15, EXAMPLES // 4))
+@settings(max_examples=OF_TWO_ENGINES)
 @given(data=st.data())
 def test_any_mixture_has_the_events_that_python_finds(
     path: Path, endpoint: str, data: st.DataObject

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -12,6 +11,7 @@ from random import Random
 from types import ModuleType
 
 import pytest
+from amounts import SCHEMAS_IN_C, THOROUGH
 from c_engine import Process, check_events
 from c_library import held_of
 from corpus import Material, stream_of
@@ -33,8 +33,6 @@ from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.frame import LiteralPart
 from protogen.targets.c.options import COptions
 
-THOROUGH = os.environ.get("HYPOTHESIS_PROFILE") == "thorough"
-RUNS = 200 if THOROUGH else 12
 DRAWS = 26 if THOROUGH else 20
 """Few in one run, because what is drawn from one seed grows alike."""
 SAMPLES = 12
@@ -45,7 +43,7 @@ GREATEST = 2000
 
 
 @pytest.mark.usefixtures("fixed_draws")
-@pytest.mark.parametrize("number", range(RUNS))
+@pytest.mark.parametrize("number", range(SCHEMAS_IN_C))
 def test_a_random_schema_is_the_same_in_c(
     number: int, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

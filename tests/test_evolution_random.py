@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import sys
 from collections import Counter
@@ -10,6 +9,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from amounts import SCHEMAS_EDITED, THOROUGH
 from evolution_edits import edited
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from schema_fuzzing import Schema, schemas
@@ -36,15 +36,13 @@ NAMES = (
 )
 """Changes of nothing but words. A field's path does not say in which case of a switch it is, so
 where one of two fields with one name gets another, the other one seems to be new."""
-THOROUGH = os.environ.get("HYPOTHESIS_PROFILE") == "thorough"
-RUNS = 40 if THOROUGH else 4
 SCHEMAS = 25
 EDITS = 12
 """Of each schema; less than half of them compile and change something: some 500 in all."""
 
 
 @pytest.mark.usefixtures("fixed_draws")
-@pytest.mark.parametrize("number", range(RUNS))
+@pytest.mark.parametrize("number", range(SCHEMAS_EDITED))
 def test_findings_and_frames_agree(
     number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -11,6 +11,7 @@ from random import Random
 from typing import Any
 
 import pytest
+from amounts import EDITED_ON_A_PAGE, FRAMES_ON_A_PAGE
 from browser_pages import Opened, chromium, explained
 from page_edits import TRY, editable, edits, mistakes, paths_in
 from test_html_page import _EXPLAIN, damaged
@@ -29,11 +30,7 @@ SCHEMAS = [path for folder in FOLDERS for path in sorted((ROOT / folder).glob("*
 EDIT_ALL = os.environ.get("PROTOGEN_EDIT_ALL") == "1"
 TURN = int(os.environ.get("PROTOGEN_EDIT_TURN", "0"))
 """Which of an endpoint's messages come first; other numbers try others of a large endpoint."""
-EDITED = 12
-"""Messages of an endpoint whose values are edited; of our own schemas, that is all of them."""
-FRAMES = 100
-"""Frames of each schema that are taken apart, or one of each message if these are more."""
-_TRIED = 100
+_TRIED = 40
 """Frames of each message whose values are edited at most."""
 
 _FORM_SIZE = 200
@@ -64,7 +61,7 @@ def drawn(codec: Codec) -> list[Sent]:
         for sender in codec.protocol.senders
         for message in sender.messages
     ]
-    turns = islice(cycle(streams), max(FRAMES, len(streams)))
+    turns = islice(cycle(streams), max(FRAMES_ON_A_PAGE, len(streams)))
     return [(sender, message, next(stream)[1]) for sender, message, stream in turns]
 
 
@@ -105,10 +102,10 @@ def check_edits(opened: Opened, codec: Codec, sender: Sender, message: Message) 
 
 def spread(messages):
     """Some of many messages, evenly, others each day; all where that is asked for."""
-    count = len(messages)
-    if EDIT_ALL or count <= EDITED:
+    count, most = len(messages), EDITED_ON_A_PAGE
+    if EDIT_ALL or count <= most:
         return messages
-    return [messages[(index * count // EDITED + TURN) % count] for index in range(EDITED)]
+    return [messages[(index * count // most + TURN) % count] for index in range(most)]
 
 
 @pytest.mark.parametrize("path", SCHEMAS, ids=lambda path: path.stem)
@@ -127,4 +124,4 @@ def test_the_bench_does_as_python_does(browser, tmp_path, path):
 
 
 def test_the_frames_of_all_schemas_are_ten_thousand():
-    assert len(SCHEMAS) * FRAMES >= 10_000
+    assert len(SCHEMAS) * FRAMES_ON_A_PAGE >= 10_000

@@ -8,6 +8,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from amounts import LIBRARY_SAMPLES
 from cli_support import run
 from compiled import ROOT, module_at, protocol_of
 from tooling import require_compiler
@@ -23,9 +24,6 @@ from protogen.model.protocol import Protocol
 from protogen.targets.c.fuzz_driver.driver import driver_of
 
 EVERY_SCHEMA = pytest.mark.parametrize("name", library_names())
-SAMPLES = 1000
-"""Samples of a schema that all engines take. Each goes through the slow reference twice, once
-byte by byte."""
 LEAST = 4
 """Samples of each message at least, if it has so many."""
 
@@ -106,9 +104,9 @@ def test_all_engines_take_every_message_there_and_back(name: str) -> None:
 
 
 def spread_cases(protocol: Protocol) -> Iterator[Case]:
-    """Yield some `SAMPLES`: of each message as many, from the first to the last."""
+    """Yield some `LIBRARY_SAMPLES`: of each message as many, from the first to the last."""
     pairs = [(sender, message) for sender in protocol.senders for message in sender.messages]
-    most = max(LEAST, SAMPLES // len(pairs))
+    most = max(LEAST, LIBRARY_SAMPLES // len(pairs))
     for sender, message in pairs:
         dice = Random(f"{sender.name} {message.name}")
         found = [*samples_at_least(min(10, most), message, sender.frame, dice)]

@@ -17,6 +17,7 @@ from weakref import ref
 
 import handwritten_streams
 import pytest
+from amounts import OF_TWO_ENGINES, STREAMS_OF_TWO_ENGINES
 from capture_support import assert_same_tables
 from cli_support import PATIENCE
 from compiled import ROOT, SCHEMAS, module_at, name_of, protocol_of
@@ -41,8 +42,7 @@ SENDERS = [
     (path, sender.name) for path in (*SCHEMAS, *SAMPLERS) for sender in protocol_of(path).senders
 ]
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), SENDERS, ids=name_of)
-EXAMPLES = settings().max_examples
-SEEDS = range(max(8, EXAMPLES // 10))
+SEEDS = range(STREAMS_OF_TWO_ENGINES)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -85,7 +85,7 @@ def test_parts_of_telling_bytes_fit_together(path: Path, sender: str) -> None:
 
 
 @EVERY_SENDER
-@settings(max_examples=max(10, EXAMPLES // 6))
+@settings(max_examples=OF_TWO_ENGINES)
 @given(data=st.data())
 def test_parts_of_any_mixture_fit_together(path: Path, sender: str, data: st.DataObject) -> None:
     stream = pieces_joined(data.draw(drawn_pieces(material_of(path, sender)))).data

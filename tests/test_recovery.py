@@ -16,6 +16,7 @@ from random import Random
 from typing import Any
 
 import pytest
+from amounts import OF_A_SENDER, STREAMS
 from compiled import FRAMINGS, module_at, name_of, protocol_of, senders
 from corpus import (
     DAMAGES,
@@ -41,7 +42,7 @@ from protogen.runtime.framing.frame import AfterEnd, FrameSpec
 from protogen.runtime.framing.starts import starts_of
 
 EVERY_SENDER = pytest.mark.parametrize(("path", "sender"), senders(), ids=name_of)
-SEEDS = range(max(10, settings().max_examples // 6))
+SEEDS = range(STREAMS)
 PIECES = 60
 PEAKS = {
     "terminated_alone": 240_000,
@@ -188,6 +189,7 @@ def edited(frame: bytes, edits: Sequence[tuple[str, int, int]]) -> bytes:
 
 
 @EVERY_SENDER
+@settings(max_examples=OF_A_SENDER)
 @given(data=st.data())
 def test_any_mixture_is_cut_as_promised(path: Path, sender: str, data: st.DataObject) -> None:
     spec = spec_of(path, sender)
@@ -204,7 +206,7 @@ def test_any_mixture_is_cut_as_promised(path: Path, sender: str, data: st.DataOb
 
 
 @EVERY_SENDER
-@settings(max_examples=max(20, settings().max_examples // 3))
+@settings(max_examples=OF_A_SENDER)
 @given(data=st.data())
 def test_a_decoder_is_as_new_behind_a_flush(path: Path, sender: str, data: st.DataObject) -> None:
     """A silence on the line ends whatever was going on, and counts as the start of a stream."""
@@ -268,7 +270,8 @@ def test_a_torrent_of_noise_fills_no_memory(path: Path) -> None:
 def memory_of(work: Callable[[], None]) -> tuple[int, int]:
     """The bytes that a piece of work holds at most, and those that it leaves behind."""
     # What is there already is not looked at again, so that work may collect as often as it likes.
-    # If it didn't, the peak would be a matter of when the interpreter last collected.
+    # If it didn't, the peak would be a matter of when the interpreter last collected. It stays
+    # frozen, as in `settled_objects`: else the next test would take seconds to look through it.
     gc.collect()
     gc.freeze()
     # Once unmeasured: the interpreter keeps what it learns about code that runs for the first time.
@@ -281,7 +284,6 @@ def memory_of(work: Callable[[], None]) -> tuple[int, int]:
         left, _ = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-        gc.unfreeze()
     return peak, left
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -11,6 +10,7 @@ from types import ModuleType
 from typing import Any
 
 import pytest
+from amounts import SCHEMAS_IN_PYTHON, THOROUGH
 from hypothesis import HealthCheck, Phase, event, given, seed, settings
 from hypothesis import strategies as st
 from schema_fuzzing import Schema, codec, schemas
@@ -41,9 +41,6 @@ Compile = Callable[[str], Compilation]
 
 NOWHERE = Span.at("", 1, 1)
 STYLES = st.integers(0, 2**32)
-THOROUGH = os.environ.get("HYPOTHESIS_PROFILE") == "thorough"
-SCHEMAS = 300
-"""Schemas that are compiled, and whose codecs are tried, unless the profile is the thorough one."""
 EDITED = 50
 """Schemas that are spoilt, each of them several times."""
 STYLED = 25
@@ -190,7 +187,7 @@ def imported(protocol: Protocol) -> Iterator[ModuleType]:
         sys.modules.pop(module.__name__, None)
 
 
-@examples(SCHEMAS)
+@examples(SCHEMAS_IN_PYTHON)
 @given(schemas(), st.data())
 def test_schema_compiles_and_its_codec_works(
     compile_text: Compile, schema: Schema, data: st.DataObject
