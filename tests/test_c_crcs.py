@@ -86,6 +86,7 @@ def program(algorithms: tuple[Algorithm, ...]) -> str:
     )
     return (
         "#include <stdint.h>\n#include <stddef.h>\n#include <stdio.h>\n"
+        "#define T_INLINE static inline\n"
         f"{template.choice(checksums)}\n{template.functions(checksums, False)}\n"
         f"static const uint8_t data[] = {{{octets}}};\n"
         f"static const size_t sizes[] = {{{', '.join(map(str, SIZES))}}};\n"
