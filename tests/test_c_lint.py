@@ -54,7 +54,7 @@ CASES = [
 """All schemas are printed in the first way, and some of each kind in the others."""
 TIDIED = [*DOCUMENTS, *(path for path in FRAMINGS if path.stem in ("cobs", "hdlc", "hex_lines"))]
 _MISRA = re.compile(r"misra-c2012-(\d+\.\d+)")
-_STATED = re.compile(r"^\| (\d+\.\d+) \|", re.MULTILINE)
+_STATED = re.compile(r"^\| (\d+\.\d+)(, in no document)? \|", re.MULTILINE)
 
 
 def quiet(command: Sequence[str | Path], folder: Path | None = None) -> None:
@@ -211,7 +211,8 @@ def deviations(made: Generated, *options: str) -> dict[str, str]:
 
 @pytest.mark.parametrize("path", [*DOCUMENTS, *FRAMINGS], ids=name_of)
 def test_misra_deviations_are_stated(path: Path, tmp_path: Path) -> None:
-    stated = set(_STATED.findall((TARGET / "README.md").read_text(encoding="utf-8")))
+    rows = _STATED.findall((TARGET / "README.md").read_text(encoding="utf-8"))
+    stated = {rule for rule, limit in rows if not limit or path not in DOCUMENTS}
     options = () if path == DOCUMENTS[0] else WITHOUT_EXTENSIONS
     found = deviations(generate(protocol_of(path), tmp_path), *options)
     assert "15.5" in found, "the addon was not run"

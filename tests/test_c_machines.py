@@ -1,6 +1,6 @@
 """One set of vectors through generated C on every machine: bytes, values and events as Python's.
 
-On x86-64 by two compilers, on a big-endian s390x, on a Cortex-M3 and on an ATmega328P. Frames,
+On x86-64 by three compilers, on a big-endian s390x, on a Cortex-M3 and on an ATmega328P. Frames,
 payloads and streams are the boundaries of every field, random ones, and damaged ones; all follow
 from fixed seeds.
 """
@@ -122,6 +122,7 @@ _ATMEGA328P = ("-Os", "-mmcu=atmega328p", "-DDRIVER_CHUNK=32u")
 ALL = {
     "gcc": Machine("gcc", ("-O2",), "streams.c", on_streams()),
     "clang": Machine("clang", ("-O2",), "streams.c", on_streams()),
+    "tcc": Machine("tcc", (), "streams.c", on_streams()),
     "s390x": Machine(
         "s390x-linux-gnu-gcc", ("-O2", "-static"), "streams.c", on_streams("qemu-s390x")
     ),

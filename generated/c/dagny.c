@@ -23,7 +23,7 @@
 static void dagny_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
-    while (size > 0) {
+    while (size > 0U) {
         size--;
         target[size] = source[size];
     }
@@ -858,6 +858,9 @@ enum {
     DAGNY_AFTER
 };
 
+/* A reason is kept in one byte. There is none so far. */
+#define DAGNY_FINE ((uint8_t)DAGNY_NO_REASON)
+
 /* Stands where a reason would: the candidate is a frame. */
 #define DAGNY_FRAME 0xFFU
 
@@ -902,7 +905,7 @@ static size_t dagny_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
     if (payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, &content[0U], (size_t)(1U + payload) - (size_t)(0U));
+        sum = dagny_xor_8_run(sum, &content[0U], 1U + payload - 0U);
         due = dagny_xor_8_final(sum);
         tail[0U] = (uint8_t)due;
     }
@@ -1391,7 +1394,7 @@ static uint8_t dagny_host_identify(const struct dagny_host_parts *parts, const u
         }
         return (uint8_t)dagny_command_check(payload, size, NULL);
     default:
-        return DAGNY_NO_REASON;
+        return DAGNY_FINE;
     }
 }
 
@@ -1404,7 +1407,7 @@ static uint8_t dagny_host_complete(struct dagny_host_decoder *decoder) {
     if (decoder->payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, &content[0U], (size_t)(1U + decoder->payload) - (size_t)(0U));
+        sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload - 0U);
         due = dagny_xor_8_final(sum);
         if (content[1U + decoder->payload] != (uint8_t)due) {
             return DAGNY_CHECKSUM;
@@ -1417,11 +1420,11 @@ static uint8_t dagny_host_complete(struct dagny_host_decoder *decoder) {
     }
     event.payload = &content[1];
     reason = dagny_host_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != DAGNY_NO_REASON) {
+    if (reason != DAGNY_FINE) {
         return reason;
     }
     dagny_host_end_noise(decoder);
-    event.kind = message == DAGNY_NO_MESSAGE ? DAGNY_UNKNOWN : DAGNY_MESSAGE;
+    event.kind = message == (uint8_t)DAGNY_NO_MESSAGE ? DAGNY_UNKNOWN : DAGNY_MESSAGE;
     event.reason = DAGNY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -1469,7 +1472,7 @@ static uint8_t dagny_host_find_size(struct dagny_host_decoder *decoder, uint8_t 
     default:
         break;
     }
-    return DAGNY_NO_REASON;
+    return DAGNY_FINE;
 }
 
 /* The payload begins. */
@@ -1477,7 +1480,7 @@ static uint8_t dagny_host_enter_payload(struct dagny_host_decoder *decoder) {
     if ((decoder->flags & DAGNY_KNOWN) == 0U) {
         decoder->flags |= DAGNY_OPEN;
     }
-    return DAGNY_NO_REASON;
+    return DAGNY_FINE;
 }
 
 /* A byte in front of the payload. */
@@ -1485,7 +1488,7 @@ static uint8_t dagny_host_take_head(struct dagny_host_decoder *decoder, uint16_t
                                     uint8_t byte) {
     (void)byte;
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = DAGNY_NO_REASON;
+    uint8_t reason = DAGNY_FINE;
     switch (index) {
     case 0:
         reason = dagny_host_find_size(decoder, content[0]);
@@ -1493,7 +1496,7 @@ static uint8_t dagny_host_take_head(struct dagny_host_decoder *decoder, uint16_t
     default:
         break;
     }
-    if (reason == DAGNY_NO_REASON && index == 0U) {
+    if (reason == DAGNY_FINE && index == 0U) {
         reason = dagny_host_enter_payload(decoder);
     }
     return reason;
@@ -1511,14 +1514,14 @@ static uint8_t dagny_host_cross(struct dagny_host_decoder *decoder) {
     } else {
         /* The part goes on. */
     }
-    return DAGNY_NO_REASON;
+    return DAGNY_FINE;
 }
 
 /* One byte of content. */
 static uint8_t dagny_host_accept(struct dagny_host_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
     bool crosses = true;
-    uint8_t reason = DAGNY_NO_REASON;
+    uint8_t reason = DAGNY_FINE;
     if (index >= decoder->limit) {
         return dagny_host_surplus(decoder);
     }
@@ -1530,7 +1533,7 @@ static uint8_t dagny_host_accept(struct dagny_host_decoder *decoder, uint8_t byt
     } else {
         /* A byte behind the payload is looked at when all are there. */
     }
-    if (reason == DAGNY_NO_REASON && crosses) {
+    if (reason == DAGNY_FINE && crosses) {
         reason = dagny_host_cross(decoder);
     }
     return reason;
@@ -1543,7 +1546,7 @@ static uint8_t dagny_host_pass(struct dagny_host_decoder *decoder, uint8_t byte)
             return dagny_host_surplus(decoder);
         }
         decoder->end_left--;
-        return decoder->end_left == 0U ? dagny_host_complete(decoder) : (uint8_t)DAGNY_NO_REASON;
+        return decoder->end_left == 0U ? dagny_host_complete(decoder) : DAGNY_FINE;
     }
     if (((decoder->flags & DAGNY_KNOWN) != 0U && decoder->content == decoder->limit)) {
         return dagny_host_surplus(decoder);
@@ -1565,12 +1568,12 @@ static uint8_t dagny_host_close_open(struct dagny_host_decoder *decoder) {
         size = (uint16_t)(size - 1U);
     }
     dagny_host_set_payload(decoder, size);
-    return DAGNY_NO_REASON;
+    return DAGNY_FINE;
 }
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t dagny_host_close(struct dagny_host_decoder *decoder) {
-    uint8_t reason = DAGNY_NO_REASON;
+    uint8_t reason = DAGNY_FINE;
     if ((decoder->flags & DAGNY_KNOWN) == 0U) {
         reason = dagny_host_close_open(decoder);
     } else if (decoder->content != decoder->limit) {
@@ -1578,7 +1581,7 @@ static uint8_t dagny_host_close(struct dagny_host_decoder *decoder) {
     } else {
         /* The frame is complete. */
     }
-    return reason == DAGNY_NO_REASON ? dagny_host_complete(decoder) : reason;
+    return reason == DAGNY_FINE ? dagny_host_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -1599,7 +1602,7 @@ static uint8_t dagny_host_take(struct dagny_host_decoder *decoder, uint8_t byte)
         reason = (decoder->flags & DAGNY_SEARCHING) != 0U ? dagny_host_search(decoder, byte)
                                                           : dagny_host_pass(decoder, byte);
     }
-    if (reason == DAGNY_NO_REASON && decoder->wire >= 515U) {
+    if (reason == DAGNY_FINE && decoder->wire >= 515U) {
         reason = DAGNY_LENGTH;
     }
     return reason;
@@ -1703,13 +1706,13 @@ static void dagny_host_run(struct dagny_host_decoder *decoder, bool is_end) {
             if (decoder->state == DAGNY_SEEKING) { /* At the beginning of the input. */
                 dagny_host_open(decoder);
             }
-            uint8_t reason = DAGNY_NO_REASON;
+            uint8_t reason = DAGNY_FINE;
             if (decoder->state == DAGNY_LOST) {
                 dagny_host_seek(decoder, byte);
             } else {
                 reason = dagny_host_take(decoder, byte);
             }
-            if (reason != DAGNY_NO_REASON) {
+            if (reason != DAGNY_FINE) {
                 dagny_host_judge(decoder, reason);
             }
         }
@@ -1865,7 +1868,7 @@ static uint8_t dagny_robot_identify(const struct dagny_robot_parts *parts, const
         }
         return (uint8_t)dagny_command_check(payload, size, NULL);
     default:
-        return DAGNY_NO_REASON;
+        return DAGNY_FINE;
     }
 }
 
@@ -1878,7 +1881,7 @@ static uint8_t dagny_robot_complete(struct dagny_robot_decoder *decoder) {
     if (decoder->payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, &content[0U], (size_t)(1U + decoder->payload) - (size_t)(0U));
+        sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload - 0U);
         due = dagny_xor_8_final(sum);
         if (content[1U + decoder->payload] != (uint8_t)due) {
             return DAGNY_CHECKSUM;
@@ -1891,11 +1894,11 @@ static uint8_t dagny_robot_complete(struct dagny_robot_decoder *decoder) {
     }
     event.payload = &content[1];
     reason = dagny_robot_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != DAGNY_NO_REASON) {
+    if (reason != DAGNY_FINE) {
         return reason;
     }
     dagny_robot_end_noise(decoder);
-    event.kind = message == DAGNY_NO_MESSAGE ? DAGNY_UNKNOWN : DAGNY_MESSAGE;
+    event.kind = message == (uint8_t)DAGNY_NO_MESSAGE ? DAGNY_UNKNOWN : DAGNY_MESSAGE;
     event.reason = DAGNY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -1955,7 +1958,7 @@ static uint8_t dagny_robot_find_size(struct dagny_robot_decoder *decoder, uint8_
     default:
         break;
     }
-    return DAGNY_NO_REASON;
+    return DAGNY_FINE;
 }
 
 /* The payload begins. */
@@ -1963,7 +1966,7 @@ static uint8_t dagny_robot_enter_payload(struct dagny_robot_decoder *decoder) {
     if ((decoder->flags & DAGNY_KNOWN) == 0U) {
         decoder->flags |= DAGNY_OPEN;
     }
-    return DAGNY_NO_REASON;
+    return DAGNY_FINE;
 }
 
 /* A byte in front of the payload. */
@@ -1971,7 +1974,7 @@ static uint8_t dagny_robot_take_head(struct dagny_robot_decoder *decoder, uint16
                                      uint8_t byte) {
     (void)byte;
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = DAGNY_NO_REASON;
+    uint8_t reason = DAGNY_FINE;
     switch (index) {
     case 0:
         reason = dagny_robot_find_size(decoder, content[0]);
@@ -1979,7 +1982,7 @@ static uint8_t dagny_robot_take_head(struct dagny_robot_decoder *decoder, uint16
     default:
         break;
     }
-    if (reason == DAGNY_NO_REASON && index == 0U) {
+    if (reason == DAGNY_FINE && index == 0U) {
         reason = dagny_robot_enter_payload(decoder);
     }
     return reason;
@@ -1997,14 +2000,14 @@ static uint8_t dagny_robot_cross(struct dagny_robot_decoder *decoder) {
     } else {
         /* The part goes on. */
     }
-    return DAGNY_NO_REASON;
+    return DAGNY_FINE;
 }
 
 /* One byte of content. */
 static uint8_t dagny_robot_accept(struct dagny_robot_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
     bool crosses = true;
-    uint8_t reason = DAGNY_NO_REASON;
+    uint8_t reason = DAGNY_FINE;
     if (index >= decoder->limit) {
         return dagny_robot_surplus(decoder);
     }
@@ -2016,7 +2019,7 @@ static uint8_t dagny_robot_accept(struct dagny_robot_decoder *decoder, uint8_t b
     } else {
         /* A byte behind the payload is looked at when all are there. */
     }
-    if (reason == DAGNY_NO_REASON && crosses) {
+    if (reason == DAGNY_FINE && crosses) {
         reason = dagny_robot_cross(decoder);
     }
     return reason;
@@ -2029,7 +2032,7 @@ static uint8_t dagny_robot_pass(struct dagny_robot_decoder *decoder, uint8_t byt
             return dagny_robot_surplus(decoder);
         }
         decoder->end_left--;
-        return decoder->end_left == 0U ? dagny_robot_complete(decoder) : (uint8_t)DAGNY_NO_REASON;
+        return decoder->end_left == 0U ? dagny_robot_complete(decoder) : DAGNY_FINE;
     }
     if (((decoder->flags & DAGNY_KNOWN) != 0U && decoder->content == decoder->limit)) {
         return dagny_robot_surplus(decoder);
@@ -2051,12 +2054,12 @@ static uint8_t dagny_robot_close_open(struct dagny_robot_decoder *decoder) {
         size = (uint16_t)(size - 1U);
     }
     dagny_robot_set_payload(decoder, size);
-    return DAGNY_NO_REASON;
+    return DAGNY_FINE;
 }
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t dagny_robot_close(struct dagny_robot_decoder *decoder) {
-    uint8_t reason = DAGNY_NO_REASON;
+    uint8_t reason = DAGNY_FINE;
     if ((decoder->flags & DAGNY_KNOWN) == 0U) {
         reason = dagny_robot_close_open(decoder);
     } else if (decoder->content != decoder->limit) {
@@ -2064,7 +2067,7 @@ static uint8_t dagny_robot_close(struct dagny_robot_decoder *decoder) {
     } else {
         /* The frame is complete. */
     }
-    return reason == DAGNY_NO_REASON ? dagny_robot_complete(decoder) : reason;
+    return reason == DAGNY_FINE ? dagny_robot_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -2085,7 +2088,7 @@ static uint8_t dagny_robot_take(struct dagny_robot_decoder *decoder, uint8_t byt
         reason = (decoder->flags & DAGNY_SEARCHING) != 0U ? dagny_robot_search(decoder, byte)
                                                           : dagny_robot_pass(decoder, byte);
     }
-    if (reason == DAGNY_NO_REASON && decoder->wire >= 515U) {
+    if (reason == DAGNY_FINE && decoder->wire >= 515U) {
         reason = DAGNY_LENGTH;
     }
     return reason;
@@ -2189,13 +2192,13 @@ static void dagny_robot_run(struct dagny_robot_decoder *decoder, bool is_end) {
             if (decoder->state == DAGNY_SEEKING) { /* At the beginning of the input. */
                 dagny_robot_open(decoder);
             }
-            uint8_t reason = DAGNY_NO_REASON;
+            uint8_t reason = DAGNY_FINE;
             if (decoder->state == DAGNY_LOST) {
                 dagny_robot_seek(decoder, byte);
             } else {
                 reason = dagny_robot_take(decoder, byte);
             }
-            if (reason != DAGNY_NO_REASON) {
+            if (reason != DAGNY_FINE) {
                 dagny_robot_judge(decoder, reason);
             }
         }

@@ -23,7 +23,7 @@
 static void dagny_library_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
-    while (size > 0) {
+    while (size > 0U) {
         size--;
         target[size] = source[size];
     }
@@ -582,6 +582,9 @@ enum {
     DAGNY_LIBRARY_AFTER
 };
 
+/* A reason is kept in one byte. There is none so far. */
+#define DAGNY_LIBRARY_FINE ((uint8_t)DAGNY_LIBRARY_NO_REASON)
+
 /* Stands where a reason would: the candidate is a frame. */
 #define DAGNY_LIBRARY_FRAME 0xFFU
 
@@ -629,7 +632,8 @@ static size_t dagny_library_host_wrap(uint8_t *frame, size_t payload, uint8_t id
     }
     *to = 0x0DU;
     to++;
-    return (size_t)(to - frame);
+    const ptrdiff_t written = to - frame;
+    return (size_t)written;
 }
 
 /* --- frames, byte by byte --------------------------------------------------------------------- */
@@ -1173,7 +1177,7 @@ static uint8_t dagny_library_host_identify(const struct dagny_library_host_parts
         }
         return (uint8_t)dagny_library_shutdown_check(payload, size, NULL);
     default:
-        return DAGNY_LIBRARY_NO_REASON;
+        return DAGNY_LIBRARY_FINE;
     }
 }
 
@@ -1190,12 +1194,12 @@ static uint8_t dagny_library_host_complete(struct dagny_library_host_decoder *de
     }
     event.payload = &content[1];
     reason = dagny_library_host_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != DAGNY_LIBRARY_NO_REASON) {
+    if (reason != DAGNY_LIBRARY_FINE) {
         return reason;
     }
     dagny_library_host_end_noise(decoder);
-    event.kind = message == DAGNY_LIBRARY_NO_MESSAGE ? DAGNY_LIBRARY_UNKNOWN
-                                                     : DAGNY_LIBRARY_MESSAGE;
+    event.kind = message == (uint8_t)DAGNY_LIBRARY_NO_MESSAGE ? DAGNY_LIBRARY_UNKNOWN
+                                                              : DAGNY_LIBRARY_MESSAGE;
     event.reason = DAGNY_LIBRARY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -1245,7 +1249,7 @@ static uint8_t dagny_library_host_find_size(struct dagny_library_host_decoder *d
     default:
         break;
     }
-    return DAGNY_LIBRARY_NO_REASON;
+    return DAGNY_LIBRARY_FINE;
 }
 
 /* The payload begins. */
@@ -1253,7 +1257,7 @@ static uint8_t dagny_library_host_enter_payload(struct dagny_library_host_decode
     if ((decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U) {
         decoder->flags |= DAGNY_LIBRARY_OPEN;
     }
-    return DAGNY_LIBRARY_NO_REASON;
+    return DAGNY_LIBRARY_FINE;
 }
 
 /* A byte in front of the payload. */
@@ -1261,7 +1265,7 @@ static uint8_t dagny_library_host_take_head(struct dagny_library_host_decoder *d
                                             uint16_t index, uint8_t byte) {
     (void)byte;
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = DAGNY_LIBRARY_NO_REASON;
+    uint8_t reason = DAGNY_LIBRARY_FINE;
     switch (index) {
     case 0:
         reason = dagny_library_host_find_size(decoder, content[0]);
@@ -1269,7 +1273,7 @@ static uint8_t dagny_library_host_take_head(struct dagny_library_host_decoder *d
     default:
         break;
     }
-    if (reason == DAGNY_LIBRARY_NO_REASON && index == 0U) {
+    if (reason == DAGNY_LIBRARY_FINE && index == 0U) {
         reason = dagny_library_host_enter_payload(decoder);
     }
     return reason;
@@ -1283,7 +1287,7 @@ static uint8_t dagny_library_host_finish_region(struct dagny_library_host_decode
 /* One byte of content. */
 static uint8_t dagny_library_host_accept(struct dagny_library_host_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
-    uint8_t reason = DAGNY_LIBRARY_NO_REASON;
+    uint8_t reason = DAGNY_LIBRARY_FINE;
     if (index >= decoder->limit) {
         return dagny_library_host_surplus(decoder);
     }
@@ -1311,7 +1315,7 @@ static uint8_t dagny_library_host_unstuff(struct dagny_library_host_decoder *dec
                  decoder->content == decoder->limit)) {
                 return dagny_library_host_surplus(decoder);
             }
-            return DAGNY_LIBRARY_NO_REASON;
+            return DAGNY_LIBRARY_FINE;
         case 0x0DU:
             return DAGNY_LIBRARY_STUFFING;
         default:
@@ -1351,15 +1355,15 @@ static uint8_t dagny_library_host_close_open(struct dagny_library_host_decoder *
     }
     size = (uint16_t)(decoder->content - 1U);
     dagny_library_host_set_payload(decoder, size);
-    return DAGNY_LIBRARY_NO_REASON;
+    return DAGNY_LIBRARY_FINE;
 }
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t dagny_library_host_close(struct dagny_library_host_decoder *decoder) {
-    uint8_t reason = DAGNY_LIBRARY_NO_REASON;
+    uint8_t reason = DAGNY_LIBRARY_FINE;
     {
         reason = dagny_library_host_finish_region(decoder);
-        if (reason != DAGNY_LIBRARY_NO_REASON) {
+        if (reason != DAGNY_LIBRARY_FINE) {
             return reason;
         }
     }
@@ -1370,7 +1374,7 @@ static uint8_t dagny_library_host_close(struct dagny_library_host_decoder *decod
     } else {
         /* The frame is complete. */
     }
-    return reason == DAGNY_LIBRARY_NO_REASON ? dagny_library_host_complete(decoder) : reason;
+    return reason == DAGNY_LIBRARY_FINE ? dagny_library_host_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -1391,7 +1395,7 @@ static uint8_t dagny_library_host_take(struct dagny_library_host_decoder *decode
     } else {
         reason = dagny_library_host_search(decoder, byte);
     }
-    if (reason == DAGNY_LIBRARY_NO_REASON && decoder->wire >= 1027U) {
+    if (reason == DAGNY_LIBRARY_FINE && decoder->wire >= 1027U) {
         reason = DAGNY_LIBRARY_LENGTH;
     }
     return reason;
@@ -1441,7 +1445,7 @@ void dagny_library_host_decoder_push(struct dagny_library_host_decoder *decoder,
     }
     if (decoder->state == DAGNY_LIBRARY_TAKING) {
         const uint8_t reason = dagny_library_host_take(decoder, byte);
-        if (reason != DAGNY_LIBRARY_NO_REASON) {
+        if (reason != DAGNY_LIBRARY_FINE) {
             dagny_library_host_judge(decoder, reason, byte);
         }
     } else {
@@ -1559,7 +1563,7 @@ static uint8_t dagny_library_robot_identify(const struct dagny_library_robot_par
         }
         return (uint8_t)dagny_library_shutdown_check(payload, size, NULL);
     default:
-        return DAGNY_LIBRARY_NO_REASON;
+        return DAGNY_LIBRARY_FINE;
     }
 }
 
@@ -1576,12 +1580,12 @@ static uint8_t dagny_library_robot_complete(struct dagny_library_robot_decoder *
     }
     event.payload = &content[1];
     reason = dagny_library_robot_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != DAGNY_LIBRARY_NO_REASON) {
+    if (reason != DAGNY_LIBRARY_FINE) {
         return reason;
     }
     dagny_library_robot_end_noise(decoder);
-    event.kind = message == DAGNY_LIBRARY_NO_MESSAGE ? DAGNY_LIBRARY_UNKNOWN
-                                                     : DAGNY_LIBRARY_MESSAGE;
+    event.kind = message == (uint8_t)DAGNY_LIBRARY_NO_MESSAGE ? DAGNY_LIBRARY_UNKNOWN
+                                                              : DAGNY_LIBRARY_MESSAGE;
     event.reason = DAGNY_LIBRARY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -1634,7 +1638,7 @@ static uint8_t dagny_library_robot_find_size(struct dagny_library_robot_decoder 
     default:
         break;
     }
-    return DAGNY_LIBRARY_NO_REASON;
+    return DAGNY_LIBRARY_FINE;
 }
 
 /* The payload begins. */
@@ -1642,7 +1646,7 @@ static uint8_t dagny_library_robot_enter_payload(struct dagny_library_robot_deco
     if ((decoder->flags & DAGNY_LIBRARY_KNOWN) == 0U) {
         decoder->flags |= DAGNY_LIBRARY_OPEN;
     }
-    return DAGNY_LIBRARY_NO_REASON;
+    return DAGNY_LIBRARY_FINE;
 }
 
 /* A byte in front of the payload. */
@@ -1650,7 +1654,7 @@ static uint8_t dagny_library_robot_take_head(struct dagny_library_robot_decoder 
                                              uint16_t index, uint8_t byte) {
     (void)byte;
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = DAGNY_LIBRARY_NO_REASON;
+    uint8_t reason = DAGNY_LIBRARY_FINE;
     switch (index) {
     case 0:
         reason = dagny_library_robot_find_size(decoder, content[0]);
@@ -1658,7 +1662,7 @@ static uint8_t dagny_library_robot_take_head(struct dagny_library_robot_decoder 
     default:
         break;
     }
-    if (reason == DAGNY_LIBRARY_NO_REASON && index == 0U) {
+    if (reason == DAGNY_LIBRARY_FINE && index == 0U) {
         reason = dagny_library_robot_enter_payload(decoder);
     }
     return reason;
@@ -1673,7 +1677,7 @@ static uint8_t dagny_library_robot_finish_region(struct dagny_library_robot_deco
 static uint8_t dagny_library_robot_accept(struct dagny_library_robot_decoder *decoder,
                                           uint8_t byte) {
     const uint16_t index = decoder->content;
-    uint8_t reason = DAGNY_LIBRARY_NO_REASON;
+    uint8_t reason = DAGNY_LIBRARY_FINE;
     if (index >= decoder->limit) {
         return dagny_library_robot_surplus(decoder);
     }
@@ -1701,7 +1705,7 @@ static uint8_t dagny_library_robot_unstuff(struct dagny_library_robot_decoder *d
                  decoder->content == decoder->limit)) {
                 return dagny_library_robot_surplus(decoder);
             }
-            return DAGNY_LIBRARY_NO_REASON;
+            return DAGNY_LIBRARY_FINE;
         case 0x0DU:
             return DAGNY_LIBRARY_STUFFING;
         default:
@@ -1741,15 +1745,15 @@ static uint8_t dagny_library_robot_close_open(struct dagny_library_robot_decoder
     }
     size = (uint16_t)(decoder->content - 1U);
     dagny_library_robot_set_payload(decoder, size);
-    return DAGNY_LIBRARY_NO_REASON;
+    return DAGNY_LIBRARY_FINE;
 }
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t dagny_library_robot_close(struct dagny_library_robot_decoder *decoder) {
-    uint8_t reason = DAGNY_LIBRARY_NO_REASON;
+    uint8_t reason = DAGNY_LIBRARY_FINE;
     {
         reason = dagny_library_robot_finish_region(decoder);
-        if (reason != DAGNY_LIBRARY_NO_REASON) {
+        if (reason != DAGNY_LIBRARY_FINE) {
             return reason;
         }
     }
@@ -1760,7 +1764,7 @@ static uint8_t dagny_library_robot_close(struct dagny_library_robot_decoder *dec
     } else {
         /* The frame is complete. */
     }
-    return reason == DAGNY_LIBRARY_NO_REASON ? dagny_library_robot_complete(decoder) : reason;
+    return reason == DAGNY_LIBRARY_FINE ? dagny_library_robot_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -1782,7 +1786,7 @@ static uint8_t dagny_library_robot_take(struct dagny_library_robot_decoder *deco
     } else {
         reason = dagny_library_robot_search(decoder, byte);
     }
-    if (reason == DAGNY_LIBRARY_NO_REASON && decoder->wire >= 1027U) {
+    if (reason == DAGNY_LIBRARY_FINE && decoder->wire >= 1027U) {
         reason = DAGNY_LIBRARY_LENGTH;
     }
     return reason;
@@ -1832,7 +1836,7 @@ void dagny_library_robot_decoder_push(struct dagny_library_robot_decoder *decode
     }
     if (decoder->state == DAGNY_LIBRARY_TAKING) {
         const uint8_t reason = dagny_library_robot_take(decoder, byte);
-        if (reason != DAGNY_LIBRARY_NO_REASON) {
+        if (reason != DAGNY_LIBRARY_FINE) {
             dagny_library_robot_judge(decoder, reason, byte);
         }
     } else {

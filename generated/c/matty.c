@@ -60,7 +60,7 @@ static bool matty_is_seven_bit(const void *at, size_t size) {
 static void matty_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
-    while (size > 0) {
+    while (size > 0U) {
         size--;
         target[size] = source[size];
     }
@@ -462,6 +462,9 @@ enum {
     MATTY_AFTER
 };
 
+/* A reason is kept in one byte. There is none so far. */
+#define MATTY_FINE ((uint8_t)MATTY_NO_REASON)
+
 /* Stands where a reason would: the candidate is a frame. */
 #define MATTY_FRAME 0xFFU
 
@@ -594,7 +597,8 @@ static size_t matty_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, uin
     uint8_t *const tail = &content[4U + payload];
     const uint16_t length = (uint16_t)(2U + payload);
     const uint16_t stuffed = (uint16_t)(4U + payload + 1U);
-    const uint16_t sum_at = (uint16_t)(tail - content);
+    const ptrdiff_t before = tail - content;
+    const uint16_t sum_at = (uint16_t)before;
     uint16_t from = 1;
     uint8_t *to = frame;
     uint8_t sum = 0x00U;
@@ -616,7 +620,8 @@ static size_t matty_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, uin
         *to = byte;
         to++;
     }
-    return (size_t)(to - frame);
+    const ptrdiff_t written = to - frame;
+    return (size_t)written;
 }
 
 /* --- frames, byte by byte --------------------------------------------------------------------- */
@@ -1102,7 +1107,7 @@ static uint8_t matty_pc_identify(const struct matty_pc_parts *parts, const uint8
         *message = MATTY_MESSAGE_GPS_MODE;
         return size != 1U ? MATTY_SIZE : MATTY_NO_REASON;
     default:
-        return MATTY_NO_REASON;
+        return MATTY_FINE;
     }
 }
 
@@ -1115,8 +1120,7 @@ static uint8_t matty_pc_complete(struct matty_pc_decoder *decoder) {
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_sum_8_negated_run(sum, &content[1U],
-                                      (size_t)(4U + decoder->payload) - (size_t)(1U));
+        sum = matty_sum_8_negated_run(sum, &content[1U], 4U + (size_t)decoder->payload - 1U);
         due = matty_sum_8_negated_final(sum);
         if (content[4U + decoder->payload] != (uint8_t)due) {
             return MATTY_CHECKSUM;
@@ -1130,11 +1134,11 @@ static uint8_t matty_pc_complete(struct matty_pc_decoder *decoder) {
     }
     event.payload = &content[4];
     reason = matty_pc_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != MATTY_NO_REASON) {
+    if (reason != MATTY_FINE) {
         return reason;
     }
     matty_pc_end_noise(decoder);
-    event.kind = message == MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
+    event.kind = message == (uint8_t)MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
     event.reason = MATTY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -1161,13 +1165,13 @@ static uint8_t matty_pc_read_length(struct matty_pc_decoder *decoder, uint16_t l
         return MATTY_LENGTH;
     }
     matty_pc_set_payload(decoder, (uint16_t)(size - 2U));
-    return MATTY_NO_REASON;
+    return MATTY_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t matty_pc_take_head(struct matty_pc_decoder *decoder, uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = MATTY_NO_REASON;
+    uint8_t reason = MATTY_FINE;
     switch (index) {
     case 0:
         if (byte != 0x55U) {
@@ -1188,14 +1192,14 @@ static uint8_t matty_pc_cross(struct matty_pc_decoder *decoder) {
     if (decoder->content == decoder->payload + 5U) {
         return matty_pc_complete(decoder);
     }
-    return MATTY_NO_REASON;
+    return MATTY_FINE;
 }
 
 /* One byte of content. */
 static uint8_t matty_pc_accept(struct matty_pc_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
     bool crosses = true;
-    uint8_t reason = MATTY_NO_REASON;
+    uint8_t reason = MATTY_FINE;
     if (index >= decoder->payload + 5U) {
         return matty_pc_surplus(decoder);
     }
@@ -1208,7 +1212,7 @@ static uint8_t matty_pc_accept(struct matty_pc_decoder *decoder, uint8_t byte) {
     } else {
         /* A byte behind the payload is looked at when all are there. */
     }
-    if (reason == MATTY_NO_REASON && crosses) {
+    if (reason == MATTY_FINE && crosses) {
         reason = matty_pc_cross(decoder);
     }
     return reason;
@@ -1221,7 +1225,7 @@ static uint8_t matty_pc_unstuff(struct matty_pc_decoder *decoder, uint8_t byte) 
         switch (byte) {
         case 0x56U:
             decoder->node = 1;
-            return MATTY_NO_REASON;
+            return MATTY_FINE;
         case 0x55U:
             return MATTY_STUFFING;
         default:
@@ -1266,7 +1270,7 @@ static uint8_t matty_pc_take(struct matty_pc_decoder *decoder, uint8_t byte) {
     } else {
         reason = matty_pc_pass(decoder, byte);
     }
-    if (reason == MATTY_NO_REASON && decoder->wire >= 250U) {
+    if (reason == MATTY_FINE && decoder->wire >= 250U) {
         reason = MATTY_LENGTH;
     }
     return reason;
@@ -1321,7 +1325,7 @@ static void matty_pc_seek(struct matty_pc_decoder *decoder, uint8_t byte) {
 void matty_pc_decoder_push(struct matty_pc_decoder *decoder, uint8_t byte) {
     if (decoder->state == MATTY_TAKING) {
         const uint8_t reason = matty_pc_take(decoder, byte);
-        if (reason != MATTY_NO_REASON) {
+        if (reason != MATTY_FINE) {
             matty_pc_judge(decoder, reason, byte);
         }
     } else {
@@ -1449,11 +1453,11 @@ static size_t matty_pc_hand_over(struct matty_pc_decoder *decoder, const uint8_t
     }
     event.payload = &content[4];
     reason = matty_pc_identify(&event.parts, event.payload, (uint16_t)payload, &message);
-    if (reason != MATTY_NO_REASON) {
+    if (reason != MATTY_FINE) {
         return 0;
     }
     matty_pc_end_noise(decoder);
-    event.kind = message == MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
+    event.kind = message == (uint8_t)MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
     event.reason = MATTY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
@@ -1501,7 +1505,7 @@ static size_t matty_pc_take_whole(struct matty_pc_decoder *decoder, const uint8_
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_sum_8_negated_run(sum, &content[1U], (size_t)(4U + payload) - (size_t)(1U));
+        sum = matty_sum_8_negated_run(sum, &content[1U], 4U + payload - 1U);
         due = matty_sum_8_negated_final(sum);
         if (content[4U + payload] != (uint8_t)due) {
             return 0;
@@ -1615,7 +1619,7 @@ static uint8_t matty_esp_identify(const struct matty_esp_parts *parts, const uin
         }
         return (uint8_t)matty_gps_check(payload, size, NULL);
     default:
-        return MATTY_NO_REASON;
+        return MATTY_FINE;
     }
 }
 
@@ -1628,8 +1632,7 @@ static uint8_t matty_esp_complete(struct matty_esp_decoder *decoder) {
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_sum_8_negated_run(sum, &content[1U],
-                                      (size_t)(4U + decoder->payload) - (size_t)(1U));
+        sum = matty_sum_8_negated_run(sum, &content[1U], 4U + (size_t)decoder->payload - 1U);
         due = matty_sum_8_negated_final(sum);
         if (content[4U + decoder->payload] != (uint8_t)due) {
             return MATTY_CHECKSUM;
@@ -1643,11 +1646,11 @@ static uint8_t matty_esp_complete(struct matty_esp_decoder *decoder) {
     }
     event.payload = &content[4];
     reason = matty_esp_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != MATTY_NO_REASON) {
+    if (reason != MATTY_FINE) {
         return reason;
     }
     matty_esp_end_noise(decoder);
-    event.kind = message == MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
+    event.kind = message == (uint8_t)MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
     event.reason = MATTY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -1674,14 +1677,14 @@ static uint8_t matty_esp_read_length(struct matty_esp_decoder *decoder, uint16_t
         return MATTY_LENGTH;
     }
     matty_esp_set_payload(decoder, (uint16_t)(size - 2U));
-    return MATTY_NO_REASON;
+    return MATTY_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t matty_esp_take_head(struct matty_esp_decoder *decoder, uint16_t index,
                                    uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = MATTY_NO_REASON;
+    uint8_t reason = MATTY_FINE;
     switch (index) {
     case 0:
         if (byte != 0x55U) {
@@ -1702,14 +1705,14 @@ static uint8_t matty_esp_cross(struct matty_esp_decoder *decoder) {
     if (decoder->content == decoder->payload + 5U) {
         return matty_esp_complete(decoder);
     }
-    return MATTY_NO_REASON;
+    return MATTY_FINE;
 }
 
 /* One byte of content. */
 static uint8_t matty_esp_accept(struct matty_esp_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
     bool crosses = true;
-    uint8_t reason = MATTY_NO_REASON;
+    uint8_t reason = MATTY_FINE;
     if (index >= decoder->payload + 5U) {
         return matty_esp_surplus(decoder);
     }
@@ -1722,7 +1725,7 @@ static uint8_t matty_esp_accept(struct matty_esp_decoder *decoder, uint8_t byte)
     } else {
         /* A byte behind the payload is looked at when all are there. */
     }
-    if (reason == MATTY_NO_REASON && crosses) {
+    if (reason == MATTY_FINE && crosses) {
         reason = matty_esp_cross(decoder);
     }
     return reason;
@@ -1735,7 +1738,7 @@ static uint8_t matty_esp_unstuff(struct matty_esp_decoder *decoder, uint8_t byte
         switch (byte) {
         case 0x56U:
             decoder->node = 1;
-            return MATTY_NO_REASON;
+            return MATTY_FINE;
         case 0x55U:
             return MATTY_STUFFING;
         default:
@@ -1780,7 +1783,7 @@ static uint8_t matty_esp_take(struct matty_esp_decoder *decoder, uint8_t byte) {
     } else {
         reason = matty_esp_pass(decoder, byte);
     }
-    if (reason == MATTY_NO_REASON && decoder->wire >= 250U) {
+    if (reason == MATTY_FINE && decoder->wire >= 250U) {
         reason = MATTY_LENGTH;
     }
     return reason;
@@ -1835,7 +1838,7 @@ static void matty_esp_seek(struct matty_esp_decoder *decoder, uint8_t byte) {
 void matty_esp_decoder_push(struct matty_esp_decoder *decoder, uint8_t byte) {
     if (decoder->state == MATTY_TAKING) {
         const uint8_t reason = matty_esp_take(decoder, byte);
-        if (reason != MATTY_NO_REASON) {
+        if (reason != MATTY_FINE) {
             matty_esp_judge(decoder, reason, byte);
         }
     } else {
@@ -1963,11 +1966,11 @@ static size_t matty_esp_hand_over(struct matty_esp_decoder *decoder, const uint8
     }
     event.payload = &content[4];
     reason = matty_esp_identify(&event.parts, event.payload, (uint16_t)payload, &message);
-    if (reason != MATTY_NO_REASON) {
+    if (reason != MATTY_FINE) {
         return 0;
     }
     matty_esp_end_noise(decoder);
-    event.kind = message == MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
+    event.kind = message == (uint8_t)MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
     event.reason = MATTY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
@@ -2015,7 +2018,7 @@ static size_t matty_esp_take_whole(struct matty_esp_decoder *decoder, const uint
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_sum_8_negated_run(sum, &content[1U], (size_t)(4U + payload) - (size_t)(1U));
+        sum = matty_sum_8_negated_run(sum, &content[1U], 4U + payload - 1U);
         due = matty_sum_8_negated_final(sum);
         if (content[4U + payload] != (uint8_t)due) {
             return 0;

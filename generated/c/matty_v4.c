@@ -70,7 +70,7 @@ static bool matty_v4_is_seven_bit(const void *at, size_t size) {
 static void matty_v4_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
-    while (size > 0) {
+    while (size > 0U) {
         size--;
         target[size] = source[size];
     }
@@ -590,6 +590,9 @@ enum {
     MATTY_V4_AFTER
 };
 
+/* A reason is kept in one byte. There is none so far. */
+#define MATTY_V4_FINE ((uint8_t)MATTY_V4_NO_REASON)
+
 /* Stands where a reason would: the candidate is a frame. */
 #define MATTY_V4_FRAME 0xFFU
 
@@ -722,7 +725,8 @@ static size_t matty_v4_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, 
     uint8_t *const tail = &content[4U + payload];
     const uint16_t length = (uint16_t)(2U + payload);
     const uint16_t stuffed = (uint16_t)(4U + payload + 1U);
-    const uint16_t sum_at = (uint16_t)(tail - content);
+    const ptrdiff_t before = tail - content;
+    const uint16_t sum_at = (uint16_t)before;
     uint16_t from = 1;
     uint8_t *to = frame;
     uint8_t sum = 0x00U;
@@ -744,7 +748,8 @@ static size_t matty_v4_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, 
         *to = byte;
         to++;
     }
-    return (size_t)(to - frame);
+    const ptrdiff_t written = to - frame;
+    return (size_t)written;
 }
 
 /* --- frames, byte by byte --------------------------------------------------------------------- */
@@ -1355,7 +1360,7 @@ static uint8_t matty_v4_pc_identify(const struct matty_v4_pc_parts *parts, const
         *message = MATTY_V4_MESSAGE_LED;
         return size != 4U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     default:
-        return MATTY_V4_NO_REASON;
+        return MATTY_V4_FINE;
     }
 }
 
@@ -1368,8 +1373,7 @@ static uint8_t matty_v4_pc_complete(struct matty_v4_pc_decoder *decoder) {
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_v4_sum_8_negated_run(sum, &content[1U],
-                                         (size_t)(4U + decoder->payload) - (size_t)(1U));
+        sum = matty_v4_sum_8_negated_run(sum, &content[1U], 4U + (size_t)decoder->payload - 1U);
         due = matty_v4_sum_8_negated_final(sum);
         if (content[4U + decoder->payload] != (uint8_t)due) {
             return MATTY_V4_CHECKSUM;
@@ -1383,11 +1387,11 @@ static uint8_t matty_v4_pc_complete(struct matty_v4_pc_decoder *decoder) {
     }
     event.payload = &content[4];
     reason = matty_v4_pc_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != MATTY_V4_NO_REASON) {
+    if (reason != MATTY_V4_FINE) {
         return reason;
     }
     matty_v4_pc_end_noise(decoder);
-    event.kind = message == MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
+    event.kind = message == (uint8_t)MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
     event.reason = MATTY_V4_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -1414,14 +1418,14 @@ static uint8_t matty_v4_pc_read_length(struct matty_v4_pc_decoder *decoder, uint
         return MATTY_V4_LENGTH;
     }
     matty_v4_pc_set_payload(decoder, (uint16_t)(size - 2U));
-    return MATTY_V4_NO_REASON;
+    return MATTY_V4_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t matty_v4_pc_take_head(struct matty_v4_pc_decoder *decoder, uint16_t index,
                                      uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = MATTY_V4_NO_REASON;
+    uint8_t reason = MATTY_V4_FINE;
     switch (index) {
     case 0:
         if (byte != 0x55U) {
@@ -1442,14 +1446,14 @@ static uint8_t matty_v4_pc_cross(struct matty_v4_pc_decoder *decoder) {
     if (decoder->content == decoder->payload + 5U) {
         return matty_v4_pc_complete(decoder);
     }
-    return MATTY_V4_NO_REASON;
+    return MATTY_V4_FINE;
 }
 
 /* One byte of content. */
 static uint8_t matty_v4_pc_accept(struct matty_v4_pc_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
     bool crosses = true;
-    uint8_t reason = MATTY_V4_NO_REASON;
+    uint8_t reason = MATTY_V4_FINE;
     if (index >= decoder->payload + 5U) {
         return matty_v4_pc_surplus(decoder);
     }
@@ -1462,7 +1466,7 @@ static uint8_t matty_v4_pc_accept(struct matty_v4_pc_decoder *decoder, uint8_t b
     } else {
         /* A byte behind the payload is looked at when all are there. */
     }
-    if (reason == MATTY_V4_NO_REASON && crosses) {
+    if (reason == MATTY_V4_FINE && crosses) {
         reason = matty_v4_pc_cross(decoder);
     }
     return reason;
@@ -1475,7 +1479,7 @@ static uint8_t matty_v4_pc_unstuff(struct matty_v4_pc_decoder *decoder, uint8_t 
         switch (byte) {
         case 0x56U:
             decoder->node = 1;
-            return MATTY_V4_NO_REASON;
+            return MATTY_V4_FINE;
         case 0x55U:
             return MATTY_V4_STUFFING;
         default:
@@ -1520,7 +1524,7 @@ static uint8_t matty_v4_pc_take(struct matty_v4_pc_decoder *decoder, uint8_t byt
     } else {
         reason = matty_v4_pc_pass(decoder, byte);
     }
-    if (reason == MATTY_V4_NO_REASON && decoder->wire >= 252U) {
+    if (reason == MATTY_V4_FINE && decoder->wire >= 252U) {
         reason = MATTY_V4_LENGTH;
     }
     return reason;
@@ -1575,7 +1579,7 @@ static void matty_v4_pc_seek(struct matty_v4_pc_decoder *decoder, uint8_t byte) 
 void matty_v4_pc_decoder_push(struct matty_v4_pc_decoder *decoder, uint8_t byte) {
     if (decoder->state == MATTY_V4_TAKING) {
         const uint8_t reason = matty_v4_pc_take(decoder, byte);
-        if (reason != MATTY_V4_NO_REASON) {
+        if (reason != MATTY_V4_FINE) {
             matty_v4_pc_judge(decoder, reason, byte);
         }
     } else {
@@ -1703,11 +1707,11 @@ static size_t matty_v4_pc_hand_over(struct matty_v4_pc_decoder *decoder, const u
     }
     event.payload = &content[4];
     reason = matty_v4_pc_identify(&event.parts, event.payload, (uint16_t)payload, &message);
-    if (reason != MATTY_V4_NO_REASON) {
+    if (reason != MATTY_V4_FINE) {
         return 0;
     }
     matty_v4_pc_end_noise(decoder);
-    event.kind = message == MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
+    event.kind = message == (uint8_t)MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
     event.reason = MATTY_V4_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
@@ -1755,7 +1759,7 @@ static size_t matty_v4_pc_take_whole(struct matty_v4_pc_decoder *decoder, const 
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_v4_sum_8_negated_run(sum, &content[1U], (size_t)(4U + payload) - (size_t)(1U));
+        sum = matty_v4_sum_8_negated_run(sum, &content[1U], 4U + payload - 1U);
         due = matty_v4_sum_8_negated_final(sum);
         if (content[4U + payload] != (uint8_t)due) {
             return 0;
@@ -1875,7 +1879,7 @@ static uint8_t matty_v4_esp_identify(const struct matty_v4_esp_parts *parts, con
         *message = MATTY_V4_MESSAGE_VERSION;
         return size != 2U ? MATTY_V4_SIZE : MATTY_V4_NO_REASON;
     default:
-        return MATTY_V4_NO_REASON;
+        return MATTY_V4_FINE;
     }
 }
 
@@ -1888,8 +1892,7 @@ static uint8_t matty_v4_esp_complete(struct matty_v4_esp_decoder *decoder) {
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_v4_sum_8_negated_run(sum, &content[1U],
-                                         (size_t)(4U + decoder->payload) - (size_t)(1U));
+        sum = matty_v4_sum_8_negated_run(sum, &content[1U], 4U + (size_t)decoder->payload - 1U);
         due = matty_v4_sum_8_negated_final(sum);
         if (content[4U + decoder->payload] != (uint8_t)due) {
             return MATTY_V4_CHECKSUM;
@@ -1903,11 +1906,11 @@ static uint8_t matty_v4_esp_complete(struct matty_v4_esp_decoder *decoder) {
     }
     event.payload = &content[4];
     reason = matty_v4_esp_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != MATTY_V4_NO_REASON) {
+    if (reason != MATTY_V4_FINE) {
         return reason;
     }
     matty_v4_esp_end_noise(decoder);
-    event.kind = message == MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
+    event.kind = message == (uint8_t)MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
     event.reason = MATTY_V4_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -1934,14 +1937,14 @@ static uint8_t matty_v4_esp_read_length(struct matty_v4_esp_decoder *decoder, ui
         return MATTY_V4_LENGTH;
     }
     matty_v4_esp_set_payload(decoder, (uint16_t)(size - 2U));
-    return MATTY_V4_NO_REASON;
+    return MATTY_V4_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t matty_v4_esp_take_head(struct matty_v4_esp_decoder *decoder, uint16_t index,
                                       uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = MATTY_V4_NO_REASON;
+    uint8_t reason = MATTY_V4_FINE;
     switch (index) {
     case 0:
         if (byte != 0x55U) {
@@ -1962,14 +1965,14 @@ static uint8_t matty_v4_esp_cross(struct matty_v4_esp_decoder *decoder) {
     if (decoder->content == decoder->payload + 5U) {
         return matty_v4_esp_complete(decoder);
     }
-    return MATTY_V4_NO_REASON;
+    return MATTY_V4_FINE;
 }
 
 /* One byte of content. */
 static uint8_t matty_v4_esp_accept(struct matty_v4_esp_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
     bool crosses = true;
-    uint8_t reason = MATTY_V4_NO_REASON;
+    uint8_t reason = MATTY_V4_FINE;
     if (index >= decoder->payload + 5U) {
         return matty_v4_esp_surplus(decoder);
     }
@@ -1982,7 +1985,7 @@ static uint8_t matty_v4_esp_accept(struct matty_v4_esp_decoder *decoder, uint8_t
     } else {
         /* A byte behind the payload is looked at when all are there. */
     }
-    if (reason == MATTY_V4_NO_REASON && crosses) {
+    if (reason == MATTY_V4_FINE && crosses) {
         reason = matty_v4_esp_cross(decoder);
     }
     return reason;
@@ -1995,7 +1998,7 @@ static uint8_t matty_v4_esp_unstuff(struct matty_v4_esp_decoder *decoder, uint8_
         switch (byte) {
         case 0x56U:
             decoder->node = 1;
-            return MATTY_V4_NO_REASON;
+            return MATTY_V4_FINE;
         case 0x55U:
             return MATTY_V4_STUFFING;
         default:
@@ -2040,7 +2043,7 @@ static uint8_t matty_v4_esp_take(struct matty_v4_esp_decoder *decoder, uint8_t b
     } else {
         reason = matty_v4_esp_pass(decoder, byte);
     }
-    if (reason == MATTY_V4_NO_REASON && decoder->wire >= 252U) {
+    if (reason == MATTY_V4_FINE && decoder->wire >= 252U) {
         reason = MATTY_V4_LENGTH;
     }
     return reason;
@@ -2095,7 +2098,7 @@ static void matty_v4_esp_seek(struct matty_v4_esp_decoder *decoder, uint8_t byte
 void matty_v4_esp_decoder_push(struct matty_v4_esp_decoder *decoder, uint8_t byte) {
     if (decoder->state == MATTY_V4_TAKING) {
         const uint8_t reason = matty_v4_esp_take(decoder, byte);
-        if (reason != MATTY_V4_NO_REASON) {
+        if (reason != MATTY_V4_FINE) {
             matty_v4_esp_judge(decoder, reason, byte);
         }
     } else {
@@ -2223,11 +2226,11 @@ static size_t matty_v4_esp_hand_over(struct matty_v4_esp_decoder *decoder, const
     }
     event.payload = &content[4];
     reason = matty_v4_esp_identify(&event.parts, event.payload, (uint16_t)payload, &message);
-    if (reason != MATTY_V4_NO_REASON) {
+    if (reason != MATTY_V4_FINE) {
         return 0;
     }
     matty_v4_esp_end_noise(decoder);
-    event.kind = message == MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
+    event.kind = message == (uint8_t)MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
     event.reason = MATTY_V4_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
@@ -2275,7 +2278,7 @@ static size_t matty_v4_esp_take_whole(struct matty_v4_esp_decoder *decoder, cons
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_v4_sum_8_negated_run(sum, &content[1U], (size_t)(4U + payload) - (size_t)(1U));
+        sum = matty_v4_sum_8_negated_run(sum, &content[1U], 4U + payload - 1U);
         due = matty_v4_sum_8_negated_final(sum);
         if (content[4U + payload] != (uint8_t)due) {
             return 0;

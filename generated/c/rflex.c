@@ -583,7 +583,7 @@ RFLEX_INLINE void rflex_sonar_data_store(const struct rflex_sonar_data *message,
     rflex_store_u32be(payload, message->unknown);
     rflex_store_u32be(payload + 4, message->timestamp);
     for (size_t i = 0; i < message->readings_count; i++) {
-        uint8_t *at_i = payload + 8 + 3 * i;
+        uint8_t *at_i = payload + 8U + 3U * i;
         at_i[0] = message->readings[i].cluster;
         rflex_store_u16be(at_i + 1, message->readings[i].distance);
     }
@@ -615,7 +615,7 @@ static enum rflex_result rflex_sonar_data_check(const uint8_t *payload, size_t s
         return RFLEX_ERROR_SIZE;
     }
     while (at < size) {
-        at += 3;
+        at += 3U;
     }
     if (at != size) {
         return RFLEX_ERROR_SIZE;
@@ -631,7 +631,7 @@ void rflex_sonar_data_load(struct rflex_sonar_data *message, const uint8_t *payl
     while (at < payload + size) {
         message->readings[message->readings_count].cluster = at[0];
         message->readings[message->readings_count].distance = rflex_load_u16be(at + 1);
-        at += 3;
+        at += 3U;
         message->readings_count++;
     }
 }
@@ -870,6 +870,9 @@ enum {
     RFLEX_AFTER
 };
 
+/* A reason is kept in one byte. There is none so far. */
+#define RFLEX_FINE ((uint8_t)RFLEX_NO_REASON)
+
 /* Stands where a reason would: the candidate is a frame. */
 #define RFLEX_FRAME 0xFFU
 
@@ -1023,7 +1026,7 @@ static size_t rflex_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_, u
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_xor_8_run(sum, &content[6U], (size_t)(6U + payload) - (size_t)(6U));
+        sum = rflex_xor_8_run(sum, &content[6U], 6U + payload - 6U);
         due = rflex_xor_8_final(sum);
         tail[0U] = (uint8_t)due;
     }
@@ -1057,7 +1060,8 @@ static size_t rflex_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_, u
     to++;
     *to = 0x03U;
     to++;
-    return (size_t)(to - frame);
+    const ptrdiff_t written = to - frame;
+    return (size_t)written;
 }
 
 /* --- frames, byte by byte --------------------------------------------------------------------- */
@@ -1991,7 +1995,7 @@ static uint8_t rflex_linux_identify(const struct rflex_linux_parts *parts, const
         *message = RFLEX_MESSAGE_CHECK_IO_CHANGED;
         return size != 4U ? RFLEX_SIZE : RFLEX_NO_REASON;
     default:
-        return RFLEX_NO_REASON;
+        return RFLEX_FINE;
     }
 }
 
@@ -2004,7 +2008,7 @@ static uint8_t rflex_linux_complete(struct rflex_linux_decoder *decoder) {
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_xor_8_run(sum, &content[6U], (size_t)(6U + decoder->payload) - (size_t)(6U));
+        sum = rflex_xor_8_run(sum, &content[6U], 6U + (size_t)decoder->payload - 6U);
         due = rflex_xor_8_final(sum);
         if (content[6U + decoder->payload] != (uint8_t)due) {
             return RFLEX_CHECKSUM;
@@ -2019,11 +2023,11 @@ static uint8_t rflex_linux_complete(struct rflex_linux_decoder *decoder) {
     }
     event.payload = &content[6];
     reason = rflex_linux_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != RFLEX_NO_REASON) {
+    if (reason != RFLEX_FINE) {
         return reason;
     }
     rflex_linux_end_noise(decoder);
-    event.kind = message == RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
+    event.kind = message == (uint8_t)RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
     event.reason = RFLEX_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -2050,14 +2054,14 @@ static uint8_t rflex_linux_read_length(struct rflex_linux_decoder *decoder, uint
         return RFLEX_LENGTH;
     }
     rflex_linux_set_payload(decoder, (uint16_t)(size - 0U));
-    return RFLEX_NO_REASON;
+    return RFLEX_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t rflex_linux_take_head(struct rflex_linux_decoder *decoder, uint16_t index,
                                      uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = RFLEX_NO_REASON;
+    uint8_t reason = RFLEX_FINE;
     switch (index) {
     case 0:
         if (byte != 0x1BU) {
@@ -2086,7 +2090,7 @@ static uint8_t rflex_linux_finish_region(struct rflex_linux_decoder *decoder) {
 /* One byte of content. */
 static uint8_t rflex_linux_accept(struct rflex_linux_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
-    uint8_t reason = RFLEX_NO_REASON;
+    uint8_t reason = RFLEX_FINE;
     if (index >= decoder->payload + 7U) {
         return rflex_linux_surplus(decoder);
     }
@@ -2112,13 +2116,13 @@ static uint8_t rflex_linux_unstuff(struct rflex_linux_decoder *decoder, uint8_t 
             if (decoder->content == decoder->payload + 7U) {
                 return rflex_linux_surplus(decoder);
             }
-            return RFLEX_NO_REASON;
+            return RFLEX_FINE;
         case 0x7CU:
             decoder->node = 2;
             if (decoder->content == decoder->payload + 7U) {
                 return rflex_linux_surplus(decoder);
             }
-            return RFLEX_NO_REASON;
+            return RFLEX_FINE;
         default:
             break;
         }
@@ -2139,7 +2143,7 @@ static uint8_t rflex_linux_unstuff(struct rflex_linux_decoder *decoder, uint8_t 
             if (decoder->content == decoder->payload + 7U) {
                 return rflex_linux_surplus(decoder);
             }
-            return RFLEX_NO_REASON;
+            return RFLEX_FINE;
         default:
             return RFLEX_STUFFING;
         }
@@ -2174,10 +2178,10 @@ static uint8_t rflex_linux_pass(struct rflex_linux_decoder *decoder, uint8_t byt
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t rflex_linux_close(struct rflex_linux_decoder *decoder) {
-    uint8_t reason = RFLEX_NO_REASON;
+    uint8_t reason = RFLEX_FINE;
     if (decoder->content >= 2U) {
         reason = rflex_linux_finish_region(decoder);
-        if (reason != RFLEX_NO_REASON) {
+        if (reason != RFLEX_FINE) {
             return reason;
         }
     }
@@ -2188,7 +2192,7 @@ static uint8_t rflex_linux_close(struct rflex_linux_decoder *decoder) {
     } else {
         /* The frame is complete. */
     }
-    return reason == RFLEX_NO_REASON ? rflex_linux_complete(decoder) : reason;
+    return reason == RFLEX_FINE ? rflex_linux_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -2208,11 +2212,11 @@ static uint8_t rflex_linux_search(struct rflex_linux_decoder *decoder, uint8_t b
             next = (uint8_t)(index == 0U ? 0x1BU : 0x03U);
         }
         reason = rflex_linux_pass(decoder, next);
-        if (reason != RFLEX_NO_REASON) {
+        if (reason != RFLEX_FINE) {
             return reason;
         }
     }
-    return RFLEX_NO_REASON;
+    return RFLEX_FINE;
 }
 
 /* The next byte of a candidate. */
@@ -2227,7 +2231,7 @@ static uint8_t rflex_linux_take(struct rflex_linux_decoder *decoder, uint8_t byt
         reason = (decoder->wire > 2U) ? rflex_linux_search(decoder, byte)
                                       : rflex_linux_pass(decoder, byte);
     }
-    if (reason == RFLEX_NO_REASON && decoder->wire >= 782U) {
+    if (reason == RFLEX_FINE && decoder->wire >= 782U) {
         reason = RFLEX_LENGTH;
     }
     return reason;
@@ -2313,7 +2317,7 @@ static void rflex_linux_decide(struct rflex_linux_decoder *decoder, uint8_t byte
 void rflex_linux_decoder_push(struct rflex_linux_decoder *decoder, uint8_t byte) {
     if (decoder->state == RFLEX_TAKING) {
         const uint8_t reason = rflex_linux_take(decoder, byte);
-        if (reason != RFLEX_NO_REASON) {
+        if (reason != RFLEX_FINE) {
             rflex_linux_judge(decoder, reason, byte);
         }
     } else if (decoder->state == RFLEX_FAILED) {
@@ -2447,11 +2451,11 @@ static size_t rflex_linux_hand_over(struct rflex_linux_decoder *decoder, const u
     }
     event.payload = &content[6];
     reason = rflex_linux_identify(&event.parts, event.payload, (uint16_t)payload, &message);
-    if (reason != RFLEX_NO_REASON) {
+    if (reason != RFLEX_FINE) {
         return 0;
     }
     rflex_linux_end_noise(decoder);
-    event.kind = message == RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
+    event.kind = message == (uint8_t)RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
     event.reason = RFLEX_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
@@ -2504,7 +2508,7 @@ static size_t rflex_linux_take_whole(struct rflex_linux_decoder *decoder, const 
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_xor_8_run(sum, &content[6U], (size_t)(6U + payload) - (size_t)(6U));
+        sum = rflex_xor_8_run(sum, &content[6U], 6U + payload - 6U);
         due = rflex_xor_8_final(sum);
         if (content[6U + payload] != (uint8_t)due) {
             return 0;
@@ -2702,7 +2706,7 @@ static uint8_t rflex_flex_identify(const struct rflex_flex_parts *parts, const u
         *message = RFLEX_MESSAGE_CHANGED_BYTE;
         return size != 7U ? RFLEX_SIZE : RFLEX_NO_REASON;
     default:
-        return RFLEX_NO_REASON;
+        return RFLEX_FINE;
     }
 }
 
@@ -2715,7 +2719,7 @@ static uint8_t rflex_flex_complete(struct rflex_flex_decoder *decoder) {
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_xor_8_run(sum, &content[6U], (size_t)(6U + decoder->payload) - (size_t)(6U));
+        sum = rflex_xor_8_run(sum, &content[6U], 6U + (size_t)decoder->payload - 6U);
         due = rflex_xor_8_final(sum);
         if (content[6U + decoder->payload] != (uint8_t)due) {
             return RFLEX_CHECKSUM;
@@ -2730,11 +2734,11 @@ static uint8_t rflex_flex_complete(struct rflex_flex_decoder *decoder) {
     }
     event.payload = &content[6];
     reason = rflex_flex_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != RFLEX_NO_REASON) {
+    if (reason != RFLEX_FINE) {
         return reason;
     }
     rflex_flex_end_noise(decoder);
-    event.kind = message == RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
+    event.kind = message == (uint8_t)RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
     event.reason = RFLEX_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -2761,14 +2765,14 @@ static uint8_t rflex_flex_read_length(struct rflex_flex_decoder *decoder, uint16
         return RFLEX_LENGTH;
     }
     rflex_flex_set_payload(decoder, (uint16_t)(size - 0U));
-    return RFLEX_NO_REASON;
+    return RFLEX_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t rflex_flex_take_head(struct rflex_flex_decoder *decoder, uint16_t index,
                                     uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = RFLEX_NO_REASON;
+    uint8_t reason = RFLEX_FINE;
     switch (index) {
     case 0:
         if (byte != 0x1BU) {
@@ -2797,7 +2801,7 @@ static uint8_t rflex_flex_finish_region(struct rflex_flex_decoder *decoder) {
 /* One byte of content. */
 static uint8_t rflex_flex_accept(struct rflex_flex_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
-    uint8_t reason = RFLEX_NO_REASON;
+    uint8_t reason = RFLEX_FINE;
     if (index >= decoder->payload + 7U) {
         return rflex_flex_surplus(decoder);
     }
@@ -2823,13 +2827,13 @@ static uint8_t rflex_flex_unstuff(struct rflex_flex_decoder *decoder, uint8_t by
             if (decoder->content == decoder->payload + 7U) {
                 return rflex_flex_surplus(decoder);
             }
-            return RFLEX_NO_REASON;
+            return RFLEX_FINE;
         case 0x7CU:
             decoder->node = 2;
             if (decoder->content == decoder->payload + 7U) {
                 return rflex_flex_surplus(decoder);
             }
-            return RFLEX_NO_REASON;
+            return RFLEX_FINE;
         default:
             break;
         }
@@ -2850,7 +2854,7 @@ static uint8_t rflex_flex_unstuff(struct rflex_flex_decoder *decoder, uint8_t by
             if (decoder->content == decoder->payload + 7U) {
                 return rflex_flex_surplus(decoder);
             }
-            return RFLEX_NO_REASON;
+            return RFLEX_FINE;
         default:
             return RFLEX_STUFFING;
         }
@@ -2885,10 +2889,10 @@ static uint8_t rflex_flex_pass(struct rflex_flex_decoder *decoder, uint8_t byte)
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t rflex_flex_close(struct rflex_flex_decoder *decoder) {
-    uint8_t reason = RFLEX_NO_REASON;
+    uint8_t reason = RFLEX_FINE;
     if (decoder->content >= 2U) {
         reason = rflex_flex_finish_region(decoder);
-        if (reason != RFLEX_NO_REASON) {
+        if (reason != RFLEX_FINE) {
             return reason;
         }
     }
@@ -2899,7 +2903,7 @@ static uint8_t rflex_flex_close(struct rflex_flex_decoder *decoder) {
     } else {
         /* The frame is complete. */
     }
-    return reason == RFLEX_NO_REASON ? rflex_flex_complete(decoder) : reason;
+    return reason == RFLEX_FINE ? rflex_flex_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -2919,11 +2923,11 @@ static uint8_t rflex_flex_search(struct rflex_flex_decoder *decoder, uint8_t byt
             next = (uint8_t)(index == 0U ? 0x1BU : 0x03U);
         }
         reason = rflex_flex_pass(decoder, next);
-        if (reason != RFLEX_NO_REASON) {
+        if (reason != RFLEX_FINE) {
             return reason;
         }
     }
-    return RFLEX_NO_REASON;
+    return RFLEX_FINE;
 }
 
 /* The next byte of a candidate. */
@@ -2938,7 +2942,7 @@ static uint8_t rflex_flex_take(struct rflex_flex_decoder *decoder, uint8_t byte)
         reason = (decoder->wire > 2U) ? rflex_flex_search(decoder, byte)
                                       : rflex_flex_pass(decoder, byte);
     }
-    if (reason == RFLEX_NO_REASON && decoder->wire >= 782U) {
+    if (reason == RFLEX_FINE && decoder->wire >= 782U) {
         reason = RFLEX_LENGTH;
     }
     return reason;
@@ -3024,7 +3028,7 @@ static void rflex_flex_decide(struct rflex_flex_decoder *decoder, uint8_t byte) 
 void rflex_flex_decoder_push(struct rflex_flex_decoder *decoder, uint8_t byte) {
     if (decoder->state == RFLEX_TAKING) {
         const uint8_t reason = rflex_flex_take(decoder, byte);
-        if (reason != RFLEX_NO_REASON) {
+        if (reason != RFLEX_FINE) {
             rflex_flex_judge(decoder, reason, byte);
         }
     } else if (decoder->state == RFLEX_FAILED) {
@@ -3158,11 +3162,11 @@ static size_t rflex_flex_hand_over(struct rflex_flex_decoder *decoder, const uin
     }
     event.payload = &content[6];
     reason = rflex_flex_identify(&event.parts, event.payload, (uint16_t)payload, &message);
-    if (reason != RFLEX_NO_REASON) {
+    if (reason != RFLEX_FINE) {
         return 0;
     }
     rflex_flex_end_noise(decoder);
-    event.kind = message == RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
+    event.kind = message == (uint8_t)RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
     event.reason = RFLEX_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
@@ -3215,7 +3219,7 @@ static size_t rflex_flex_take_whole(struct rflex_flex_decoder *decoder, const ui
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_xor_8_run(sum, &content[6U], (size_t)(6U + payload) - (size_t)(6U));
+        sum = rflex_xor_8_run(sum, &content[6U], 6U + payload - 6U);
         due = rflex_xor_8_final(sum);
         if (content[6U + payload] != (uint8_t)due) {
             return 0;

@@ -583,7 +583,7 @@ RFLEX_API void rflex_sonar_data_load(struct rflex_sonar_data *message, const uin
 /** Reads readings[index] from a payload that was received, unchecked. */
 static inline void rflex_sonar_data_readings_at(const uint8_t *payload, size_t index,
                                                 struct rflex_sonar_data_readings *out) {
-    const uint8_t *at = payload + 8 + 3 * index;
+    const uint8_t *at = payload + 8U + 3U * index;
     out->cluster = at[0];
     out->distance = rflex_load_u16be(at + 1);
 }

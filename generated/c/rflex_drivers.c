@@ -54,7 +54,7 @@ static uint32_t rflex_drivers_load_u32be(const uint8_t *at) {
 static void rflex_drivers_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
-    while (size > 0) {
+    while (size > 0U) {
         size--;
         target[size] = source[size];
     }
@@ -726,7 +726,7 @@ RFLEX_DRIVERS_INLINE void rflex_drivers_sonar_data_store(
     rflex_drivers_store_u32be(payload, message->retval);
     rflex_drivers_store_u32be(payload + 4, message->timestamp);
     for (size_t i = 0; i < message->readings_count; i++) {
-        uint8_t *at_i = payload + 8 + 3 * i;
+        uint8_t *at_i = payload + 8U + 3U * i;
         at_i[0] = message->readings[i].cluster;
         rflex_drivers_store_u16be(at_i + 1, message->readings[i].distance);
     }
@@ -760,7 +760,7 @@ static enum rflex_drivers_result rflex_drivers_sonar_data_check(const uint8_t *p
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
     while (at < size) {
-        at += 3;
+        at += 3U;
     }
     if (at != size) {
         return RFLEX_DRIVERS_ERROR_SIZE;
@@ -777,7 +777,7 @@ void rflex_drivers_sonar_data_load(struct rflex_drivers_sonar_data *message, con
     while (at < payload + size) {
         message->readings[message->readings_count].cluster = at[0];
         message->readings[message->readings_count].distance = rflex_drivers_load_u16be(at + 1);
-        at += 3;
+        at += 3U;
         message->readings_count++;
     }
 }
@@ -1131,6 +1131,9 @@ enum {
     RFLEX_DRIVERS_AFTER
 };
 
+/* A reason is kept in one byte. There is none so far. */
+#define RFLEX_DRIVERS_FINE ((uint8_t)RFLEX_DRIVERS_NO_REASON)
+
 /* Stands where a reason would: the candidate is a frame. */
 #define RFLEX_DRIVERS_FRAME 0xFFU
 
@@ -1273,7 +1276,8 @@ static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t c
     uint8_t *const tail = &content[6U + payload];
     const uint16_t length = (uint16_t)(payload);
     const uint16_t stuffed = (uint16_t)(6U + payload + 1U);
-    const uint16_t sum_at = (uint16_t)(tail - content);
+    const ptrdiff_t before = tail - content;
+    const uint16_t sum_at = (uint16_t)before;
     uint16_t from = 2;
     uint8_t *to = frame;
     uint8_t sum = 0x00U;
@@ -1314,7 +1318,8 @@ static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t c
     to++;
     *to = 0x03U;
     to++;
-    return (size_t)(to - frame);
+    const ptrdiff_t written = to - frame;
+    return (size_t)written;
 }
 
 /* --- frames, byte by byte --------------------------------------------------------------------- */
@@ -2460,7 +2465,7 @@ static uint8_t rflex_drivers_linux_identify(const struct rflex_drivers_linux_par
         *message = RFLEX_DRIVERS_MESSAGE_IR_RUN;
         return size != 21U ? RFLEX_DRIVERS_SIZE : RFLEX_DRIVERS_NO_REASON;
     default:
-        return RFLEX_DRIVERS_NO_REASON;
+        return RFLEX_DRIVERS_FINE;
     }
 }
 
@@ -2473,8 +2478,7 @@ static uint8_t rflex_drivers_linux_complete(struct rflex_drivers_linux_decoder *
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_drivers_xor_8_run(sum, &content[2U],
-                                      (size_t)(6U + decoder->payload) - (size_t)(2U));
+        sum = rflex_drivers_xor_8_run(sum, &content[2U], 6U + (size_t)decoder->payload - 2U);
         due = rflex_drivers_xor_8_final(sum);
         if (content[6U + decoder->payload] != (uint8_t)due) {
             return RFLEX_DRIVERS_CHECKSUM;
@@ -2489,12 +2493,12 @@ static uint8_t rflex_drivers_linux_complete(struct rflex_drivers_linux_decoder *
     }
     event.payload = &content[6];
     reason = rflex_drivers_linux_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != RFLEX_DRIVERS_NO_REASON) {
+    if (reason != RFLEX_DRIVERS_FINE) {
         return reason;
     }
     rflex_drivers_linux_end_noise(decoder);
-    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
-                                                     : RFLEX_DRIVERS_MESSAGE;
+    event.kind = message == (uint8_t)RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
+                                                              : RFLEX_DRIVERS_MESSAGE;
     event.reason = RFLEX_DRIVERS_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -2523,14 +2527,14 @@ static uint8_t rflex_drivers_linux_read_length(struct rflex_drivers_linux_decode
         return RFLEX_DRIVERS_LENGTH;
     }
     rflex_drivers_linux_set_payload(decoder, (uint16_t)(size - 0U));
-    return RFLEX_DRIVERS_NO_REASON;
+    return RFLEX_DRIVERS_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t rflex_drivers_linux_take_head(struct rflex_drivers_linux_decoder *decoder,
                                              uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = RFLEX_DRIVERS_NO_REASON;
+    uint8_t reason = RFLEX_DRIVERS_FINE;
     switch (index) {
     case 0:
         if (byte != 0x1BU) {
@@ -2560,7 +2564,7 @@ static uint8_t rflex_drivers_linux_finish_region(struct rflex_drivers_linux_deco
 static uint8_t rflex_drivers_linux_accept(struct rflex_drivers_linux_decoder *decoder,
                                           uint8_t byte) {
     const uint16_t index = decoder->content;
-    uint8_t reason = RFLEX_DRIVERS_NO_REASON;
+    uint8_t reason = RFLEX_DRIVERS_FINE;
     if (index >= decoder->payload + 7U) {
         return rflex_drivers_linux_surplus(decoder);
     }
@@ -2587,13 +2591,13 @@ static uint8_t rflex_drivers_linux_unstuff(struct rflex_drivers_linux_decoder *d
             if (decoder->content == decoder->payload + 7U) {
                 return rflex_drivers_linux_surplus(decoder);
             }
-            return RFLEX_DRIVERS_NO_REASON;
+            return RFLEX_DRIVERS_FINE;
         case 0x7CU:
             decoder->node = 2;
             if (decoder->content == decoder->payload + 7U) {
                 return rflex_drivers_linux_surplus(decoder);
             }
-            return RFLEX_DRIVERS_NO_REASON;
+            return RFLEX_DRIVERS_FINE;
         default:
             break;
         }
@@ -2614,7 +2618,7 @@ static uint8_t rflex_drivers_linux_unstuff(struct rflex_drivers_linux_decoder *d
             if (decoder->content == decoder->payload + 7U) {
                 return rflex_drivers_linux_surplus(decoder);
             }
-            return RFLEX_DRIVERS_NO_REASON;
+            return RFLEX_DRIVERS_FINE;
         default:
             return RFLEX_DRIVERS_STUFFING;
         }
@@ -2649,10 +2653,10 @@ static uint8_t rflex_drivers_linux_pass(struct rflex_drivers_linux_decoder *deco
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t rflex_drivers_linux_close(struct rflex_drivers_linux_decoder *decoder) {
-    uint8_t reason = RFLEX_DRIVERS_NO_REASON;
+    uint8_t reason = RFLEX_DRIVERS_FINE;
     if (decoder->content >= 2U) {
         reason = rflex_drivers_linux_finish_region(decoder);
-        if (reason != RFLEX_DRIVERS_NO_REASON) {
+        if (reason != RFLEX_DRIVERS_FINE) {
             return reason;
         }
     }
@@ -2663,7 +2667,7 @@ static uint8_t rflex_drivers_linux_close(struct rflex_drivers_linux_decoder *dec
     } else {
         /* The frame is complete. */
     }
-    return reason == RFLEX_DRIVERS_NO_REASON ? rflex_drivers_linux_complete(decoder) : reason;
+    return reason == RFLEX_DRIVERS_FINE ? rflex_drivers_linux_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -2684,11 +2688,11 @@ static uint8_t rflex_drivers_linux_search(struct rflex_drivers_linux_decoder *de
             next = (uint8_t)(index == 0U ? 0x1BU : 0x03U);
         }
         reason = rflex_drivers_linux_pass(decoder, next);
-        if (reason != RFLEX_DRIVERS_NO_REASON) {
+        if (reason != RFLEX_DRIVERS_FINE) {
             return reason;
         }
     }
-    return RFLEX_DRIVERS_NO_REASON;
+    return RFLEX_DRIVERS_FINE;
 }
 
 /* The next byte of a candidate. */
@@ -2703,7 +2707,7 @@ static uint8_t rflex_drivers_linux_take(struct rflex_drivers_linux_decoder *deco
         reason = (decoder->wire > 2U) ? rflex_drivers_linux_search(decoder, byte)
                                       : rflex_drivers_linux_pass(decoder, byte);
     }
-    if (reason == RFLEX_DRIVERS_NO_REASON && decoder->wire >= 780U) {
+    if (reason == RFLEX_DRIVERS_FINE && decoder->wire >= 780U) {
         reason = RFLEX_DRIVERS_LENGTH;
     }
     return reason;
@@ -2790,7 +2794,7 @@ static void rflex_drivers_linux_decide(struct rflex_drivers_linux_decoder *decod
 void rflex_drivers_linux_decoder_push(struct rflex_drivers_linux_decoder *decoder, uint8_t byte) {
     if (decoder->state == RFLEX_DRIVERS_TAKING) {
         const uint8_t reason = rflex_drivers_linux_take(decoder, byte);
-        if (reason != RFLEX_DRIVERS_NO_REASON) {
+        if (reason != RFLEX_DRIVERS_FINE) {
             rflex_drivers_linux_judge(decoder, reason, byte);
         }
     } else if (decoder->state == RFLEX_DRIVERS_FAILED) {
@@ -2926,12 +2930,12 @@ static size_t rflex_drivers_linux_hand_over(struct rflex_drivers_linux_decoder *
     }
     event.payload = &content[6];
     reason = rflex_drivers_linux_identify(&event.parts, event.payload, (uint16_t)payload, &message);
-    if (reason != RFLEX_DRIVERS_NO_REASON) {
+    if (reason != RFLEX_DRIVERS_FINE) {
         return 0;
     }
     rflex_drivers_linux_end_noise(decoder);
-    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
-                                                     : RFLEX_DRIVERS_MESSAGE;
+    event.kind = message == (uint8_t)RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
+                                                              : RFLEX_DRIVERS_MESSAGE;
     event.reason = RFLEX_DRIVERS_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
@@ -2985,7 +2989,7 @@ static size_t rflex_drivers_linux_take_whole(struct rflex_drivers_linux_decoder 
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_drivers_xor_8_run(sum, &content[2U], (size_t)(6U + payload) - (size_t)(2U));
+        sum = rflex_drivers_xor_8_run(sum, &content[2U], 6U + payload - 2U);
         due = rflex_drivers_xor_8_final(sum);
         if (content[6U + payload] != (uint8_t)due) {
             return 0;
@@ -3198,7 +3202,7 @@ static uint8_t rflex_drivers_flex_identify(const struct rflex_drivers_flex_parts
         }
         return (uint8_t)rflex_drivers_ir_report_check(payload, size, NULL);
     default:
-        return RFLEX_DRIVERS_NO_REASON;
+        return RFLEX_DRIVERS_FINE;
     }
 }
 
@@ -3211,8 +3215,7 @@ static uint8_t rflex_drivers_flex_complete(struct rflex_drivers_flex_decoder *de
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_drivers_xor_8_run(sum, &content[2U],
-                                      (size_t)(6U + decoder->payload) - (size_t)(2U));
+        sum = rflex_drivers_xor_8_run(sum, &content[2U], 6U + (size_t)decoder->payload - 2U);
         due = rflex_drivers_xor_8_final(sum);
         if (content[6U + decoder->payload] != (uint8_t)due) {
             return RFLEX_DRIVERS_CHECKSUM;
@@ -3227,12 +3230,12 @@ static uint8_t rflex_drivers_flex_complete(struct rflex_drivers_flex_decoder *de
     }
     event.payload = &content[6];
     reason = rflex_drivers_flex_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != RFLEX_DRIVERS_NO_REASON) {
+    if (reason != RFLEX_DRIVERS_FINE) {
         return reason;
     }
     rflex_drivers_flex_end_noise(decoder);
-    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
-                                                     : RFLEX_DRIVERS_MESSAGE;
+    event.kind = message == (uint8_t)RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
+                                                              : RFLEX_DRIVERS_MESSAGE;
     event.reason = RFLEX_DRIVERS_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -3261,14 +3264,14 @@ static uint8_t rflex_drivers_flex_read_length(struct rflex_drivers_flex_decoder 
         return RFLEX_DRIVERS_LENGTH;
     }
     rflex_drivers_flex_set_payload(decoder, (uint16_t)(size - 0U));
-    return RFLEX_DRIVERS_NO_REASON;
+    return RFLEX_DRIVERS_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t rflex_drivers_flex_take_head(struct rflex_drivers_flex_decoder *decoder,
                                             uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = RFLEX_DRIVERS_NO_REASON;
+    uint8_t reason = RFLEX_DRIVERS_FINE;
     switch (index) {
     case 0:
         if (byte != 0x1BU) {
@@ -3297,7 +3300,7 @@ static uint8_t rflex_drivers_flex_finish_region(struct rflex_drivers_flex_decode
 /* One byte of content. */
 static uint8_t rflex_drivers_flex_accept(struct rflex_drivers_flex_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
-    uint8_t reason = RFLEX_DRIVERS_NO_REASON;
+    uint8_t reason = RFLEX_DRIVERS_FINE;
     if (index >= decoder->payload + 7U) {
         return rflex_drivers_flex_surplus(decoder);
     }
@@ -3324,13 +3327,13 @@ static uint8_t rflex_drivers_flex_unstuff(struct rflex_drivers_flex_decoder *dec
             if (decoder->content == decoder->payload + 7U) {
                 return rflex_drivers_flex_surplus(decoder);
             }
-            return RFLEX_DRIVERS_NO_REASON;
+            return RFLEX_DRIVERS_FINE;
         case 0x7CU:
             decoder->node = 2;
             if (decoder->content == decoder->payload + 7U) {
                 return rflex_drivers_flex_surplus(decoder);
             }
-            return RFLEX_DRIVERS_NO_REASON;
+            return RFLEX_DRIVERS_FINE;
         default:
             break;
         }
@@ -3351,7 +3354,7 @@ static uint8_t rflex_drivers_flex_unstuff(struct rflex_drivers_flex_decoder *dec
             if (decoder->content == decoder->payload + 7U) {
                 return rflex_drivers_flex_surplus(decoder);
             }
-            return RFLEX_DRIVERS_NO_REASON;
+            return RFLEX_DRIVERS_FINE;
         default:
             return RFLEX_DRIVERS_STUFFING;
         }
@@ -3386,10 +3389,10 @@ static uint8_t rflex_drivers_flex_pass(struct rflex_drivers_flex_decoder *decode
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t rflex_drivers_flex_close(struct rflex_drivers_flex_decoder *decoder) {
-    uint8_t reason = RFLEX_DRIVERS_NO_REASON;
+    uint8_t reason = RFLEX_DRIVERS_FINE;
     if (decoder->content >= 2U) {
         reason = rflex_drivers_flex_finish_region(decoder);
-        if (reason != RFLEX_DRIVERS_NO_REASON) {
+        if (reason != RFLEX_DRIVERS_FINE) {
             return reason;
         }
     }
@@ -3400,7 +3403,7 @@ static uint8_t rflex_drivers_flex_close(struct rflex_drivers_flex_decoder *decod
     } else {
         /* The frame is complete. */
     }
-    return reason == RFLEX_DRIVERS_NO_REASON ? rflex_drivers_flex_complete(decoder) : reason;
+    return reason == RFLEX_DRIVERS_FINE ? rflex_drivers_flex_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -3420,11 +3423,11 @@ static uint8_t rflex_drivers_flex_search(struct rflex_drivers_flex_decoder *deco
             next = (uint8_t)(index == 0U ? 0x1BU : 0x03U);
         }
         reason = rflex_drivers_flex_pass(decoder, next);
-        if (reason != RFLEX_DRIVERS_NO_REASON) {
+        if (reason != RFLEX_DRIVERS_FINE) {
             return reason;
         }
     }
-    return RFLEX_DRIVERS_NO_REASON;
+    return RFLEX_DRIVERS_FINE;
 }
 
 /* The next byte of a candidate. */
@@ -3439,7 +3442,7 @@ static uint8_t rflex_drivers_flex_take(struct rflex_drivers_flex_decoder *decode
         reason = (decoder->wire > 2U) ? rflex_drivers_flex_search(decoder, byte)
                                       : rflex_drivers_flex_pass(decoder, byte);
     }
-    if (reason == RFLEX_DRIVERS_NO_REASON && decoder->wire >= 780U) {
+    if (reason == RFLEX_DRIVERS_FINE && decoder->wire >= 780U) {
         reason = RFLEX_DRIVERS_LENGTH;
     }
     return reason;
@@ -3526,7 +3529,7 @@ static void rflex_drivers_flex_decide(struct rflex_drivers_flex_decoder *decoder
 void rflex_drivers_flex_decoder_push(struct rflex_drivers_flex_decoder *decoder, uint8_t byte) {
     if (decoder->state == RFLEX_DRIVERS_TAKING) {
         const uint8_t reason = rflex_drivers_flex_take(decoder, byte);
-        if (reason != RFLEX_DRIVERS_NO_REASON) {
+        if (reason != RFLEX_DRIVERS_FINE) {
             rflex_drivers_flex_judge(decoder, reason, byte);
         }
     } else if (decoder->state == RFLEX_DRIVERS_FAILED) {
@@ -3662,12 +3665,12 @@ static size_t rflex_drivers_flex_hand_over(struct rflex_drivers_flex_decoder *de
     }
     event.payload = &content[6];
     reason = rflex_drivers_flex_identify(&event.parts, event.payload, (uint16_t)payload, &message);
-    if (reason != RFLEX_DRIVERS_NO_REASON) {
+    if (reason != RFLEX_DRIVERS_FINE) {
         return 0;
     }
     rflex_drivers_flex_end_noise(decoder);
-    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
-                                                     : RFLEX_DRIVERS_MESSAGE;
+    event.kind = message == (uint8_t)RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
+                                                              : RFLEX_DRIVERS_MESSAGE;
     event.reason = RFLEX_DRIVERS_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
@@ -3721,7 +3724,7 @@ static size_t rflex_drivers_flex_take_whole(struct rflex_drivers_flex_decoder *d
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_drivers_xor_8_run(sum, &content[2U], (size_t)(6U + payload) - (size_t)(2U));
+        sum = rflex_drivers_xor_8_run(sum, &content[2U], 6U + payload - 2U);
         due = rflex_drivers_xor_8_final(sum);
         if (content[6U + payload] != (uint8_t)due) {
             return 0;

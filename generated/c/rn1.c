@@ -49,7 +49,8 @@ static bool rn1_is_seven_bit(const void *at, size_t size) {
 }
 
 static int8_t rn1_load_s7(const uint8_t *at) {
-    return (int8_t)((at[0] ^ 0x40U) - 0x40U);
+    const uint8_t extended = (uint8_t)((at[0] ^ 0x40U) - 0x40U);
+    return (int8_t)extended;
 }
 
 RN1_INLINE void rn1_store_u14le(uint8_t *at, uint16_t value) {
@@ -62,7 +63,8 @@ static uint16_t rn1_load_u14le(const uint8_t *at) {
 }
 
 static int16_t rn1_load_s14le(const uint8_t *at) {
-    return (int16_t)((rn1_load_u14le(at) ^ 0x2000U) - 0x2000U);
+    const uint16_t extended = (uint16_t)((rn1_load_u14le(at) ^ 0x2000U) - 0x2000U);
+    return (int16_t)extended;
 }
 
 static void rn1_store_u16le(uint8_t *at, uint16_t value) {
@@ -74,7 +76,7 @@ static void rn1_store_u16le(uint8_t *at, uint16_t value) {
 static void rn1_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
-    while (size > 0) {
+    while (size > 0U) {
         size--;
         target[size] = source[size];
     }
@@ -294,13 +296,13 @@ static size_t rn1_maintenance_measure(const struct rn1_maintenance *message) {
     size_t size = 4U;
     switch (message->operation) {
     case 65U:
-        size += 3;
+        size += 3U;
         break;
     case 81U:
     case 82U:
         break;
     case 83U:
-        size += 1;
+        size += 1U;
         break;
     default:
         size += message->argument.other.size;
@@ -417,10 +419,10 @@ static enum rn1_result rn1_maintenance_check(const uint8_t *payload, size_t size
         if (!rn1_is_seven_bit(payload + at, 3)) {
             return RN1_ERROR_ENCODING;
         }
-        if (payload[at + 2] > 0x03U) {
+        if (payload[at + 2U] > 0x03U) {
             return RN1_ERROR_VALUE;
         }
-        at += 3;
+        at += 3U;
         break;
     case 81U:
     case 82U:
@@ -432,7 +434,7 @@ static enum rn1_result rn1_maintenance_check(const uint8_t *payload, size_t size
         if (payload[at] > 0x7FU) {
             return RN1_ERROR_ENCODING;
         }
-        at += 1;
+        at += 1U;
         break;
     default:
         if (size - at > 3U) {
@@ -760,7 +762,7 @@ RN1_INLINE enum rn1_result rn1_lidar_validate(const struct rn1_lidar *message) {
 RN1_INLINE void rn1_lidar_store(const struct rn1_lidar *message, uint8_t *payload) {
     payload[0] = message->status;
     for (size_t i = 0; i < 360U; i++) {
-        rn1_store_u14le(payload + 1 + 2 * i, message->distances[i]);
+        rn1_store_u14le(payload + 1U + 2U * i, message->distances[i]);
     }
 }
 
@@ -818,7 +820,7 @@ RN1_INLINE enum rn1_result rn1_sonar_validate(const struct rn1_sonar *message) {
 RN1_INLINE void rn1_sonar_store(const struct rn1_sonar *message, uint8_t *payload) {
     payload[0] = message->status;
     for (size_t i = 0; i < 7U; i++) {
-        rn1_store_u14le(payload + 1 + 2 * i, message->distances[i]);
+        rn1_store_u14le(payload + 1U + 2U * i, message->distances[i]);
     }
 }
 
@@ -945,6 +947,9 @@ enum {
     RN1_INSIDE,
     RN1_AFTER
 };
+
+/* A reason is kept in one byte. There is none so far. */
+#define RN1_FINE ((uint8_t)RN1_NO_REASON)
 
 /* Stands where a reason would: the candidate is a frame. */
 #define RN1_FRAME 0xFFU
@@ -1524,7 +1529,7 @@ static uint8_t rn1_host_identify(const struct rn1_host_parts *parts, const uint8
         }
         return (uint8_t)rn1_maintenance_check(payload, size, NULL);
     default:
-        return RN1_NO_REASON;
+        return RN1_FINE;
     }
 }
 
@@ -1541,11 +1546,11 @@ static uint8_t rn1_host_complete(struct rn1_host_decoder *decoder) {
     }
     event.payload = &content[1];
     reason = rn1_host_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != RN1_NO_REASON) {
+    if (reason != RN1_FINE) {
         return reason;
     }
     rn1_host_end_noise(decoder);
-    event.kind = message == RN1_NO_MESSAGE ? RN1_UNKNOWN : RN1_MESSAGE;
+    event.kind = message == (uint8_t)RN1_NO_MESSAGE ? RN1_UNKNOWN : RN1_MESSAGE;
     event.reason = RN1_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint8_t)(decoder->wire - decoder->behind);
@@ -1587,7 +1592,7 @@ static uint8_t rn1_host_find_size(struct rn1_host_decoder *decoder, uint8_t key)
     default:
         break;
     }
-    return RN1_NO_REASON;
+    return RN1_FINE;
 }
 
 /* The payload begins. */
@@ -1595,14 +1600,14 @@ static uint8_t rn1_host_enter_payload(struct rn1_host_decoder *decoder) {
     if ((decoder->flags & RN1_KNOWN) == 0U) {
         decoder->flags |= RN1_OPEN;
     }
-    return RN1_NO_REASON;
+    return RN1_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t rn1_host_take_head(struct rn1_host_decoder *decoder, uint8_t index, uint8_t byte) {
     (void)byte;
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = RN1_NO_REASON;
+    uint8_t reason = RN1_FINE;
     switch (index) {
     case 0:
         reason = rn1_host_find_size(decoder, content[0]);
@@ -1610,7 +1615,7 @@ static uint8_t rn1_host_take_head(struct rn1_host_decoder *decoder, uint8_t inde
     default:
         break;
     }
-    if (reason == RN1_NO_REASON && index == 0U) {
+    if (reason == RN1_FINE && index == 0U) {
         reason = rn1_host_enter_payload(decoder);
     }
     return reason;
@@ -1619,7 +1624,7 @@ static uint8_t rn1_host_take_head(struct rn1_host_decoder *decoder, uint8_t inde
 /* One byte of content. */
 static uint8_t rn1_host_accept(struct rn1_host_decoder *decoder, uint8_t byte) {
     const uint8_t index = decoder->content;
-    uint8_t reason = RN1_NO_REASON;
+    uint8_t reason = RN1_FINE;
     if (index >= decoder->limit) {
         return rn1_host_surplus(decoder);
     }
@@ -1653,12 +1658,12 @@ static uint8_t rn1_host_close_open(struct rn1_host_decoder *decoder) {
     }
     size = (uint8_t)(decoder->content - 1U);
     rn1_host_set_payload(decoder, size);
-    return RN1_NO_REASON;
+    return RN1_FINE;
 }
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t rn1_host_close(struct rn1_host_decoder *decoder) {
-    uint8_t reason = RN1_NO_REASON;
+    uint8_t reason = RN1_FINE;
     if ((decoder->flags & RN1_KNOWN) == 0U) {
         reason = rn1_host_close_open(decoder);
     } else if (decoder->content != decoder->limit) {
@@ -1666,7 +1671,7 @@ static uint8_t rn1_host_close(struct rn1_host_decoder *decoder) {
     } else {
         /* The frame is complete. */
     }
-    return reason == RN1_NO_REASON ? rn1_host_complete(decoder) : reason;
+    return reason == RN1_FINE ? rn1_host_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -1687,7 +1692,7 @@ static uint8_t rn1_host_take(struct rn1_host_decoder *decoder, uint8_t byte) {
     } else {
         reason = rn1_host_search(decoder, byte);
     }
-    if (reason == RN1_NO_REASON && decoder->wire >= 9U) {
+    if (reason == RN1_FINE && decoder->wire >= 9U) {
         reason = RN1_LENGTH;
     }
     return reason;
@@ -1712,10 +1717,10 @@ static void rn1_host_seek_on(struct rn1_host_decoder *decoder) {
 
 /* Open a candidate with a start that was seen. */
 static void rn1_host_reopen(struct rn1_host_decoder *decoder, uint8_t byte) {
-    uint8_t reason = RN1_NO_REASON;
+    uint8_t reason = RN1_FINE;
     rn1_host_open(decoder);
     reason = rn1_host_take(decoder, byte);
-    if (reason != RN1_NO_REASON) {
+    if (reason != RN1_FINE) {
         if (reason != RN1_FRAME) {
             rn1_host_invalid(decoder, reason, decoder->wire);
         }
@@ -1747,7 +1752,7 @@ static void rn1_host_seek(struct rn1_host_decoder *decoder, uint8_t byte) {
 void rn1_host_decoder_push(struct rn1_host_decoder *decoder, uint8_t byte) {
     if (decoder->state == RN1_TAKING) {
         const uint8_t reason = rn1_host_take(decoder, byte);
-        if (reason != RN1_NO_REASON) {
+        if (reason != RN1_FINE) {
             rn1_host_judge(decoder, reason, byte);
         }
     } else {
@@ -1851,7 +1856,7 @@ static uint8_t rn1_brain_identify(const struct rn1_brain_parts *parts, const uin
         *message = RN1_MESSAGE_FACING;
         return size != 5U ? RN1_SIZE : RN1_NO_REASON;
     default:
-        return RN1_NO_REASON;
+        return RN1_FINE;
     }
 }
 
@@ -1867,11 +1872,11 @@ static uint8_t rn1_brain_complete(struct rn1_brain_decoder *decoder, const uint8
     }
     event.payload = &content[1];
     reason = rn1_brain_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != RN1_NO_REASON) {
+    if (reason != RN1_FINE) {
         return reason;
     }
     rn1_brain_end_noise(decoder);
-    event.kind = message == RN1_NO_MESSAGE ? RN1_UNKNOWN : RN1_MESSAGE;
+    event.kind = message == (uint8_t)RN1_NO_MESSAGE ? RN1_UNKNOWN : RN1_MESSAGE;
     event.reason = RN1_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -1922,7 +1927,7 @@ static uint8_t rn1_brain_find_size(struct rn1_brain_decoder *decoder, uint8_t ke
     default:
         break;
     }
-    return RN1_NO_REASON;
+    return RN1_FINE;
 }
 
 /* The payload begins. */
@@ -1930,7 +1935,7 @@ static uint8_t rn1_brain_enter_payload(struct rn1_brain_decoder *decoder) {
     if ((decoder->flags & RN1_KNOWN) == 0U) {
         decoder->flags |= RN1_OPEN;
     }
-    return RN1_NO_REASON;
+    return RN1_FINE;
 }
 
 /* A byte in front of the payload. */
@@ -1938,7 +1943,7 @@ static uint8_t rn1_brain_take_head(struct rn1_brain_decoder *decoder, uint16_t i
                                    uint8_t byte) {
     (void)byte;
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = RN1_NO_REASON;
+    uint8_t reason = RN1_FINE;
     switch (index) {
     case 0:
         reason = rn1_brain_find_size(decoder, content[0]);
@@ -1946,7 +1951,7 @@ static uint8_t rn1_brain_take_head(struct rn1_brain_decoder *decoder, uint16_t i
     default:
         break;
     }
-    if (reason == RN1_NO_REASON && index == 0U) {
+    if (reason == RN1_FINE && index == 0U) {
         reason = rn1_brain_enter_payload(decoder);
     }
     return reason;
@@ -1965,14 +1970,14 @@ static uint8_t rn1_brain_cross(struct rn1_brain_decoder *decoder) {
     } else {
         /* The part goes on. */
     }
-    return RN1_NO_REASON;
+    return RN1_FINE;
 }
 
 /* One byte of content. */
 static uint8_t rn1_brain_accept(struct rn1_brain_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
     bool crosses = true;
-    uint8_t reason = RN1_NO_REASON;
+    uint8_t reason = RN1_FINE;
     if (index >= decoder->limit) {
         return rn1_brain_surplus(decoder);
     }
@@ -1988,7 +1993,7 @@ static uint8_t rn1_brain_accept(struct rn1_brain_decoder *decoder, uint8_t byte)
     } else {
         /* A byte behind the payload is looked at when all are there. */
     }
-    if (reason == RN1_NO_REASON && crosses) {
+    if (reason == RN1_FINE && crosses) {
         reason = rn1_brain_cross(decoder);
     }
     return reason;
@@ -2010,12 +2015,12 @@ static uint8_t rn1_brain_close_open(struct rn1_brain_decoder *decoder) {
     }
     size = (uint16_t)(decoder->content - 1U);
     rn1_brain_set_payload(decoder, size);
-    return RN1_NO_REASON;
+    return RN1_FINE;
 }
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t rn1_brain_close(struct rn1_brain_decoder *decoder) {
-    uint8_t reason = RN1_NO_REASON;
+    uint8_t reason = RN1_FINE;
     if ((decoder->flags & RN1_KNOWN) == 0U) {
         reason = rn1_brain_close_open(decoder);
     } else if (decoder->content != decoder->limit) {
@@ -2023,7 +2028,7 @@ static uint8_t rn1_brain_close(struct rn1_brain_decoder *decoder) {
     } else {
         /* The frame is complete. */
     }
-    return reason == RN1_NO_REASON ? rn1_brain_complete(decoder, decoder->buffer) : reason;
+    return reason == RN1_FINE ? rn1_brain_complete(decoder, decoder->buffer) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -2046,7 +2051,7 @@ static uint8_t rn1_brain_take(struct rn1_brain_decoder *decoder, uint8_t byte) {
         reason = (decoder->flags & RN1_SEARCHING) != 0U ? rn1_brain_search(decoder, byte)
                                                         : rn1_brain_pass(decoder, byte);
     }
-    if (reason == RN1_NO_REASON && decoder->wire >= 722U) {
+    if (reason == RN1_FINE && decoder->wire >= 722U) {
         reason = RN1_LENGTH;
     }
     return reason;
@@ -2080,10 +2085,10 @@ static void rn1_brain_seek_on(struct rn1_brain_decoder *decoder) {
 
 /* Open a candidate with a start that was seen. */
 static void rn1_brain_reopen(struct rn1_brain_decoder *decoder, uint8_t byte) {
-    uint8_t reason = RN1_NO_REASON;
+    uint8_t reason = RN1_FINE;
     rn1_brain_open(decoder);
     reason = rn1_brain_take(decoder, byte);
-    if (reason != RN1_NO_REASON) {
+    if (reason != RN1_FINE) {
         if (reason != RN1_FRAME) {
             rn1_brain_invalid(decoder, reason, decoder->wire);
         }
@@ -2115,7 +2120,7 @@ static void rn1_brain_seek(struct rn1_brain_decoder *decoder, uint8_t byte) {
 void rn1_brain_decoder_push(struct rn1_brain_decoder *decoder, uint8_t byte) {
     if (decoder->state == RN1_TAKING) {
         const uint8_t reason = rn1_brain_take(decoder, byte);
-        if (reason != RN1_NO_REASON) {
+        if (reason != RN1_FINE) {
             rn1_brain_judge(decoder, reason, byte);
         }
     } else {

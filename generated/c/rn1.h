@@ -389,7 +389,7 @@ RN1_API void rn1_lidar_load(struct rn1_lidar *message, const uint8_t *payload);
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint16_t rn1_lidar_distances_at(const uint8_t *payload, size_t index) {
-    const uint8_t *at = payload + 1 + 2 * index;
+    const uint8_t *at = payload + 1U + 2U * index;
     return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
 }
 
@@ -420,7 +420,7 @@ RN1_API void rn1_sonar_load(struct rn1_sonar *message, const uint8_t *payload);
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint16_t rn1_sonar_distances_at(const uint8_t *payload, size_t index) {
-    const uint8_t *at = payload + 1 + 2 * index;
+    const uint8_t *at = payload + 1U + 2U * index;
     return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
 }
 

@@ -49,7 +49,8 @@ static bool rn1_firmware_is_seven_bit(const void *at, size_t size) {
 }
 
 static int8_t rn1_firmware_load_s7(const uint8_t *at) {
-    return (int8_t)((at[0] ^ 0x40U) - 0x40U);
+    const uint8_t extended = (uint8_t)((at[0] ^ 0x40U) - 0x40U);
+    return (int8_t)extended;
 }
 
 RN1_FIRMWARE_INLINE void rn1_firmware_store_u14be(uint8_t *at, uint16_t value) {
@@ -62,13 +63,14 @@ static uint16_t rn1_firmware_load_u14be(const uint8_t *at) {
 }
 
 static int16_t rn1_firmware_load_s14be(const uint8_t *at) {
-    return (int16_t)((rn1_firmware_load_u14be(at) ^ 0x2000U) - 0x2000U);
+    const uint16_t extended = (uint16_t)((rn1_firmware_load_u14be(at) ^ 0x2000U) - 0x2000U);
+    return (int16_t)extended;
 }
 
 static void rn1_firmware_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
-    while (size > 0) {
+    while (size > 0U) {
         size--;
         target[size] = source[size];
     }
@@ -84,7 +86,8 @@ static uint16_t rn1_firmware_load_u14le(const uint8_t *at) {
 }
 
 static int16_t rn1_firmware_load_s14le(const uint8_t *at) {
-    return (int16_t)((rn1_firmware_load_u14le(at) ^ 0x2000U) - 0x2000U);
+    const uint16_t extended = (uint16_t)((rn1_firmware_load_u14le(at) ^ 0x2000U) - 0x2000U);
+    return (int16_t)extended;
 }
 
 static uint16_t rn1_firmware_all_bits_u16(const uint16_t *numbers, size_t count) {
@@ -123,14 +126,15 @@ static void rn1_firmware_store_u35be(uint8_t *at, uint64_t value) {
 
 static uint64_t rn1_firmware_load_u35be(const uint8_t *at) {
     uint64_t value = 0U;
-    for (size_t i = 0; i < 5; i++) {
+    for (size_t i = 0; i < 5U; i++) {
         value = (uint64_t)(value << 7) | at[i];
     }
     return value;
 }
 
 static int64_t rn1_firmware_load_s35be(const uint8_t *at) {
-    return (int64_t)((rn1_firmware_load_u35be(at) ^ 0x400000000ULL) - 0x400000000ULL);
+    const uint64_t extended = (uint64_t)((rn1_firmware_load_u35be(at) ^ 0x400000000ULL) - 0x400000000ULL);
+    return (int64_t)extended;
 }
 
 /* --- move_manual ------------------------------------------------------------------------------ */
@@ -383,7 +387,7 @@ static size_t rn1_firmware_maintenance_measure(const struct rn1_firmware_mainten
     case 82U:
         break;
     case 83U:
-        size += 1;
+        size += 1U;
         break;
     default:
         size += message->argument.other.size;
@@ -501,7 +505,7 @@ static enum rn1_firmware_result rn1_firmware_maintenance_check(const uint8_t *pa
         if (payload[at] > 0x7FU) {
             return RN1_FIRMWARE_ERROR_ENCODING;
         }
-        at += 1;
+        at += 1U;
         break;
     default:
         if (size - at > 1U) {
@@ -773,7 +777,7 @@ RN1_FIRMWARE_INLINE void rn1_firmware_lidar_store(const struct rn1_firmware_lida
                                                   uint8_t *payload) {
     payload[0] = message->status;
     for (size_t i = 0; i < 360U; i++) {
-        rn1_firmware_store_u14le(payload + 1 + 2 * i, message->distances[i]);
+        rn1_firmware_store_u14le(payload + 1U + 2U * i, message->distances[i]);
     }
 }
 
@@ -836,7 +840,7 @@ RN1_FIRMWARE_INLINE void rn1_firmware_sonar_store(const struct rn1_firmware_sona
                                                   uint8_t *payload) {
     payload[0] = message->status;
     for (size_t i = 0; i < 3U; i++) {
-        rn1_firmware_store_u14le(payload + 1 + 2 * i, message->distances[i]);
+        rn1_firmware_store_u14le(payload + 1U + 2U * i, message->distances[i]);
     }
 }
 
@@ -1170,6 +1174,9 @@ enum {
     RN1_FIRMWARE_INSIDE,
     RN1_FIRMWARE_AFTER
 };
+
+/* A reason is kept in one byte. There is none so far. */
+#define RN1_FIRMWARE_FINE ((uint8_t)RN1_FIRMWARE_NO_REASON)
 
 /* Stands where a reason would: the candidate is a frame. */
 #define RN1_FIRMWARE_FRAME 0xFFU
@@ -1883,7 +1890,7 @@ static uint8_t rn1_firmware_host_identify(const struct rn1_firmware_host_parts *
         }
         return (uint8_t)rn1_firmware_maintenance_check(payload, size, NULL);
     default:
-        return RN1_FIRMWARE_NO_REASON;
+        return RN1_FIRMWARE_FINE;
     }
 }
 
@@ -1900,11 +1907,12 @@ static uint8_t rn1_firmware_host_complete(struct rn1_firmware_host_decoder *deco
     }
     event.payload = &content[1];
     reason = rn1_firmware_host_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != RN1_FIRMWARE_NO_REASON) {
+    if (reason != RN1_FIRMWARE_FINE) {
         return reason;
     }
     rn1_firmware_host_end_noise(decoder);
-    event.kind = message == RN1_FIRMWARE_NO_MESSAGE ? RN1_FIRMWARE_UNKNOWN : RN1_FIRMWARE_MESSAGE;
+    event.kind = message == (uint8_t)RN1_FIRMWARE_NO_MESSAGE ? RN1_FIRMWARE_UNKNOWN
+                                                             : RN1_FIRMWARE_MESSAGE;
     event.reason = RN1_FIRMWARE_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint8_t)(decoder->wire - decoder->behind);
@@ -1949,7 +1957,7 @@ static uint8_t rn1_firmware_host_find_size(struct rn1_firmware_host_decoder *dec
     default:
         break;
     }
-    return RN1_FIRMWARE_NO_REASON;
+    return RN1_FIRMWARE_FINE;
 }
 
 /* The payload begins. */
@@ -1957,7 +1965,7 @@ static uint8_t rn1_firmware_host_enter_payload(struct rn1_firmware_host_decoder 
     if ((decoder->flags & RN1_FIRMWARE_KNOWN) == 0U) {
         decoder->flags |= RN1_FIRMWARE_OPEN;
     }
-    return RN1_FIRMWARE_NO_REASON;
+    return RN1_FIRMWARE_FINE;
 }
 
 /* A byte in front of the payload. */
@@ -1965,7 +1973,7 @@ static uint8_t rn1_firmware_host_take_head(struct rn1_firmware_host_decoder *dec
                                            uint8_t byte) {
     (void)byte;
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = RN1_FIRMWARE_NO_REASON;
+    uint8_t reason = RN1_FIRMWARE_FINE;
     switch (index) {
     case 0:
         reason = rn1_firmware_host_find_size(decoder, content[0]);
@@ -1973,7 +1981,7 @@ static uint8_t rn1_firmware_host_take_head(struct rn1_firmware_host_decoder *dec
     default:
         break;
     }
-    if (reason == RN1_FIRMWARE_NO_REASON && index == 0U) {
+    if (reason == RN1_FIRMWARE_FINE && index == 0U) {
         reason = rn1_firmware_host_enter_payload(decoder);
     }
     return reason;
@@ -1982,7 +1990,7 @@ static uint8_t rn1_firmware_host_take_head(struct rn1_firmware_host_decoder *dec
 /* One byte of content. */
 static uint8_t rn1_firmware_host_accept(struct rn1_firmware_host_decoder *decoder, uint8_t byte) {
     const uint8_t index = decoder->content;
-    uint8_t reason = RN1_FIRMWARE_NO_REASON;
+    uint8_t reason = RN1_FIRMWARE_FINE;
     if (index >= decoder->limit) {
         return rn1_firmware_host_surplus(decoder);
     }
@@ -2016,12 +2024,12 @@ static uint8_t rn1_firmware_host_close_open(struct rn1_firmware_host_decoder *de
     }
     size = (uint8_t)(decoder->content - 1U);
     rn1_firmware_host_set_payload(decoder, size);
-    return RN1_FIRMWARE_NO_REASON;
+    return RN1_FIRMWARE_FINE;
 }
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t rn1_firmware_host_close(struct rn1_firmware_host_decoder *decoder) {
-    uint8_t reason = RN1_FIRMWARE_NO_REASON;
+    uint8_t reason = RN1_FIRMWARE_FINE;
     if ((decoder->flags & RN1_FIRMWARE_KNOWN) == 0U) {
         reason = rn1_firmware_host_close_open(decoder);
     } else if (decoder->content != decoder->limit) {
@@ -2029,7 +2037,7 @@ static uint8_t rn1_firmware_host_close(struct rn1_firmware_host_decoder *decoder
     } else {
         /* The frame is complete. */
     }
-    return reason == RN1_FIRMWARE_NO_REASON ? rn1_firmware_host_complete(decoder) : reason;
+    return reason == RN1_FIRMWARE_FINE ? rn1_firmware_host_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -2050,7 +2058,7 @@ static uint8_t rn1_firmware_host_take(struct rn1_firmware_host_decoder *decoder,
     } else {
         reason = rn1_firmware_host_search(decoder, byte);
     }
-    if (reason == RN1_FIRMWARE_NO_REASON && decoder->wire >= 7U) {
+    if (reason == RN1_FIRMWARE_FINE && decoder->wire >= 7U) {
         reason = RN1_FIRMWARE_LENGTH;
     }
     return reason;
@@ -2075,10 +2083,10 @@ static void rn1_firmware_host_seek_on(struct rn1_firmware_host_decoder *decoder)
 
 /* Open a candidate with a start that was seen. */
 static void rn1_firmware_host_reopen(struct rn1_firmware_host_decoder *decoder, uint8_t byte) {
-    uint8_t reason = RN1_FIRMWARE_NO_REASON;
+    uint8_t reason = RN1_FIRMWARE_FINE;
     rn1_firmware_host_open(decoder);
     reason = rn1_firmware_host_take(decoder, byte);
-    if (reason != RN1_FIRMWARE_NO_REASON) {
+    if (reason != RN1_FIRMWARE_FINE) {
         if (reason != RN1_FIRMWARE_FRAME) {
             rn1_firmware_host_invalid(decoder, reason, decoder->wire);
         }
@@ -2111,7 +2119,7 @@ static void rn1_firmware_host_seek(struct rn1_firmware_host_decoder *decoder, ui
 void rn1_firmware_host_decoder_push(struct rn1_firmware_host_decoder *decoder, uint8_t byte) {
     if (decoder->state == RN1_FIRMWARE_TAKING) {
         const uint8_t reason = rn1_firmware_host_take(decoder, byte);
-        if (reason != RN1_FIRMWARE_NO_REASON) {
+        if (reason != RN1_FIRMWARE_FINE) {
             rn1_firmware_host_judge(decoder, reason, byte);
         }
     } else {
@@ -2226,7 +2234,7 @@ static uint8_t rn1_firmware_brain_identify(const struct rn1_firmware_brain_parts
         *message = RN1_FIRMWARE_MESSAGE_DEBUG_NUMBERS;
         return size != 20U ? RN1_FIRMWARE_SIZE : RN1_FIRMWARE_NO_REASON;
     default:
-        return RN1_FIRMWARE_NO_REASON;
+        return RN1_FIRMWARE_FINE;
     }
 }
 
@@ -2243,11 +2251,12 @@ static uint8_t rn1_firmware_brain_complete(struct rn1_firmware_brain_decoder *de
     }
     event.payload = &content[1];
     reason = rn1_firmware_brain_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != RN1_FIRMWARE_NO_REASON) {
+    if (reason != RN1_FIRMWARE_FINE) {
         return reason;
     }
     rn1_firmware_brain_end_noise(decoder);
-    event.kind = message == RN1_FIRMWARE_NO_MESSAGE ? RN1_FIRMWARE_UNKNOWN : RN1_FIRMWARE_MESSAGE;
+    event.kind = message == (uint8_t)RN1_FIRMWARE_NO_MESSAGE ? RN1_FIRMWARE_UNKNOWN
+                                                             : RN1_FIRMWARE_MESSAGE;
     event.reason = RN1_FIRMWARE_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -2306,7 +2315,7 @@ static uint8_t rn1_firmware_brain_find_size(struct rn1_firmware_brain_decoder *d
     default:
         break;
     }
-    return RN1_FIRMWARE_NO_REASON;
+    return RN1_FIRMWARE_FINE;
 }
 
 /* The payload begins. */
@@ -2314,7 +2323,7 @@ static uint8_t rn1_firmware_brain_enter_payload(struct rn1_firmware_brain_decode
     if ((decoder->flags & RN1_FIRMWARE_KNOWN) == 0U) {
         decoder->flags |= RN1_FIRMWARE_OPEN;
     }
-    return RN1_FIRMWARE_NO_REASON;
+    return RN1_FIRMWARE_FINE;
 }
 
 /* A byte in front of the payload. */
@@ -2322,7 +2331,7 @@ static uint8_t rn1_firmware_brain_take_head(struct rn1_firmware_brain_decoder *d
                                             uint16_t index, uint8_t byte) {
     (void)byte;
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = RN1_FIRMWARE_NO_REASON;
+    uint8_t reason = RN1_FIRMWARE_FINE;
     switch (index) {
     case 0:
         reason = rn1_firmware_brain_find_size(decoder, content[0]);
@@ -2330,7 +2339,7 @@ static uint8_t rn1_firmware_brain_take_head(struct rn1_firmware_brain_decoder *d
     default:
         break;
     }
-    if (reason == RN1_FIRMWARE_NO_REASON && index == 0U) {
+    if (reason == RN1_FIRMWARE_FINE && index == 0U) {
         reason = rn1_firmware_brain_enter_payload(decoder);
     }
     return reason;
@@ -2350,14 +2359,14 @@ static uint8_t rn1_firmware_brain_cross(struct rn1_firmware_brain_decoder *decod
     } else {
         /* The part goes on. */
     }
-    return RN1_FIRMWARE_NO_REASON;
+    return RN1_FIRMWARE_FINE;
 }
 
 /* One byte of content. */
 static uint8_t rn1_firmware_brain_accept(struct rn1_firmware_brain_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
     bool crosses = true;
-    uint8_t reason = RN1_FIRMWARE_NO_REASON;
+    uint8_t reason = RN1_FIRMWARE_FINE;
     if (index >= decoder->limit) {
         return rn1_firmware_brain_surplus(decoder);
     }
@@ -2374,7 +2383,7 @@ static uint8_t rn1_firmware_brain_accept(struct rn1_firmware_brain_decoder *deco
     } else {
         /* A byte behind the payload is looked at when all are there. */
     }
-    if (reason == RN1_FIRMWARE_NO_REASON && crosses) {
+    if (reason == RN1_FIRMWARE_FINE && crosses) {
         reason = rn1_firmware_brain_cross(decoder);
     }
     return reason;
@@ -2396,12 +2405,12 @@ static uint8_t rn1_firmware_brain_close_open(struct rn1_firmware_brain_decoder *
     }
     size = (uint16_t)(decoder->content - 1U);
     rn1_firmware_brain_set_payload(decoder, size);
-    return RN1_FIRMWARE_NO_REASON;
+    return RN1_FIRMWARE_FINE;
 }
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t rn1_firmware_brain_close(struct rn1_firmware_brain_decoder *decoder) {
-    uint8_t reason = RN1_FIRMWARE_NO_REASON;
+    uint8_t reason = RN1_FIRMWARE_FINE;
     if ((decoder->flags & RN1_FIRMWARE_KNOWN) == 0U) {
         reason = rn1_firmware_brain_close_open(decoder);
     } else if (decoder->content != decoder->limit) {
@@ -2409,8 +2418,8 @@ static uint8_t rn1_firmware_brain_close(struct rn1_firmware_brain_decoder *decod
     } else {
         /* The frame is complete. */
     }
-    return reason == RN1_FIRMWARE_NO_REASON ? rn1_firmware_brain_complete(decoder, decoder->buffer)
-                                            : reason;
+    return reason == RN1_FIRMWARE_FINE ? rn1_firmware_brain_complete(decoder, decoder->buffer)
+                                       : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -2433,7 +2442,7 @@ static uint8_t rn1_firmware_brain_take(struct rn1_firmware_brain_decoder *decode
     } else {
         reason = (decoder->flags & RN1_FIRMWARE_SEARCHING) != 0U ? rn1_firmware_brain_search(decoder, byte) : rn1_firmware_brain_pass(decoder, byte);
     }
-    if (reason == RN1_FIRMWARE_NO_REASON && decoder->wire >= 722U) {
+    if (reason == RN1_FIRMWARE_FINE && decoder->wire >= 722U) {
         reason = RN1_FIRMWARE_LENGTH;
     }
     return reason;
@@ -2467,10 +2476,10 @@ static void rn1_firmware_brain_seek_on(struct rn1_firmware_brain_decoder *decode
 
 /* Open a candidate with a start that was seen. */
 static void rn1_firmware_brain_reopen(struct rn1_firmware_brain_decoder *decoder, uint8_t byte) {
-    uint8_t reason = RN1_FIRMWARE_NO_REASON;
+    uint8_t reason = RN1_FIRMWARE_FINE;
     rn1_firmware_brain_open(decoder);
     reason = rn1_firmware_brain_take(decoder, byte);
-    if (reason != RN1_FIRMWARE_NO_REASON) {
+    if (reason != RN1_FIRMWARE_FINE) {
         if (reason != RN1_FIRMWARE_FRAME) {
             rn1_firmware_brain_invalid(decoder, reason, decoder->wire);
         }
@@ -2503,7 +2512,7 @@ static void rn1_firmware_brain_seek(struct rn1_firmware_brain_decoder *decoder, 
 void rn1_firmware_brain_decoder_push(struct rn1_firmware_brain_decoder *decoder, uint8_t byte) {
     if (decoder->state == RN1_FIRMWARE_TAKING) {
         const uint8_t reason = rn1_firmware_brain_take(decoder, byte);
-        if (reason != RN1_FIRMWARE_NO_REASON) {
+        if (reason != RN1_FIRMWARE_FINE) {
             rn1_firmware_brain_judge(decoder, reason, byte);
         }
     } else {

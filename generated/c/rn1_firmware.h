@@ -434,7 +434,7 @@ RN1_FIRMWARE_API void rn1_firmware_lidar_load(struct rn1_firmware_lidar *message
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint16_t rn1_firmware_lidar_distances_at(const uint8_t *payload, size_t index) {
-    const uint8_t *at = payload + 1 + 2 * index;
+    const uint8_t *at = payload + 1U + 2U * index;
     return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
 }
 
@@ -469,7 +469,7 @@ RN1_FIRMWARE_API void rn1_firmware_sonar_load(struct rn1_firmware_sonar *message
 
 /** Reads distances[index] from a payload that was received, unchecked. */
 static inline uint16_t rn1_firmware_sonar_distances_at(const uint8_t *payload, size_t index) {
-    const uint8_t *at = payload + 1 + 2 * index;
+    const uint8_t *at = payload + 1U + 2U * index;
     return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
 }
 

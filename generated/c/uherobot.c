@@ -36,7 +36,7 @@ UHEROBOT_INLINE void uherobot_motors_servos_leds_store(
     uherobot_store_u16be(payload, (uint16_t)message->motor_1);
     uherobot_store_u16be(payload + 2, (uint16_t)message->motor_2);
     for (size_t i = 0; i < 8U; i++) {
-        uherobot_store_u16be(payload + 4 + 2 * i, message->servos[i]);
+        uherobot_store_u16be(payload + 4U + 2U * i, message->servos[i]);
     }
     payload[20] = message->leds;
 }
@@ -57,7 +57,7 @@ void uherobot_motors_servos_leds_load(struct uherobot_motors_servos_leds *messag
     message->motor_1 = (int16_t)uherobot_load_u16be(payload);
     message->motor_2 = (int16_t)uherobot_load_u16be(payload + 2);
     for (size_t i = 0; i < 8U; i++) {
-        message->servos[i] = uherobot_load_u16be(payload + 4 + 2 * i);
+        message->servos[i] = uherobot_load_u16be(payload + 4U + 2U * i);
     }
     message->leds = payload[20];
 }
@@ -78,7 +78,7 @@ UHEROBOT_INLINE void uherobot_motors_two_servos_store(
     uherobot_store_u16be(payload, (uint16_t)message->motor_1);
     uherobot_store_u16be(payload + 2, (uint16_t)message->motor_2);
     for (size_t i = 0; i < 2U; i++) {
-        uherobot_store_u16be(payload + 4 + 2 * i, message->servos[i]);
+        uherobot_store_u16be(payload + 4U + 2U * i, message->servos[i]);
     }
 }
 
@@ -98,7 +98,7 @@ void uherobot_motors_two_servos_load(struct uherobot_motors_two_servos *message,
     message->motor_1 = (int16_t)uherobot_load_u16be(payload);
     message->motor_2 = (int16_t)uherobot_load_u16be(payload + 2);
     for (size_t i = 0; i < 2U; i++) {
-        message->servos[i] = uherobot_load_u16be(payload + 4 + 2 * i);
+        message->servos[i] = uherobot_load_u16be(payload + 4U + 2U * i);
     }
 }
 
@@ -201,6 +201,9 @@ enum {
     UHEROBOT_AFTER
 };
 
+/* A reason is kept in one byte. There is none so far. */
+#define UHEROBOT_FINE ((uint8_t)UHEROBOT_NO_REASON)
+
 /* Stands where a reason would: the candidate is a frame. */
 #define UHEROBOT_FRAME 0xFFU
 
@@ -250,7 +253,8 @@ static size_t uherobot_daemon_wrap(uint8_t *frame, size_t payload, uint8_t type)
     }
     *to = 0x65U;
     to++;
-    return (size_t)(to - frame);
+    const ptrdiff_t written = to - frame;
+    return (size_t)written;
 }
 
 /* --- frames, byte by byte --------------------------------------------------------------------- */
@@ -491,7 +495,7 @@ static uint8_t uherobot_daemon_identify(const struct uherobot_daemon_parts *part
         *message = UHEROBOT_MESSAGE_MOTOR_TEST;
         return size != 4U ? UHEROBOT_SIZE : UHEROBOT_NO_REASON;
     default:
-        return UHEROBOT_NO_REASON;
+        return UHEROBOT_FINE;
     }
 }
 
@@ -508,11 +512,11 @@ static uint8_t uherobot_daemon_complete(struct uherobot_daemon_decoder *decoder)
     }
     event.payload = &content[3];
     reason = uherobot_daemon_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != UHEROBOT_NO_REASON) {
+    if (reason != UHEROBOT_FINE) {
         return reason;
     }
     uherobot_daemon_end_noise(decoder);
-    event.kind = message == UHEROBOT_NO_MESSAGE ? UHEROBOT_UNKNOWN : UHEROBOT_MESSAGE;
+    event.kind = message == (uint8_t)UHEROBOT_NO_MESSAGE ? UHEROBOT_UNKNOWN : UHEROBOT_MESSAGE;
     event.reason = UHEROBOT_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -540,14 +544,14 @@ static uint8_t uherobot_daemon_read_length(struct uherobot_daemon_decoder *decod
         return UHEROBOT_LENGTH;
     }
     uherobot_daemon_set_payload(decoder, (uint16_t)(size - 2U));
-    return UHEROBOT_NO_REASON;
+    return UHEROBOT_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t uherobot_daemon_take_head(struct uherobot_daemon_decoder *decoder, uint16_t index,
                                          uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = UHEROBOT_NO_REASON;
+    uint8_t reason = UHEROBOT_FINE;
     switch (index) {
     case 0:
         if (byte != 0x62U) {
@@ -571,7 +575,7 @@ static uint8_t uherobot_daemon_finish_region(struct uherobot_daemon_decoder *dec
 /* One byte of content. */
 static uint8_t uherobot_daemon_accept(struct uherobot_daemon_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
-    uint8_t reason = UHEROBOT_NO_REASON;
+    uint8_t reason = UHEROBOT_FINE;
     if (index >= decoder->payload + 3U) {
         return uherobot_daemon_surplus(decoder);
     }
@@ -602,7 +606,7 @@ static uint8_t uherobot_daemon_unstuff(struct uherobot_daemon_decoder *decoder, 
     if (decoder->node == 0U) {
         decoder->node = 1;
         decoder->code = (uint8_t)(digit << 4);
-        return UHEROBOT_NO_REASON;
+        return UHEROBOT_FINE;
     }
     decoder->node = 0;
     return uherobot_daemon_accept(decoder, (uint8_t)(decoder->code | digit));
@@ -621,10 +625,10 @@ static uint8_t uherobot_daemon_pass(struct uherobot_daemon_decoder *decoder, uin
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t uherobot_daemon_close(struct uherobot_daemon_decoder *decoder) {
-    uint8_t reason = UHEROBOT_NO_REASON;
+    uint8_t reason = UHEROBOT_FINE;
     if (decoder->content >= 1U) {
         reason = uherobot_daemon_finish_region(decoder);
-        if (reason != UHEROBOT_NO_REASON) {
+        if (reason != UHEROBOT_FINE) {
             return reason;
         }
     }
@@ -635,7 +639,7 @@ static uint8_t uherobot_daemon_close(struct uherobot_daemon_decoder *decoder) {
     } else {
         /* The frame is complete. */
     }
-    return reason == UHEROBOT_NO_REASON ? uherobot_daemon_complete(decoder) : reason;
+    return reason == UHEROBOT_FINE ? uherobot_daemon_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -657,7 +661,7 @@ static uint8_t uherobot_daemon_take(struct uherobot_daemon_decoder *decoder, uin
         reason = (decoder->wire > 1U) ? uherobot_daemon_search(decoder, byte)
                                       : uherobot_daemon_pass(decoder, byte);
     }
-    if (reason == UHEROBOT_NO_REASON && decoder->wire >= 512U) {
+    if (reason == UHEROBOT_FINE && decoder->wire >= 512U) {
         reason = UHEROBOT_LENGTH;
     }
     return reason;
@@ -713,7 +717,7 @@ static void uherobot_daemon_seek(struct uherobot_daemon_decoder *decoder, uint8_
 void uherobot_daemon_decoder_push(struct uherobot_daemon_decoder *decoder, uint8_t byte) {
     if (decoder->state == UHEROBOT_TAKING) {
         const uint8_t reason = uherobot_daemon_take(decoder, byte);
-        if (reason != UHEROBOT_NO_REASON) {
+        if (reason != UHEROBOT_FINE) {
             uherobot_daemon_judge(decoder, reason, byte);
         }
     } else {
@@ -801,7 +805,7 @@ static uint8_t uherobot_board_identify(const struct uherobot_board_parts *parts,
         *message = UHEROBOT_MESSAGE_STATUS;
         return size != 6U ? UHEROBOT_SIZE : UHEROBOT_NO_REASON;
     default:
-        return UHEROBOT_NO_REASON;
+        return UHEROBOT_FINE;
     }
 }
 
@@ -818,11 +822,11 @@ static uint8_t uherobot_board_complete(struct uherobot_board_decoder *decoder) {
     }
     event.payload = &content[3];
     reason = uherobot_board_identify(&event.parts, event.payload, decoder->payload, &message);
-    if (reason != UHEROBOT_NO_REASON) {
+    if (reason != UHEROBOT_FINE) {
         return reason;
     }
     uherobot_board_end_noise(decoder);
-    event.kind = message == UHEROBOT_NO_MESSAGE ? UHEROBOT_UNKNOWN : UHEROBOT_MESSAGE;
+    event.kind = message == (uint8_t)UHEROBOT_NO_MESSAGE ? UHEROBOT_UNKNOWN : UHEROBOT_MESSAGE;
     event.reason = UHEROBOT_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -849,14 +853,14 @@ static uint8_t uherobot_board_read_length(struct uherobot_board_decoder *decoder
         return UHEROBOT_LENGTH;
     }
     uherobot_board_set_payload(decoder, (uint16_t)(size - 2U));
-    return UHEROBOT_NO_REASON;
+    return UHEROBOT_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t uherobot_board_take_head(struct uherobot_board_decoder *decoder, uint16_t index,
                                         uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = UHEROBOT_NO_REASON;
+    uint8_t reason = UHEROBOT_FINE;
     switch (index) {
     case 0:
         if (byte != 0x62U) {
@@ -880,7 +884,7 @@ static uint8_t uherobot_board_finish_region(struct uherobot_board_decoder *decod
 /* One byte of content. */
 static uint8_t uherobot_board_accept(struct uherobot_board_decoder *decoder, uint8_t byte) {
     const uint16_t index = decoder->content;
-    uint8_t reason = UHEROBOT_NO_REASON;
+    uint8_t reason = UHEROBOT_FINE;
     if (index >= decoder->payload + 3U) {
         return uherobot_board_surplus(decoder);
     }
@@ -911,7 +915,7 @@ static uint8_t uherobot_board_unstuff(struct uherobot_board_decoder *decoder, ui
     if (decoder->node == 0U) {
         decoder->node = 1;
         decoder->code = (uint8_t)(digit << 4);
-        return UHEROBOT_NO_REASON;
+        return UHEROBOT_FINE;
     }
     decoder->node = 0;
     return uherobot_board_accept(decoder, (uint8_t)(decoder->code | digit));
@@ -930,10 +934,10 @@ static uint8_t uherobot_board_pass(struct uherobot_board_decoder *decoder, uint8
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t uherobot_board_close(struct uherobot_board_decoder *decoder) {
-    uint8_t reason = UHEROBOT_NO_REASON;
+    uint8_t reason = UHEROBOT_FINE;
     if (decoder->content >= 1U) {
         reason = uherobot_board_finish_region(decoder);
-        if (reason != UHEROBOT_NO_REASON) {
+        if (reason != UHEROBOT_FINE) {
             return reason;
         }
     }
@@ -944,7 +948,7 @@ static uint8_t uherobot_board_close(struct uherobot_board_decoder *decoder) {
     } else {
         /* The frame is complete. */
     }
-    return reason == UHEROBOT_NO_REASON ? uherobot_board_complete(decoder) : reason;
+    return reason == UHEROBOT_FINE ? uherobot_board_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -966,7 +970,7 @@ static uint8_t uherobot_board_take(struct uherobot_board_decoder *decoder, uint8
         reason = (decoder->wire > 1U) ? uherobot_board_search(decoder, byte)
                                       : uherobot_board_pass(decoder, byte);
     }
-    if (reason == UHEROBOT_NO_REASON && decoder->wire >= 512U) {
+    if (reason == UHEROBOT_FINE && decoder->wire >= 512U) {
         reason = UHEROBOT_LENGTH;
     }
     return reason;
@@ -1022,7 +1026,7 @@ static void uherobot_board_seek(struct uherobot_board_decoder *decoder, uint8_t 
 void uherobot_board_decoder_push(struct uherobot_board_decoder *decoder, uint8_t byte) {
     if (decoder->state == UHEROBOT_TAKING) {
         const uint8_t reason = uherobot_board_take(decoder, byte);
-        if (reason != UHEROBOT_NO_REASON) {
+        if (reason != UHEROBOT_FINE) {
             uherobot_board_judge(decoder, reason, byte);
         }
     } else {

@@ -106,7 +106,7 @@ UHEROBOT_API void uherobot_motors_servos_leds_load(struct uherobot_motors_servos
 
 /** Reads servos[index] from a payload that was received, unchecked. */
 static inline uint16_t uherobot_motors_servos_leds_servos_at(const uint8_t *payload, size_t index) {
-    const uint8_t *at = payload + 4 + 2 * index;
+    const uint8_t *at = payload + 4U + 2U * index;
     return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
 }
 
@@ -138,7 +138,7 @@ UHEROBOT_API void uherobot_motors_two_servos_load(struct uherobot_motors_two_ser
 
 /** Reads servos[index] from a payload that was received, unchecked. */
 static inline uint16_t uherobot_motors_two_servos_servos_at(const uint8_t *payload, size_t index) {
-    const uint8_t *at = payload + 4 + 2 * index;
+    const uint8_t *at = payload + 4U + 2U * index;
     return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
 }
 

@@ -52,7 +52,7 @@ UHEROBOT_DAEMON_INLINE void uherobot_daemon_motors_servos_leds_store(
     uherobot_daemon_store_u16be(payload, (uint16_t)message->right_motor);
     uherobot_daemon_store_u16be(payload + 2, (uint16_t)message->left_motor);
     for (size_t i = 0; i < 8U; i++) {
-        uherobot_daemon_store_u16be(payload + 4 + 2 * i, message->servos[i]);
+        uherobot_daemon_store_u16be(payload + 4U + 2U * i, message->servos[i]);
     }
     payload[20] = message->leds;
 }
@@ -77,7 +77,7 @@ void uherobot_daemon_motors_servos_leds_load(struct uherobot_daemon_motors_servo
     message->right_motor = (int16_t)uherobot_daemon_load_u16be(payload);
     message->left_motor = (int16_t)uherobot_daemon_load_u16be(payload + 2);
     for (size_t i = 0; i < 8U; i++) {
-        message->servos[i] = uherobot_daemon_load_u16be(payload + 4 + 2 * i);
+        message->servos[i] = uherobot_daemon_load_u16be(payload + 4U + 2U * i);
     }
     message->leds = payload[20];
 }
@@ -155,6 +155,9 @@ enum {
     UHEROBOT_DAEMON_AFTER
 };
 
+/* A reason is kept in one byte. There is none so far. */
+#define UHEROBOT_DAEMON_FINE ((uint8_t)UHEROBOT_DAEMON_NO_REASON)
+
 /* Stands where a reason would: the candidate is a frame. */
 #define UHEROBOT_DAEMON_FRAME 0xFFU
 
@@ -204,7 +207,8 @@ static size_t uherobot_daemon_daemon_wrap(uint8_t *frame, size_t payload, uint8_
     }
     *to = 0x0AU;
     to++;
-    return (size_t)(to - frame);
+    const ptrdiff_t written = to - frame;
+    return (size_t)written;
 }
 
 /* --- what board sends: frames ----------------------------------------------------------------- */
@@ -255,7 +259,8 @@ static size_t uherobot_daemon_board_wrap(uint8_t *frame, size_t payload, uint8_t
     to++;
     *to = 0x0AU;
     to++;
-    return (size_t)(to - frame);
+    const ptrdiff_t written = to - frame;
+    return (size_t)written;
 }
 
 /* --- frames, byte by byte --------------------------------------------------------------------- */
@@ -477,7 +482,7 @@ static uint8_t uherobot_daemon_daemon_identify(const struct uherobot_daemon_daem
         *message = UHEROBOT_DAEMON_MESSAGE_MOTORS_SERVOS_LEDS;
         return size != 21U ? UHEROBOT_DAEMON_SIZE : UHEROBOT_DAEMON_NO_REASON;
     default:
-        return UHEROBOT_DAEMON_NO_REASON;
+        return UHEROBOT_DAEMON_FINE;
     }
 }
 
@@ -495,12 +500,12 @@ static uint8_t uherobot_daemon_daemon_complete(struct uherobot_daemon_daemon_dec
     event.payload = &content[3];
     reason = uherobot_daemon_daemon_identify(&event.parts, event.payload, decoder->payload,
                                              &message);
-    if (reason != UHEROBOT_DAEMON_NO_REASON) {
+    if (reason != UHEROBOT_DAEMON_FINE) {
         return reason;
     }
     uherobot_daemon_daemon_end_noise(decoder);
-    event.kind = message == UHEROBOT_DAEMON_NO_MESSAGE ? UHEROBOT_DAEMON_UNKNOWN
-                                                       : UHEROBOT_DAEMON_MESSAGE;
+    event.kind = message == (uint8_t)UHEROBOT_DAEMON_NO_MESSAGE ? UHEROBOT_DAEMON_UNKNOWN
+                                                                : UHEROBOT_DAEMON_MESSAGE;
     event.reason = UHEROBOT_DAEMON_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -530,14 +535,14 @@ static uint8_t uherobot_daemon_daemon_read_length(struct uherobot_daemon_daemon_
         return UHEROBOT_DAEMON_LENGTH;
     }
     uherobot_daemon_daemon_set_payload(decoder, (uint16_t)(size - 2U));
-    return UHEROBOT_DAEMON_NO_REASON;
+    return UHEROBOT_DAEMON_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t uherobot_daemon_daemon_take_head(struct uherobot_daemon_daemon_decoder *decoder,
                                                 uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
+    uint8_t reason = UHEROBOT_DAEMON_FINE;
     switch (index) {
     case 0:
         if (byte != 0x62U) {
@@ -563,7 +568,7 @@ static uint8_t uherobot_daemon_daemon_finish_region(
 static uint8_t uherobot_daemon_daemon_accept(struct uherobot_daemon_daemon_decoder *decoder,
                                              uint8_t byte) {
     const uint16_t index = decoder->content;
-    uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
+    uint8_t reason = UHEROBOT_DAEMON_FINE;
     if (index >= decoder->payload + 3U) {
         return uherobot_daemon_daemon_surplus(decoder);
     }
@@ -595,7 +600,7 @@ static uint8_t uherobot_daemon_daemon_unstuff(struct uherobot_daemon_daemon_deco
     if (decoder->node == 0U) {
         decoder->node = 1;
         decoder->code = (uint8_t)(digit << 4);
-        return UHEROBOT_DAEMON_NO_REASON;
+        return UHEROBOT_DAEMON_FINE;
     }
     decoder->node = 0;
     return uherobot_daemon_daemon_accept(decoder, (uint8_t)(decoder->code | digit));
@@ -615,10 +620,10 @@ static uint8_t uherobot_daemon_daemon_pass(struct uherobot_daemon_daemon_decoder
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t uherobot_daemon_daemon_close(struct uherobot_daemon_daemon_decoder *decoder) {
-    uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
+    uint8_t reason = UHEROBOT_DAEMON_FINE;
     if (decoder->content >= 1U) {
         reason = uherobot_daemon_daemon_finish_region(decoder);
-        if (reason != UHEROBOT_DAEMON_NO_REASON) {
+        if (reason != UHEROBOT_DAEMON_FINE) {
             return reason;
         }
     }
@@ -629,7 +634,7 @@ static uint8_t uherobot_daemon_daemon_close(struct uherobot_daemon_daemon_decode
     } else {
         /* The frame is complete. */
     }
-    return reason == UHEROBOT_DAEMON_NO_REASON ? uherobot_daemon_daemon_complete(decoder) : reason;
+    return reason == UHEROBOT_DAEMON_FINE ? uherobot_daemon_daemon_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -653,7 +658,7 @@ static uint8_t uherobot_daemon_daemon_take(struct uherobot_daemon_daemon_decoder
         reason = (decoder->wire > 1U) ? uherobot_daemon_daemon_search(decoder, byte)
                                       : uherobot_daemon_daemon_pass(decoder, byte);
     }
-    if (reason == UHEROBOT_DAEMON_NO_REASON && decoder->wire >= 512U) {
+    if (reason == UHEROBOT_DAEMON_FINE && decoder->wire >= 512U) {
         reason = UHEROBOT_DAEMON_LENGTH;
     }
     return reason;
@@ -711,7 +716,7 @@ void uherobot_daemon_daemon_decoder_push(struct uherobot_daemon_daemon_decoder *
                                          uint8_t byte) {
     if (decoder->state == UHEROBOT_DAEMON_TAKING) {
         const uint8_t reason = uherobot_daemon_daemon_take(decoder, byte);
-        if (reason != UHEROBOT_DAEMON_NO_REASON) {
+        if (reason != UHEROBOT_DAEMON_FINE) {
             uherobot_daemon_daemon_judge(decoder, reason, byte);
         }
     } else {
@@ -826,7 +831,7 @@ static uint8_t uherobot_daemon_board_identify(const struct uherobot_daemon_board
         *message = UHEROBOT_DAEMON_MESSAGE_STATUS;
         return size != 12U ? UHEROBOT_DAEMON_SIZE : UHEROBOT_DAEMON_NO_REASON;
     default:
-        return UHEROBOT_DAEMON_NO_REASON;
+        return UHEROBOT_DAEMON_FINE;
     }
 }
 
@@ -844,12 +849,12 @@ static uint8_t uherobot_daemon_board_complete(struct uherobot_daemon_board_decod
     event.payload = &content[3];
     reason = uherobot_daemon_board_identify(&event.parts, event.payload, decoder->payload,
                                             &message);
-    if (reason != UHEROBOT_DAEMON_NO_REASON) {
+    if (reason != UHEROBOT_DAEMON_FINE) {
         return reason;
     }
     uherobot_daemon_board_end_noise(decoder);
-    event.kind = message == UHEROBOT_DAEMON_NO_MESSAGE ? UHEROBOT_DAEMON_UNKNOWN
-                                                       : UHEROBOT_DAEMON_MESSAGE;
+    event.kind = message == (uint8_t)UHEROBOT_DAEMON_NO_MESSAGE ? UHEROBOT_DAEMON_UNKNOWN
+                                                                : UHEROBOT_DAEMON_MESSAGE;
     event.reason = UHEROBOT_DAEMON_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
@@ -878,14 +883,14 @@ static uint8_t uherobot_daemon_board_read_length(struct uherobot_daemon_board_de
         return UHEROBOT_DAEMON_LENGTH;
     }
     uherobot_daemon_board_set_payload(decoder, (uint16_t)(size - 0U));
-    return UHEROBOT_DAEMON_NO_REASON;
+    return UHEROBOT_DAEMON_FINE;
 }
 
 /* A byte in front of the payload. */
 static uint8_t uherobot_daemon_board_take_head(struct uherobot_daemon_board_decoder *decoder,
                                                uint16_t index, uint8_t byte) {
     const uint8_t *const content = decoder->buffer;
-    uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
+    uint8_t reason = UHEROBOT_DAEMON_FINE;
     switch (index) {
     case 0:
         if (byte != 0x62U) {
@@ -910,7 +915,7 @@ static uint8_t uherobot_daemon_board_finish_region(struct uherobot_daemon_board_
 static uint8_t uherobot_daemon_board_accept(struct uherobot_daemon_board_decoder *decoder,
                                             uint8_t byte) {
     const uint16_t index = decoder->content;
-    uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
+    uint8_t reason = UHEROBOT_DAEMON_FINE;
     if (index >= decoder->payload + 3U) {
         return uherobot_daemon_board_surplus(decoder);
     }
@@ -942,7 +947,7 @@ static uint8_t uherobot_daemon_board_unstuff(struct uherobot_daemon_board_decode
     if (decoder->node == 0U) {
         decoder->node = 1;
         decoder->code = (uint8_t)(digit << 4);
-        return UHEROBOT_DAEMON_NO_REASON;
+        return UHEROBOT_DAEMON_FINE;
     }
     decoder->node = 0;
     return uherobot_daemon_board_accept(decoder, (uint8_t)(decoder->code | digit));
@@ -962,10 +967,10 @@ static uint8_t uherobot_daemon_board_pass(struct uherobot_daemon_board_decoder *
 
 /* End the frame here, whatever is known of its size. */
 static uint8_t uherobot_daemon_board_close(struct uherobot_daemon_board_decoder *decoder) {
-    uint8_t reason = UHEROBOT_DAEMON_NO_REASON;
+    uint8_t reason = UHEROBOT_DAEMON_FINE;
     if (decoder->content >= 1U) {
         reason = uherobot_daemon_board_finish_region(decoder);
-        if (reason != UHEROBOT_DAEMON_NO_REASON) {
+        if (reason != UHEROBOT_DAEMON_FINE) {
             return reason;
         }
     }
@@ -976,7 +981,7 @@ static uint8_t uherobot_daemon_board_close(struct uherobot_daemon_board_decoder 
     } else {
         /* The frame is complete. */
     }
-    return reason == UHEROBOT_DAEMON_NO_REASON ? uherobot_daemon_board_complete(decoder) : reason;
+    return reason == UHEROBOT_DAEMON_FINE ? uherobot_daemon_board_complete(decoder) : reason;
 }
 
 /* Look for the delimiter; let pass what can't begin it. */
@@ -997,11 +1002,11 @@ static uint8_t uherobot_daemon_board_search(struct uherobot_daemon_board_decoder
             next = (uint8_t)(index == 0U ? 0x0DU : 0x0AU);
         }
         reason = uherobot_daemon_board_pass(decoder, next);
-        if (reason != UHEROBOT_DAEMON_NO_REASON) {
+        if (reason != UHEROBOT_DAEMON_FINE) {
             return reason;
         }
     }
-    return UHEROBOT_DAEMON_NO_REASON;
+    return UHEROBOT_DAEMON_FINE;
 }
 
 /* The next byte of a candidate. */
@@ -1016,7 +1021,7 @@ static uint8_t uherobot_daemon_board_take(struct uherobot_daemon_board_decoder *
         reason = (decoder->wire > 1U) ? uherobot_daemon_board_search(decoder, byte)
                                       : uherobot_daemon_board_pass(decoder, byte);
     }
-    if (reason == UHEROBOT_DAEMON_NO_REASON && decoder->wire >= 517U) {
+    if (reason == UHEROBOT_DAEMON_FINE && decoder->wire >= 517U) {
         reason = UHEROBOT_DAEMON_LENGTH;
     }
     return reason;
@@ -1075,7 +1080,7 @@ void uherobot_daemon_board_decoder_push(struct uherobot_daemon_board_decoder *de
                                         uint8_t byte) {
     if (decoder->state == UHEROBOT_DAEMON_TAKING) {
         const uint8_t reason = uherobot_daemon_board_take(decoder, byte);
-        if (reason != UHEROBOT_DAEMON_NO_REASON) {
+        if (reason != UHEROBOT_DAEMON_FINE) {
             uherobot_daemon_board_judge(decoder, reason, byte);
         }
     } else {

@@ -133,7 +133,7 @@ UHEROBOT_DAEMON_API void uherobot_daemon_motors_servos_leds_load(
 /** Reads servos[index] from a payload that was received, unchecked. */
 static inline uint16_t uherobot_daemon_motors_servos_leds_servos_at(const uint8_t *payload,
                                                                     size_t index) {
-    const uint8_t *at = payload + 4 + 2 * index;
+    const uint8_t *at = payload + 4U + 2U * index;
     return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
 }
 

@@ -27,8 +27,11 @@ class CoveredRun(msgspec.Struct, frozen=True):
 
     def of(self, payload: str) -> str:
         """Start and size of the run, where `payload` is the C of the payload's size."""
-        first, last = self.first.of(payload), self.last.of(payload)
-        return f"&content[{first}], (size_t)({last}) - (size_t)({first})"
+        wide = payload if payload == "payload" else f"(size_t){payload}"  # That is a size_t.
+        first, last = self.first.of(wide), self.last.of(wide)
+        if self.last.place.side is Side.HEAD:
+            return f"&content[{first}], (size_t)({last}) - (size_t)({first})"
+        return f"&content[{first}], {last} - {f'({first})' if ' ' in first else first}"
 
 
 class CoveredLiteral(msgspec.Struct, frozen=True):

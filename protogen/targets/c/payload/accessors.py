@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from protogen.c_language.numbers import integer_type, unsigned_type
+from protogen.c_language.numbers import integer_type, unsigned, unsigned_type
 from protogen.model.payload_builder import plan_of_struct
 from protogen.model.payload_plan import (
     AnyStep,
@@ -51,9 +51,9 @@ def accessor(
         return None
     field, element = step.field, step.element
     body = Lines()
-    start = f"payload + {field.position}" if field.position else "payload"
+    start = f"payload + {unsigned(field.position)}" if field.position else "payload"
     size = element.sizes.greatest
-    place = f"const uint8_t *at = {start} + {f'{size} * index' if size > 1 else 'index'};"
+    place = f"const uint8_t *at = {start} + {f'{unsigned(size)} * index' if size > 1 else 'index'};"
     body.add(place)
     arguments: tuple[str, ...] = ("const uint8_t *payload", "size_t index")
     with helpers.public():
@@ -99,4 +99,4 @@ def _read(type_: NumberType, body: Lines) -> None:
         else:
             body.add(*before, f"const {unsigned_type(type_.bits)} raw = {raw};")
             raw = "raw"
-        body.add(f"return {sign_extended(type_, raw)};")
+        body.add(*sign_extended(type_, raw))

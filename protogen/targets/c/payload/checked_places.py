@@ -33,7 +33,7 @@ class CheckedWalk(Walk):
     def _sum(self, offset: int) -> str:
         if not self._at:
             return str(offset)
-        return f"{self._at} + {offset}" if offset else self._at
+        return f"{self._at} + {unsigned(offset)}" if offset else self._at
 
     def _byte(self, index: int = 0) -> str:
         return f"payload[{self._sum(self._offset + index)}]"
@@ -69,7 +69,8 @@ class CheckedWalk(Walk):
             self.lines.add(f"size_t at = {distance};")
             self._at = "at"
         elif distance:
-            self.lines.add(f"at += {distance};")
+            amount = unsigned(distance) if isinstance(distance, int) else distance
+            self.lines.add(f"at += {amount};")
         passed = distance if isinstance(distance, int) else 0
         self._secured = max(0, self._secured - passed) if isinstance(distance, int) else 0
         self._offset = 0

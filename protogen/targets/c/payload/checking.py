@@ -275,7 +275,7 @@ class Checker(NumberChecker):
         self._refuse(_outside(count, "size - at", size), "SIZE")
         if size > 1 and count.greatest:
             with self.lines.block("while (at < size)"):
-                self.lines.add(f"at += {size};")
+                self.lines.add(f"at += {unsigned(size)};")
             self._refuse("at != size", "SIZE")
         self._end()
         self._secured = 0

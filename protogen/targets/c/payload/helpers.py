@@ -18,6 +18,7 @@ from protogen.c_language.numbers import (
     hexadecimal,
     integer_type,
     layout_name,
+    unsigned,
     unsigned_type,
 )
 from protogen.copying import replace
@@ -72,7 +73,7 @@ for (size_t i = 0; i < size; i++) {{
 _COPY = """\
 uint8_t *target = (uint8_t *)to;
 const uint8_t *source = (const uint8_t *)from;
-while (size > 0) {
+while (size > 0U) {
     size--;
     target[size] = source[size];
 }
@@ -196,7 +197,7 @@ class Helpers:
             body: Iterable[str] = [f"return {self._reinterpret(type_, from_bits=True)}({bits});"]
         elif type_.signed:
             raw = f"{self.load(type_.unsigned)}(at)" if type_.size > 1 else "at[0]"
-            result, body = integer_type(type_), [f"return {sign_extended(type_, raw)};"]
+            result, body = integer_type(type_), sign_extended(type_, raw)
         else:
             type_ = widened(type_)
             result, body = integer_type(type_), _joined(type_)
@@ -204,7 +205,7 @@ class Helpers:
 
     def extended(self, type_: NumberType, raw: str) -> str:
         """The signed number that has these bits."""
-        body = f"return {sign_extended(type_, 'raw')};"
+        body = sign_extended(type_, "raw")
         arguments = (f"{unsigned_type(type_.bits)} raw",)
         name = self.helper(f"extend_s{type_.bits}", integer_type(type_), arguments, body)
         return f"{name}({raw})"
@@ -453,12 +454,18 @@ def is_whole(type_: NumberType) -> bool:
     return type_.bits in (8, 16, 32, 64)
 
 
-def sign_extended(type_: NumberType, raw: str) -> str:
-    """The signed value of a raw one."""
+def sign_extended(type_: NumberType, raw: str) -> list[str]:
+    """The statements that return the signed value of a raw one.
+
+    The sum has no sign, so that it may wrap, and changes its type where it is no sum any more.
+    """
     if is_whole(type_):
-        return f"({integer_type(type_)}){raw}"
-    top = hexadecimal(1 << (type_.bits - 1))
-    return f"({integer_type(type_)})(({raw} ^ {top}) - {top})"
+        return [f"return ({integer_type(type_)}){raw};"]
+    top, target = hexadecimal(1 << (type_.bits - 1)), unsigned_type(type_.bits)
+    return [
+        f"const {target} extended = ({target})(({raw} ^ {top}) - {top});",
+        f"return ({integer_type(type_)})extended;",
+    ]
 
 
 def joined(type_: NumberType, at: str) -> list[str]:
@@ -477,10 +484,10 @@ def joined(type_: NumberType, at: str) -> list[str]:
 
 def _joined_in_a_loop(type_: NumberType, at: str) -> list[str]:
     target, size = unsigned_type(type_.bits), type_.size
-    index = "i" if type_.byte_order == "big" else f"{size - 1} - i"
+    index = "i" if type_.byte_order == "big" else f"{unsigned(size - 1)} - i"
     return [
         f"{target} value = 0U;",
-        f"for (size_t i = 0; i < {size}; i++) {{",
+        f"for (size_t i = 0; i < {unsigned(size)}; i++) {{",
         f"    value = ({target})(value << {type_.byte_bits}) | {at}[{index}];",
         "}",
         "return value;",

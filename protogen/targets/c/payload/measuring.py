@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from protogen.c_language.numbers import unsigned
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -46,7 +47,7 @@ class Measure(Walk):
 
     def _settle(self) -> None:
         if self.known:
-            self.lines.add(f"{self._sum} += {self.known};")
+            self.lines.add(f"{self._sum} += {unsigned(self.known)};")
         self.known = 0
 
     def step(self, step: AnyStep, place: str) -> None:

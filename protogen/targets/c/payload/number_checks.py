@@ -156,7 +156,7 @@ class NumberChecker(CheckedWalk):
         offset = self._sum(self._offset)
         if offset == "0":
             return "size"
-        return f"size - ({offset})" if "+" in offset else f"size - {offset}"
+        return f"size - ({offset})" if "+" in offset else f"size - {offset}{'U' * offset.isdigit()}"
 
     def number(self, step: NumberStep, place: str) -> None:
         """A number."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from protogen.c_language.numbers import unsigned
 from protogen.model.payload_plan import (
     ChooseStep,
     NumberStep,
@@ -36,8 +37,10 @@ class PlacedWalk(Walk):
     def byte(self, index: int = 0) -> str:
         """The byte that lies there, or so many bytes behind."""
         self.catch_up()
-        terms = [str(self._offset + index or ""), self._index]
-        return f"{self._name}[{' + '.join(filter(None, terms)) or '0'}]"
+        place = self._offset + index
+        if not self._index:
+            return f"{self._name}[{place}]"
+        return f"{self._name}[{' + '.join(filter(None, [_term(place), self._index]))}]"
 
     def address(self) -> str:
         """The address of what lies there."""
@@ -59,7 +62,7 @@ class PlacedWalk(Walk):
         if self._name == "payload":
             self.lines.add(f"{self._pointer}at = {self._sum('payload')};")
         elif self._offset or self._pending:
-            self.lines.add(f"at += {self._sum('')};")
+            self.lines.add(f"at += {self._sum('') if self._pending else unsigned(self._offset)};")
         self.settled()
 
     def settled(self) -> None:
@@ -75,7 +78,7 @@ class PlacedWalk(Walk):
         if not self._index and not self._pending:  # As in all that has no arrays.
             offset = str(self._offset or "")
             return f"{start} + {offset}" if start and offset else start or offset
-        terms = [start, str(self._offset or ""), self._index, self._pending]
+        terms = [start, _term(self._offset), self._index, self._pending]
         return " + ".join(term for term in terms if term)
 
     # --- elements and cases -----------------------------------------------------------------------
@@ -85,7 +88,7 @@ class PlacedWalk(Walk):
         """A loop over groups of packed numbers, which have a pointer of their own."""
         self.catch_up()
         with self.loop(count) as index, self.branch():
-            self._index = f"{size} * {index}" if size > 1 else index
+            self._index = f"{unsigned(size)} * {index}" if size > 1 else index
             self._point(index)
             yield index
         self.skip(count * size)
@@ -106,7 +109,7 @@ class PlacedWalk(Walk):
             return
         self.catch_up()
         with self.loop(count) as index, self.branch():
-            self._index = f"{size} * {index}" if size > 1 else index
+            self._index = f"{unsigned(size)} * {index}" if size > 1 else index
             if not isinstance(element, NumberStep):  # Several values have a pointer of their own.
                 self._point(index)
             self.step(element, f"{place}[{index}]")
@@ -165,3 +168,8 @@ class PlacedWalk(Walk):
         """Settle where this way has ended, if something follows."""
         if not step.is_last and step.known_size is None:
             self.settle()
+
+
+def _term(number: int) -> str:
+    """A number of bytes in a sum with others; nothing where there are none."""
+    return unsigned(number) if number else ""
