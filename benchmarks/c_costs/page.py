@@ -98,12 +98,12 @@ These programs send and receive the same messages:
   noisy streams, whole and in pieces of 1, 17 and 1,000 bytes, it takes the very messages that the
   expert takes byte by byte, and so do both programs of protogen; that is tried before the timings.
 
-There are three protocols of documents that MAVLink and nanopb have messages for, too, and three
-that show other framings and checksums: `rover` of the [README](../README.md) (COBS, CRC-16/KERMIT),
-[probe](c/probe.yaml) (a synchronisation word, a length, CRC-32; a false start is given up and its
-bytes are read again), and [tether](c/tether.yaml) (HDLC, CRC-16/X-25). For checksums the expert
-takes what is best on the machine: `_crc_ccitt_update` of avr-libc, two tables of 16 for CRC-32 on
-the ATmega, one on the Cortex-M0.
+All five documents are here, three of them with what MAVLink and nanopb have messages for, too; and
+three protocols that show other framings and checksums: `rover` of the [README](../README.md) (COBS,
+CRC-16/KERMIT), [probe](c/probe.yaml) (a synchronisation word, a length, CRC-32; a false start is
+given up and its bytes are read again), and [tether](c/tether.yaml) (HDLC, CRC-16/X-25). For
+checksums the expert takes what is best on the machine: `_crc_ccitt_update` of avr-libc, two tables
+of 16 for CRC-32 on the ATmega, one on the Cortex-M0.
 
 rflex's sonar_data has room for the 17 sonars of an ATRV-Jr here ([c/atrv.yaml](c/atrv.yaml)), in
 every program. The aim is {target} times the expert's at most in the same build, with
@@ -143,9 +143,7 @@ frame.
 
 ### Decoding, for each byte
 
-At 1 Mbaud and 16 MHz there are {byte} cycles for each byte. {slow}
-
-{rover}
+{rover} {slow}
 
 {per_byte}
 
@@ -175,9 +173,9 @@ the time of protogen with `NAME_SSE2`, which is `--events messages` too, to twic
 
 {seeds} streams of {pieces} pieces as in [resync.md](resync.md): frames, damaged frames and noise.
 Found are undamaged frames behind whose last byte the message was delivered. MAVLink C of rn1 has
-gyro frames only. A frame of rover has an end and no start of its own: one that stands right behind
-noise is a part of that, for every receiver. Of probe, a frame inside of what looks like the start
-of a longer one is delivered later, when that was given up, and not counted here.
+gyro frames only. Frames of dagny and rover have an end and no start of their own: one that stands
+right behind noise is a part of that, for every receiver. Of probe, a frame inside of what looks like
+the start of another is delivered later, when that was given up, and not counted here.
 
 {recovery}
 

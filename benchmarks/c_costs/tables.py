@@ -128,13 +128,13 @@ def rover_line(results: Results) -> str:
 def slow_bytes(results: Results) -> str:
     """Messages whose bytes take longer than 1 Mbaud leaves."""
     slow = [
-        f"{protocol.label} {message}, {TITLES[build]}: {_per_byte(item)}"
+        f"* {protocol.label} {message}, {TITLES[build]}: {_per_byte(item)}"
         for protocol, which, message in messages()
         for build in BUILDS
         for item in [results.cycles[build, "messages", protocol.name][which]]
         if not item.decode / item.bytes <= BYTE
     ]
-    return f"More than {BYTE}: {'; '.join(slow)}." if slow else f"None is above {BYTE}."
+    return "\n".join(["Above that are:", "", *slow]) if slow else "None is above that."
 
 
 def ratios(results: Results) -> Iterator[tuple[str, float]]:
