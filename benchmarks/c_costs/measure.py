@@ -71,7 +71,7 @@ def measure_small(workshop: Workshop, protocols: Sequence[Protocol]) -> Results:
     for protocol in protocols:
         small = _small(workshop, protocol)
         same_bytes(workshop, small)
-        for kind in ("messages", "expert", "inlined"):
+        for kind in ("messages", "included", "expert", "inlined"):
             _measure_small(workshop, counter, small[kind], results)
     return results
 
@@ -87,7 +87,8 @@ def _small(workshop: Workshop, protocol: Protocol) -> dict[str, Subject]:
 
 def _builds(subject: Subject) -> Sequence[str]:
     """Builds that can change anything: a linker inlines what is inlined anyway."""
-    return [build for build in BUILDS if build != LTO or subject.kind != "inlined"]
+    in_one_source = subject.kind in ("inlined", "included")
+    return [build for build in BUILDS if build != LTO or not in_one_source]
 
 
 def _measure_small(workshop: Workshop, counter: Path, subject: Subject, results: Results) -> None:

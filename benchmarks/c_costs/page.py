@@ -76,6 +76,8 @@ Made by `python benchmarks/bench_c.py --rounds {rounds} --seeds {seeds}`.
 These programs send and receive the same messages:
 
 * protogen with `--only` these messages, once with `--events messages` and once with all events.
+* protogen in one source is the first of these, included into the application with `NAME_API` as
+  `static inline` and `NAME_APART` as `static`.
 * The expert is C by hand in [c/expert](c/expert/expert_atrv.c), specialised to these messages, with
   the same checks: no heap, bounded, ranges checked before anything is written, resynchronisation.
   Its frames are compared with protogen's, byte for byte, before anything is measured. It returns
@@ -174,8 +176,8 @@ the time of protogen with `NAME_SSE2`, which is `--events messages` too, to twic
 {seeds} streams of {pieces} pieces as in [resync.md](resync.md): frames, damaged frames and noise.
 Found are undamaged frames behind whose last byte the message was delivered. MAVLink C of rn1 has
 gyro frames only. Frames of dagny and rover have an end and no start of their own: one that stands
-right behind noise is a part of that, for every receiver. Of probe, a frame inside of what looks like
-the start of another is delivered later, when that was given up, and not counted here.
+right behind noise is a part of that, for every receiver. Of probe, a frame inside of what looks
+like the start of another is delivered later, when that was given up, and not counted here.
 
 {recovery}
 

@@ -134,6 +134,7 @@ KINDS = {
 }
 SMALL_KINDS = {
     "messages": KINDS["messages"],
+    "included": "the same in one source",
     "all": KINDS["all"],
     "expert": KINDS["expert"],
     "inlined": "expert, inlined",

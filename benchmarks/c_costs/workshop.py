@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -39,6 +38,7 @@ class Workshop:
     def subject(self, kind: str, protocol: Protocol) -> Subject:
         makers = {
             "expert": self._expert,
+            "included": self._included,
             "inlined": self._inlined,
             "sse2": self._sse2,
             "mavlink": self._mavlink,
@@ -51,6 +51,9 @@ class Workshop:
         """One program with the messages of several subjects."""
         if kind in ("mavlink", "nanopb"):
             return self.subject(kind, TOGETHER)
+        if kind == "included":
+            apart = [self.subject("messages", part.protocol) for part in parts]
+            return self._in_one_source(self.together("messages", apart))
         name = kind if kind in ("expert", "inlined") else "protogen"
         header = FOLDER / "subjects" / f"use_{name}_all.h"
         folders = tuple(folder for part in parts for folder in part.folders)
@@ -67,6 +70,17 @@ class Workshop:
         header = FOLDER / "subjects" / f"use_protogen_{protocol.name}.h"
         flags = ("-DBENCH_POLLS",) if _is_polled(source.with_suffix(".h")) else ()
         return Subject(events, protocol, header, (source.parent,), (source,), flags)
+
+    def _included(self, protocol: Protocol) -> Subject:
+        """The generated source as a part of the application's, all of it static."""
+        return self._in_one_source(self._protogen("messages", protocol))
+
+    def _in_one_source(self, own: Subject) -> Subject:
+        lines = [f'#include "{path}"' for path in (*own.sources, own.header)]
+        header = self.folder / f"use_included_{own.protocol.name}.h"
+        header.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        flags = [*own.flags, *(flag for path in own.sources for flag in _all_static(path.stem))]
+        return Subject("included", own.protocol, header, own.folders, (), tuple(flags))
 
     def _expert(self, protocol: Protocol) -> Subject:
         folder = FOLDER / "expert"
@@ -144,10 +158,15 @@ class Workshop:
         return program
 
 
+def _all_static(name: str) -> Sequence[str]:
+    """What a source defines that includes a generated one."""
+    macros = ("API=static inline", "APART=static", "NO_WEAK", "NO_HANDLERS")
+    return [f"-D{name.upper()}_{macro}" for macro in macros]
+
+
 def _is_polled(header: Path) -> bool:
-    """Whether `push` of a generated decoder fills an event in, and calls nobody."""
-    found = re.search(r"_decoder_push\(([^)]*)\)", header.read_text(encoding="utf-8"))
-    return found is not None and "event" in found[1]
+    """Whether `push` of a generated decoder returns what is complete, and calls nobody."""
+    return "_decoder_event(" in header.read_text(encoding="utf-8")
 
 
 def frames_of(host: Path, which: int, count: int) -> list[bytes]:
