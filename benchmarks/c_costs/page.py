@@ -145,7 +145,8 @@ frame.
 
 ### Decoding, for each byte
 
-{rover} {slow}
+{rover}
+{slow}
 
 {per_byte}
 
@@ -176,8 +177,8 @@ the time of protogen with `NAME_SSE2`, which is `--events messages` too, to twic
 {seeds} streams of {pieces} pieces as in [resync.md](resync.md): frames, damaged frames and noise.
 Found are undamaged frames behind whose last byte the message was delivered. MAVLink C of rn1 has
 gyro frames only. Frames of dagny and rover have an end and no start of their own: one that stands
-right behind noise is a part of that, for every receiver. Of probe, a frame inside of what looks
-like the start of another is delivered later, when that was given up, and not counted here.
+right behind noise is a part of that. Of probe, a frame inside of what looks like the start of
+another is delivered later, when that was given up, and not counted here.
 
 {recovery}
 
