@@ -79,11 +79,11 @@ static inline uint8_t take(struct expert_atrv_decoder *decoder, uint8_t byte) {
     return 0;
 }
 
-uint8_t expert_atrv_push(struct expert_atrv_decoder *decoder, uint8_t byte) {
+EXPERT_API uint8_t expert_atrv_push(struct expert_atrv_decoder *decoder, uint8_t byte) {
     return take(decoder, byte);
 }
 
-size_t expert_atrv_feed(struct expert_atrv_decoder *decoder, const uint8_t *data, size_t size,
+EXPERT_API size_t expert_atrv_feed(struct expert_atrv_decoder *decoder, const uint8_t *data, size_t size,
                         uint8_t *which) {
     size_t at = 0;
     *which = 0;
@@ -101,7 +101,7 @@ static uint32_t load32(const uint8_t *at) {
     return value;
 }
 
-void expert_atrv_read_motor(const struct expert_atrv_decoder *decoder,
+EXPERT_API void expert_atrv_read_motor(const struct expert_atrv_decoder *decoder,
                             struct expert_atrv_motor *motor) {
     const uint8_t *const payload = &decoder->content[4];
     motor->unknown = load32(payload);
@@ -113,7 +113,7 @@ void expert_atrv_read_motor(const struct expert_atrv_decoder *decoder,
     motor->torque = (int32_t)load32(&payload[21]);
 }
 
-void expert_atrv_read_sonar(const struct expert_atrv_decoder *decoder,
+EXPERT_API void expert_atrv_read_sonar(const struct expert_atrv_decoder *decoder,
                             struct expert_atrv_sonar *sonar) {
     const uint8_t *at = &decoder->content[12];
     const uint8_t *const end = &decoder->content[decoder->size - 1u];
@@ -165,7 +165,7 @@ static size_t finish(uint8_t *frame, const uint8_t head[4], uint8_t size) {
     return (size_t)(to - frame);
 }
 
-size_t expert_atrv_frame_motor(const struct expert_atrv_motor *motor, uint8_t number,
+EXPERT_API size_t expert_atrv_frame_motor(const struct expert_atrv_motor *motor, uint8_t number,
                                uint8_t *frame, size_t capacity) {
     const uint8_t head[4] = {0x02u, number, 0x21u, 25u};
     uint8_t *at;
@@ -183,7 +183,7 @@ size_t expert_atrv_frame_motor(const struct expert_atrv_motor *motor, uint8_t nu
     return finish(frame, head, 25u);
 }
 
-size_t expert_atrv_frame_sonar(const struct expert_atrv_sonar *sonar, uint8_t number,
+EXPERT_API size_t expert_atrv_frame_sonar(const struct expert_atrv_sonar *sonar, uint8_t number,
                                uint8_t *frame, size_t capacity) {
     const uint8_t size = (uint8_t)(8u + 3u * sonar->count);
     const uint8_t head[4] = {0x04u, number, 0x02u, size};

@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "expert_api.h"
+
 #define EXPERT_ATRV_MOTOR 1u
 #define EXPERT_ATRV_SONAR 2u
 #define EXPERT_ATRV_READINGS 17u
@@ -41,21 +43,21 @@ struct expert_atrv_decoder {
 };
 
 /* Takes a byte; returns which message it completes, or 0. */
-uint8_t expert_atrv_push(struct expert_atrv_decoder *decoder, uint8_t byte);
-size_t expert_atrv_feed(struct expert_atrv_decoder *decoder, const uint8_t *data, size_t size,
+EXPERT_API uint8_t expert_atrv_push(struct expert_atrv_decoder *decoder, uint8_t byte);
+EXPERT_API size_t expert_atrv_feed(struct expert_atrv_decoder *decoder, const uint8_t *data, size_t size,
                         uint8_t *which);
 static inline uint8_t expert_atrv_number(const struct expert_atrv_decoder *decoder) {
     return decoder->content[1];
 }
-void expert_atrv_read_motor(const struct expert_atrv_decoder *decoder,
+EXPERT_API void expert_atrv_read_motor(const struct expert_atrv_decoder *decoder,
                             struct expert_atrv_motor *motor);
-void expert_atrv_read_sonar(const struct expert_atrv_decoder *decoder,
+EXPERT_API void expert_atrv_read_sonar(const struct expert_atrv_decoder *decoder,
                             struct expert_atrv_sonar *sonar);
 
 /* Return the size of the frame; 0 where a value is out of range or the buffer may be too short. */
-size_t expert_atrv_frame_motor(const struct expert_atrv_motor *motor, uint8_t number,
+EXPERT_API size_t expert_atrv_frame_motor(const struct expert_atrv_motor *motor, uint8_t number,
                                uint8_t *frame, size_t capacity);
-size_t expert_atrv_frame_sonar(const struct expert_atrv_sonar *sonar, uint8_t number,
+EXPERT_API size_t expert_atrv_frame_sonar(const struct expert_atrv_sonar *sonar, uint8_t number,
                                uint8_t *frame, size_t capacity);
 
 #endif

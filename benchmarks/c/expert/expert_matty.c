@@ -38,11 +38,11 @@ static inline bool take(struct expert_matty_decoder *decoder, uint8_t byte) {
     return false;
 }
 
-bool expert_matty_push(struct expert_matty_decoder *decoder, uint8_t byte) {
+EXPERT_API bool expert_matty_push(struct expert_matty_decoder *decoder, uint8_t byte) {
     return take(decoder, byte);
 }
 
-size_t expert_matty_feed(struct expert_matty_decoder *decoder, const uint8_t *data, size_t size,
+EXPERT_API size_t expert_matty_feed(struct expert_matty_decoder *decoder, const uint8_t *data, size_t size,
                          bool *complete) {
     size_t at = 0;
     *complete = false;
@@ -56,7 +56,7 @@ static uint16_t load(const uint8_t *at) {
     return (uint16_t)(at[0] | (uint16_t)((uint16_t)at[1] << 8));
 }
 
-void expert_matty_read(const struct expert_matty_decoder *decoder,
+EXPERT_API void expert_matty_read(const struct expert_matty_decoder *decoder,
                        struct expert_matty_status *status) {
     const uint8_t *const payload = &decoder->content[2];
     status->status = payload[0];
@@ -75,7 +75,7 @@ static void store(uint8_t *at, uint16_t value) {
     at[1] = (uint8_t)(value >> 8);
 }
 
-size_t expert_matty_frame(const struct expert_matty_status *status, uint8_t counter,
+EXPERT_API size_t expert_matty_frame(const struct expert_matty_status *status, uint8_t counter,
                           uint8_t *frame, size_t capacity) {
     /* The content stands at the end of the frame's room; escaping never overtakes it. */
     uint8_t *const content = &frame[EXPERT_MATTY_ROOM - EXPERT_MATTY_PAYLOAD - 3u];

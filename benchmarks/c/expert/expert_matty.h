@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "expert_api.h"
+
 #define EXPERT_MATTY_PAYLOAD 18u
 /* Every byte behind the sync may be escaped. */
 #define EXPERT_MATTY_ROOM (1u + 2u * (EXPERT_MATTY_PAYLOAD + 4u))
@@ -28,17 +30,17 @@ struct expert_matty_decoder {
 };
 
 /* Takes a byte; returns whether it completes a status. */
-bool expert_matty_push(struct expert_matty_decoder *decoder, uint8_t byte);
-size_t expert_matty_feed(struct expert_matty_decoder *decoder, const uint8_t *data, size_t size,
+EXPERT_API bool expert_matty_push(struct expert_matty_decoder *decoder, uint8_t byte);
+EXPERT_API size_t expert_matty_feed(struct expert_matty_decoder *decoder, const uint8_t *data, size_t size,
                          bool *complete);
 static inline uint8_t expert_matty_counter(const struct expert_matty_decoder *decoder) {
     return decoder->content[0];
 }
-void expert_matty_read(const struct expert_matty_decoder *decoder,
+EXPERT_API void expert_matty_read(const struct expert_matty_decoder *decoder,
                        struct expert_matty_status *status);
 
 /* Returns the size of the frame; 0 where the buffer may be too short. */
-size_t expert_matty_frame(const struct expert_matty_status *status, uint8_t counter,
+EXPERT_API size_t expert_matty_frame(const struct expert_matty_status *status, uint8_t counter,
                           uint8_t *frame, size_t capacity);
 
 #endif

@@ -19,11 +19,11 @@ static inline uint8_t take(struct expert_rn1_decoder *decoder, uint8_t byte) {
     return decoder->left == 0 ? decoder->id : 0;
 }
 
-uint8_t expert_rn1_push(struct expert_rn1_decoder *decoder, uint8_t byte) {
+EXPERT_API uint8_t expert_rn1_push(struct expert_rn1_decoder *decoder, uint8_t byte) {
     return take(decoder, byte);
 }
 
-size_t expert_rn1_feed(struct expert_rn1_decoder *decoder, const uint8_t *data, size_t size,
+EXPERT_API size_t expert_rn1_feed(struct expert_rn1_decoder *decoder, const uint8_t *data, size_t size,
                        uint8_t *id) {
     size_t at = 0;
     *id = 0;
@@ -37,7 +37,7 @@ static uint16_t load(const uint8_t *at) {
     return (uint16_t)(at[0] | (uint16_t)(at[1] << 7));
 }
 
-void expert_rn1_read_gyro(const struct expert_rn1_decoder *decoder, struct expert_rn1_gyro *gyro) {
+EXPERT_API void expert_rn1_read_gyro(const struct expert_rn1_decoder *decoder, struct expert_rn1_gyro *gyro) {
     const uint8_t *at = &decoder->payload[1];
     gyro->status = decoder->payload[0];
     for (uint8_t i = 0; i < 3u; i++, at += 2) {
@@ -45,7 +45,7 @@ void expert_rn1_read_gyro(const struct expert_rn1_decoder *decoder, struct exper
     }
 }
 
-void expert_rn1_read_lidar(const struct expert_rn1_decoder *decoder,
+EXPERT_API void expert_rn1_read_lidar(const struct expert_rn1_decoder *decoder,
                            struct expert_rn1_lidar *lidar) {
     const uint8_t *at = &decoder->payload[1];
     lidar->status = decoder->payload[0];
@@ -60,7 +60,7 @@ static uint8_t *store(uint8_t *at, uint16_t value) {
     return at + 2;
 }
 
-size_t expert_rn1_frame_gyro(const struct expert_rn1_gyro *gyro, uint8_t *frame, size_t capacity) {
+EXPERT_API size_t expert_rn1_frame_gyro(const struct expert_rn1_gyro *gyro, uint8_t *frame, size_t capacity) {
     uint8_t *at = &frame[2];
     if (capacity < EXPERT_RN1_GYRO_FRAME || gyro->status > 0x7Fu) {
         return 0;
@@ -86,7 +86,7 @@ static bool is_lidar(const struct expert_rn1_lidar *lidar) {
     return lidar->status <= 0x7Fu && all < 0x4000u;
 }
 
-size_t expert_rn1_frame_lidar(const struct expert_rn1_lidar *lidar, uint8_t *frame,
+EXPERT_API size_t expert_rn1_frame_lidar(const struct expert_rn1_lidar *lidar, uint8_t *frame,
                               size_t capacity) {
     uint8_t *at = &frame[2];
     if (capacity < EXPERT_RN1_LIDAR_FRAME || !is_lidar(lidar)) {
@@ -100,7 +100,7 @@ size_t expert_rn1_frame_lidar(const struct expert_rn1_lidar *lidar, uint8_t *fra
     return EXPERT_RN1_LIDAR_FRAME;
 }
 
-bool expert_rn1_send_lidar(const struct expert_rn1_lidar *lidar,
+EXPERT_API bool expert_rn1_send_lidar(const struct expert_rn1_lidar *lidar,
                            void (*put)(void *user, uint8_t byte), void *user) {
     if (!is_lidar(lidar)) {
         return false;

@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "expert_api.h"
+
 #define EXPERT_RN1_GYRO 0x80u
 #define EXPERT_RN1_LIDAR 0x84u
 #define EXPERT_RN1_GYRO_FRAME 8u
@@ -30,20 +32,20 @@ struct expert_rn1_decoder {
 };
 
 /* Takes a byte; returns the identity of the message that it completes, or 0. */
-uint8_t expert_rn1_push(struct expert_rn1_decoder *decoder, uint8_t byte);
+EXPERT_API uint8_t expert_rn1_push(struct expert_rn1_decoder *decoder, uint8_t byte);
 /* Takes bytes up to the end of a message; returns how many, and its identity or 0. */
-size_t expert_rn1_feed(struct expert_rn1_decoder *decoder, const uint8_t *data, size_t size,
+EXPERT_API size_t expert_rn1_feed(struct expert_rn1_decoder *decoder, const uint8_t *data, size_t size,
                        uint8_t *id);
-void expert_rn1_read_gyro(const struct expert_rn1_decoder *decoder, struct expert_rn1_gyro *gyro);
-void expert_rn1_read_lidar(const struct expert_rn1_decoder *decoder,
+EXPERT_API void expert_rn1_read_gyro(const struct expert_rn1_decoder *decoder, struct expert_rn1_gyro *gyro);
+EXPERT_API void expert_rn1_read_lidar(const struct expert_rn1_decoder *decoder,
                            struct expert_rn1_lidar *lidar);
 
 /* Return the size of the frame; 0 where a value is out of range or the buffer too short. */
-size_t expert_rn1_frame_gyro(const struct expert_rn1_gyro *gyro, uint8_t *frame, size_t capacity);
-size_t expert_rn1_frame_lidar(const struct expert_rn1_lidar *lidar, uint8_t *frame,
+EXPERT_API size_t expert_rn1_frame_gyro(const struct expert_rn1_gyro *gyro, uint8_t *frame, size_t capacity);
+EXPERT_API size_t expert_rn1_frame_lidar(const struct expert_rn1_lidar *lidar, uint8_t *frame,
                               size_t capacity);
 /* Hands the frame to a function; sends nothing where a value is out of range. */
-bool expert_rn1_send_lidar(const struct expert_rn1_lidar *lidar,
+EXPERT_API bool expert_rn1_send_lidar(const struct expert_rn1_lidar *lidar,
                            void (*put)(void *user, uint8_t byte), void *user);
 
 #endif

@@ -2,6 +2,8 @@
 #define decoder rn1_decoder
 #define take rn1_take
 #define taken rn1_taken
+#define load rn1_load
+#define store rn1_store
 #define subject_init rn1_init
 #define subject_push rn1_push
 #define subject_feed rn1_feed
@@ -12,6 +14,8 @@
 #define decoder atrv_decoder
 #define take atrv_take
 #define taken atrv_taken
+#define load atrv_load
+#define store atrv_store
 #define subject_init atrv_init
 #define subject_push atrv_push
 #define subject_feed atrv_feed
@@ -22,6 +26,8 @@
 #define decoder matty_decoder
 #define take matty_take
 #define taken matty_taken
+#define load matty_load
+#define store matty_store
 #define subject_init matty_init
 #define subject_push matty_push
 #define subject_feed matty_feed

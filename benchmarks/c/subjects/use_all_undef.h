@@ -1,6 +1,8 @@
 #undef decoder
 #undef take
 #undef taken
+#undef load
+#undef store
 #undef subject_init
 #undef subject_push
 #undef subject_feed

@@ -2,8 +2,6 @@
 
 static struct expert_atrv_decoder decoder;
 
-static inline void subject_init(void) {}
-
 static inline void taken(uint8_t which) {
     if (which == EXPERT_ATRV_MOTOR) {
         expert_atrv_read_motor(&decoder, BENCH_MESSAGE);
@@ -14,19 +12,9 @@ static inline void taken(uint8_t which) {
     }
 }
 
-static inline void subject_push(uint8_t byte) {
-    taken(expert_atrv_push(&decoder, byte));
-}
-
-static inline void subject_feed(const uint8_t *data, size_t size) {
-    while (size != 0) {
-        uint8_t which;
-        const size_t used = expert_atrv_feed(&decoder, data, size, &which);
-        taken(which);
-        data += used;
-        size -= used;
-    }
-}
+#define EXPERT(rest) expert_atrv##rest
+#define EXPERT_WHICH uint8_t
+#include "use_expert_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
     return which == 0 ? expert_atrv_frame_motor(BENCH_MESSAGE, 0xFF, frame, capacity)

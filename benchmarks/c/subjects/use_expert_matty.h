@@ -2,8 +2,6 @@
 
 static struct expert_matty_decoder decoder;
 
-static inline void subject_init(void) {}
-
 static inline void taken(bool complete) {
     if (complete) {
         expert_matty_read(&decoder, BENCH_MESSAGE);
@@ -11,19 +9,9 @@ static inline void taken(bool complete) {
     }
 }
 
-static inline void subject_push(uint8_t byte) {
-    taken(expert_matty_push(&decoder, byte));
-}
-
-static inline void subject_feed(const uint8_t *data, size_t size) {
-    while (size != 0) {
-        bool complete;
-        const size_t used = expert_matty_feed(&decoder, data, size, &complete);
-        taken(complete);
-        data += used;
-        size -= used;
-    }
-}
+#define EXPERT(rest) expert_matty##rest
+#define EXPERT_WHICH bool
+#include "use_expert_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
     (void)which;

@@ -2,8 +2,6 @@
 
 static struct expert_rn1_decoder decoder;
 
-static inline void subject_init(void) {}
-
 static inline void taken(uint8_t id) {
     if (id == EXPERT_RN1_GYRO) {
         expert_rn1_read_gyro(&decoder, BENCH_MESSAGE);
@@ -14,19 +12,9 @@ static inline void taken(uint8_t id) {
     }
 }
 
-static inline void subject_push(uint8_t byte) {
-    taken(expert_rn1_push(&decoder, byte));
-}
-
-static inline void subject_feed(const uint8_t *data, size_t size) {
-    while (size != 0) {
-        uint8_t id;
-        const size_t used = expert_rn1_feed(&decoder, data, size, &id);
-        taken(id);
-        data += used;
-        size -= used;
-    }
-}
+#define EXPERT(rest) expert_rn1##rest
+#define EXPERT_WHICH uint8_t
+#include "use_expert_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
     if (which == 0) {

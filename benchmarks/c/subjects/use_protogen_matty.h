@@ -10,40 +10,9 @@ static void take(void *user, const struct matty_esp_event *event) {
     }
 }
 
-#if defined(BENCH_POLLS)
-/* Memory of zeros is idle. */
-static inline void subject_init(void) {}
-
-static inline void subject_push(uint8_t byte) {
-    struct matty_esp_event event;
-    matty_esp_decoder_event(&decoder, matty_esp_decoder_push(&decoder, byte), &event);
-    take(NULL, &event);
-}
-
-static inline void subject_feed(const uint8_t *data, size_t size) {
-    while (size != 0) {
-        struct matty_esp_event event;
-        const size_t used = matty_esp_decoder_feed(&decoder, data, size, &event);
-        if (event.message != MATTY_NO_MESSAGE) {
-            take(NULL, &event);
-        }
-        data += used;
-        size -= used;
-    }
-}
-#else
-static inline void subject_init(void) {
-    matty_esp_decoder_init(&decoder, take, NULL);
-}
-
-static inline void subject_push(uint8_t byte) {
-    matty_esp_decoder_push(&decoder, byte);
-}
-
-static inline void subject_feed(const uint8_t *data, size_t size) {
-    matty_esp_decoder_feed(&decoder, data, size);
-}
-#endif
+#define LINK(rest) matty_esp##rest
+#define NO_MESSAGE MATTY_NO_MESSAGE
+#include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
     size_t size = 0;

@@ -13,40 +13,9 @@ static void take(void *user, const struct rn1_brain_event *event) {
     }
 }
 
-#if defined(BENCH_POLLS)
-/* Memory of zeros is idle. */
-static inline void subject_init(void) {}
-
-static inline void subject_push(uint8_t byte) {
-    struct rn1_brain_event event;
-    rn1_brain_decoder_event(&decoder, rn1_brain_decoder_push(&decoder, byte), &event);
-    take(NULL, &event);
-}
-
-static inline void subject_feed(const uint8_t *data, size_t size) {
-    while (size != 0) {
-        struct rn1_brain_event event;
-        const size_t used = rn1_brain_decoder_feed(&decoder, data, size, &event);
-        if (event.message != RN1_NO_MESSAGE) {
-            take(NULL, &event);
-        }
-        data += used;
-        size -= used;
-    }
-}
-#else
-static inline void subject_init(void) {
-    rn1_brain_decoder_init(&decoder, take, NULL);
-}
-
-static inline void subject_push(uint8_t byte) {
-    rn1_brain_decoder_push(&decoder, byte);
-}
-
-static inline void subject_feed(const uint8_t *data, size_t size) {
-    rn1_brain_decoder_feed(&decoder, data, size);
-}
-#endif
+#define LINK(rest) rn1_brain##rest
+#define NO_MESSAGE RN1_NO_MESSAGE
+#include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
     size_t size = 0;

@@ -1,0 +1,3 @@
+#include "expert_atrv.c"
+
+#include "use_expert_atrv.h"

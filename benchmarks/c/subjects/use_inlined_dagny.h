@@ -1,0 +1,3 @@
+#include "expert_dagny.c"
+
+#include "use_expert_dagny.h"

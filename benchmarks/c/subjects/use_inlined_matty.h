@@ -1,0 +1,3 @@
+#include "expert_matty.c"
+
+#include "use_expert_matty.h"

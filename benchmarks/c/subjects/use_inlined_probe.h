@@ -1,0 +1,3 @@
+#include "expert_probe.c"
+
+#include "use_expert_probe.h"

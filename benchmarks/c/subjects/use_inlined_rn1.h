@@ -1,0 +1,3 @@
+#include "expert_rn1.c"
+
+#include "use_expert_rn1.h"

@@ -1,0 +1,3 @@
+#include "expert_rover.c"
+
+#include "use_expert_rover.h"

@@ -1,0 +1,3 @@
+#include "expert_tether.c"
+
+#include "use_expert_tether.h"

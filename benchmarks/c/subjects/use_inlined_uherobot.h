@@ -1,0 +1,3 @@
+#include "expert_uherobot.c"
+
+#include "use_expert_uherobot.h"

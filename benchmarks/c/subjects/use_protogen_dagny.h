@@ -1,0 +1,53 @@
+#include "dagny.h"
+
+static struct dagny_host_decoder decoder;
+
+static void take(void *user, const struct dagny_host_event *event) {
+    (void)user;
+    switch (event->message) {
+    case DAGNY_MESSAGE_MOTOR:
+        dagny_motor_load(BENCH_MESSAGE, event->payload);
+        bench_seen(0);
+        break;
+    case DAGNY_MESSAGE_STEERING:
+        dagny_steering_load(BENCH_MESSAGE, event->payload);
+        bench_seen(1);
+        break;
+    case DAGNY_MESSAGE_REFLEX:
+        dagny_reflex_load(BENCH_MESSAGE, event->payload);
+        bench_seen(2);
+        break;
+    case DAGNY_MESSAGE_POWER:
+        dagny_power_load(BENCH_MESSAGE, event->payload);
+        bench_seen(3);
+        break;
+    default:
+        break;
+    }
+}
+
+#define LINK(rest) dagny_host##rest
+#define NO_MESSAGE DAGNY_NO_MESSAGE
+#include "use_protogen_link.h"
+
+static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
+    size_t size = 0;
+    enum dagny_result result;
+    switch (which) {
+    case 0:
+        result = dagny_motor_frame(BENCH_MESSAGE, frame, capacity, &size);
+        break;
+    case 1:
+        result = dagny_steering_frame(BENCH_MESSAGE, frame, capacity, &size);
+        break;
+    case 2:
+        result = dagny_reflex_frame(BENCH_MESSAGE, frame, capacity, &size);
+        break;
+    default:
+        result = dagny_power_frame(BENCH_MESSAGE, frame, capacity, &size);
+        break;
+    }
+    return result == DAGNY_OK ? size : 0;
+}
+
+#include "fill_dagny.h"

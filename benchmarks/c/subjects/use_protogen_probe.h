@@ -1,0 +1,32 @@
+#include "probe.h"
+
+static struct probe_sensor_decoder decoder;
+
+static void take(void *user, const struct probe_sensor_event *event) {
+    (void)user;
+    if (event->message == PROBE_MESSAGE_ATTITUDE) {
+        probe_attitude_load(BENCH_MESSAGE, event->payload);
+        bench_seen(0);
+    } else if (event->message == PROBE_MESSAGE_POWER) {
+        probe_power_load(BENCH_MESSAGE, event->payload);
+        bench_seen(1);
+    }
+}
+
+#define LINK(rest) probe_sensor##rest
+#define NO_MESSAGE PROBE_NO_MESSAGE
+#include "use_protogen_link.h"
+
+static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
+    size_t size = 0;
+    enum probe_result result;
+    if (which == 0) {
+        result = probe_attitude_frame(BENCH_MESSAGE, frame, capacity, &size);
+    } else {
+        result = probe_power_frame(BENCH_MESSAGE, frame, capacity, &size);
+    }
+    return result == PROBE_OK ? size : 0;
+}
+
+#define FILLED(message) probe_##message
+#include "fill_probe.h"

@@ -1,0 +1,1 @@
+"""What generated C costs, beside C by hand and peers: programs, measurements and the page."""
