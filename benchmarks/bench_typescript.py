@@ -364,9 +364,10 @@ there is more to allocate and to collect. Frames that are there as a whole are t
 function, which takes escapes off by a table and sums up in a loop of its own, where code by hand
 does both in one loop with constants; frames in pieces go by a description of the frame. In small
 portions this counts less, because code by hand copies what is left and begins the frame anew, and
-protogen goes on where it was. An encoder writes the payload, sums it up, looks for bytes to stuff,
-and copies, where code by hand does all of it in one pass; it looks the sender and the message up by
-their names.
+protogen goes on where it was. Encoders put plain frames together by a printed function, which sums
+up and stuffs in one loop; the payload is written before, as only then its size is known, where code
+by hand does all of it in one pass. They look the message up by its name, and see to it that callers
+give no part that there is none of.
 """
 
 

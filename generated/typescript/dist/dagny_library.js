@@ -29,8 +29,8 @@ export const PowerCode = {
 function readSonar(r) {
   const distances = new Array(5);
   r.enter("distances");
-  for (let i = 0; i < 5; i++) {
-    distances[i] = r.u8(i);
+  for (let i_ = 0; i_ < 5; i_++) {
+    distances[i_] = r.u8(i_);
   }
   r.leave();
   return { message: "sonar", distances };
@@ -39,8 +39,8 @@ function readSonar(r) {
 function writeSonar(w, m) {
   const items = w.list(m.distances, 5, 5, "distances");
   w.enter("distances");
-  for (let i = 0; i < items.length; i++) {
-    w.u8(items[i], i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    w.u8(items[i_], i_);
   }
   w.leave();
 }
@@ -190,8 +190,8 @@ export const planOfGpsPosition = /* @__PURE__ */ rt.plan("gps_position", [[[71, 
 function readLaser(r) {
   const readings = [];
   r.enter("readings");
-  for (let i = 0, lastAt = -1; (lastAt = r.next(lastAt, i, 0, 512)) >= 0; i++) {
-    readings.push(r.u8(i));
+  for (let i_ = 0, lastAt = -1; (lastAt = r.next(lastAt, i_, 0, 512)) >= 0; i_++) {
+    readings.push(r.u8(i_));
   }
   r.leave();
   return { message: "laser", readings };
@@ -200,8 +200,8 @@ function readLaser(r) {
 function writeLaser(w, m) {
   const items = w.list(m.readings, 0, 512, "readings");
   w.enter("readings");
-  for (let i = 0; i < items.length; i++) {
-    w.u8(items[i], i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    w.u8(items[i_], i_);
   }
   w.leave();
 }
@@ -284,6 +284,27 @@ function hostFrame() {
       if (!f.fill(end)) return null;
       return f.event(values, group, 1, end);
     },
+    put: (f, w, given, counts) => {
+      for (const _ in given) return null;
+      const id = f.identity(0);
+      const end = w.size;
+      w.room(1);
+      const { bytes } = w;
+      bytes[0] = id;
+      bytes[end] = 13;
+      const wire = w.wire(2 * w.size);
+      let at = 0;
+      let i = 0;
+      for (; i < 0; i++) wire[at++] = bytes[i] ?? 0;
+      for (; i < end; i++) {
+        const byte = bytes[i] ?? 0;
+        if (byte === 13) { wire[at++] = 27; wire[at++] = 22; } else
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
+        wire[at++] = byte;
+      }
+      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
+      return wire.slice(0, at);
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -338,6 +359,27 @@ function robotFrame() {
       const end = group.fixed + 1;
       if (!f.fill(end)) return null;
       return f.event(values, group, 1, end);
+    },
+    put: (f, w, given, counts) => {
+      for (const _ in given) return null;
+      const id = f.identity(0);
+      const end = w.size;
+      w.room(1);
+      const { bytes } = w;
+      bytes[0] = id;
+      bytes[end] = 13;
+      const wire = w.wire(2 * w.size);
+      let at = 0;
+      let i = 0;
+      for (; i < 0; i++) wire[at++] = bytes[i] ?? 0;
+      for (; i < end; i++) {
+        const byte = bytes[i] ?? 0;
+        if (byte === 13) { wire[at++] = 27; wire[at++] = 22; } else
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
+        wire[at++] = byte;
+      }
+      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
+      return wire.slice(0, at);
     },
     slots: 1,
     identity: [0],

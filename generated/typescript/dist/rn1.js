@@ -107,8 +107,8 @@ export const planOfMoveRelativeArc = /* @__PURE__ */ rt.plan("move_relative_arc"
 function readMaintenance(r) {
   const magic = new Array(3);
   r.enter("magic");
-  for (let i = 0; i < 3; i++) {
-    magic[i] = r.u7(i);
+  for (let i_ = 0; i_ < 3; i_++) {
+    magic[i_] = r.u7(i_);
   }
   r.leave();
   const magic_ = r.constant(magic, [66, 17, 122], "magic");
@@ -144,8 +144,8 @@ function readMaintenance(r) {
 function writeMaintenance(w, m) {
   const items = w.list(w.constant(m.magic, [66, 17, 122], "magic"), 3, 3, "magic");
   w.enter("magic");
-  for (let i = 0; i < items.length; i++) {
-    w.u7(items[i], i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    w.u7(items[i_], i_);
   }
   w.leave();
   const operation = w.int(m.operation, 0, 127, "operation");
@@ -254,8 +254,8 @@ function readLidar(r) {
   const status = r.u7("status");
   const distances = new Array(360);
   r.enter("distances");
-  for (let i = 0; i < 360; i++) {
-    distances[i] = r.u14(i);
+  for (let i_ = 0; i_ < 360; i_++) {
+    distances[i_] = r.u14(i_);
   }
   r.leave();
   return { message: "lidar", status, distances };
@@ -265,8 +265,8 @@ function writeLidar(w, m) {
   w.u7(m.status, "status");
   const items = w.list(m.distances, 360, 360, "distances");
   w.enter("distances");
-  for (let i = 0; i < items.length; i++) {
-    w.u14(items[i], i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    w.u14(items[i_], i_);
   }
   w.leave();
 }
@@ -278,8 +278,8 @@ function readSonar(r) {
   const status = r.u7("status");
   const distances = new Array(7);
   r.enter("distances");
-  for (let i = 0; i < 7; i++) {
-    distances[i] = r.u14(i);
+  for (let i_ = 0; i_ < 7; i_++) {
+    distances[i_] = r.u14(i_);
   }
   r.leave();
   return { message: "sonar", status, distances };
@@ -289,8 +289,8 @@ function writeSonar(w, m) {
   w.u7(m.status, "status");
   const items = w.list(m.distances, 7, 7, "distances");
   w.enter("distances");
-  for (let i = 0; i < items.length; i++) {
-    w.u14(items[i], i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    w.u14(items[i_], i_);
   }
   w.leave();
 }
@@ -369,6 +369,16 @@ function hostFrame() {
       if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
       return f.event(values, group, at + 1, end);
     },
+    put: (f, w, given, counts) => {
+      for (const _ in given) return null;
+      const start = f.identity(0);
+      const end = w.size;
+      w.room(1);
+      const { bytes } = w;
+      bytes[0] = start;
+      bytes[end] = 255;
+      return w.taken();
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -421,6 +431,15 @@ function brainFrame() {
       const end = at + group.fixed + 1;
       if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
       return f.event(values, group, at + 1, end);
+    },
+    put: (f, w, given, counts) => {
+      for (const _ in given) return null;
+      const start = f.identity(0);
+      const end = w.size;
+      w.room(0);
+      const { bytes } = w;
+      bytes[0] = start;
+      return w.taken();
     },
     slots: 1,
     identity: [0],

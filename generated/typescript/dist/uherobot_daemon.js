@@ -35,8 +35,8 @@ function readMotorsServosLeds(r) {
   const left_motor = r.i16be("left_motor");
   const servos = new Array(8);
   r.enter("servos");
-  for (let i = 0; i < 8; i++) {
-    servos[i] = r.u16be(i);
+  for (let i_ = 0; i_ < 8; i_++) {
+    servos[i_] = r.u16be(i_);
   }
   r.leave();
   const leds = r.u8("leds");
@@ -48,8 +48,8 @@ function writeMotorsServosLeds(w, m) {
   w.i16be(w.ranged(w.int(m.left_motor, -32768, 32767, "left_motor"), -3200, 3200, [], "left_motor"), "left_motor");
   const items = w.list(m.servos, 8, 8, "servos");
   w.enter("servos");
-  for (let i = 0; i < items.length; i++) {
-    w.u16be(w.ranged(w.int(items[i], 0, 65535, i), 0, 250, [], i), i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    w.u16be(w.ranged(w.int(items[i_], 0, 65535, i_), 0, 250, [], i_), i_);
   }
   w.leave();
   w.u8(m.leds, "leds");

@@ -407,8 +407,8 @@ export const planOfPower: rt.MessagePlan<Power> = /* @__PURE__ */ rt.plan("power
 function readLaser(r: rt.Reader): Laser {
   const readings = [];
   r.enter("readings");
-  for (let i = 0, lastAt = -1; (lastAt = r.next(lastAt, i, 0, 512)) >= 0; i++) {
-    readings.push(r.u8(i));
+  for (let i_ = 0, lastAt = -1; (lastAt = r.next(lastAt, i_, 0, 512)) >= 0; i_++) {
+    readings.push(r.u8(i_));
   }
   r.leave();
   return { message: "laser", readings };
@@ -417,8 +417,8 @@ function readLaser(r: rt.Reader): Laser {
 function writeLaser(w: rt.Writer, m: Laser): void {
   const items = w.list(m.readings, 0, 512, "readings");
   w.enter("readings");
-  for (let i = 0; i < items.length; i++) {
-    w.u8(items[i], i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    w.u8(items[i_], i_);
   }
   w.leave();
 }

@@ -561,6 +561,47 @@ function pcFrame(): rt.Frame {
       if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 1, end)) return null;
       return f.event(values, group, 4, end);
     },
+    put: (f, w, given, counts) => {
+      for (const name in given) if (name !== "counter") return null;
+      const length = f.length(w.size);
+      const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
+      const command = f.identity(0);
+      if (length < 0 || counter < 0) return null;
+      const end = w.size;
+      w.room(1);
+      const { bytes } = w;
+      bytes[0] = 85;
+      bytes[1] = length;
+      bytes[2] = counter;
+      bytes[3] = command;
+      const wire = w.wire(2 * w.size);
+      let at = 0;
+      let i = 0;
+      for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
+      for (; i < 1; i++) {
+        const byte = bytes[i] ?? 0;
+        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; } else
+        if (byte === 86) { wire[at++] = 86; wire[at++] = 169; } else
+        wire[at++] = byte;
+      }
+      let sum = 0;
+      for (; i < end; i++) {
+        const byte = bytes[i] ?? 0;
+        sum += byte;
+        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; } else
+        if (byte === 86) { wire[at++] = 86; wire[at++] = 169; } else
+        wire[at++] = byte;
+      }
+      bytes[end] = -sum;
+      for (; i < end + 1; i++) {
+        const byte = bytes[i] ?? 0;
+        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; } else
+        if (byte === 86) { wire[at++] = 86; wire[at++] = 169; } else
+        wire[at++] = byte;
+      }
+      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
+      return wire.slice(0, at);
+    },
     slots: 3,
     identity: [1],
     lastIdentity: 1,
@@ -629,6 +670,47 @@ function espFrame(): rt.Frame {
       const end = length + 2;
       if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 1, end)) return null;
       return f.event(values, group, 4, end);
+    },
+    put: (f, w, given, counts) => {
+      for (const name in given) if (name !== "counter") return null;
+      const length = f.length(w.size);
+      const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
+      const command = f.identity(0);
+      if (length < 0 || counter < 0) return null;
+      const end = w.size;
+      w.room(1);
+      const { bytes } = w;
+      bytes[0] = 85;
+      bytes[1] = length;
+      bytes[2] = counter;
+      bytes[3] = command;
+      const wire = w.wire(2 * w.size);
+      let at = 0;
+      let i = 0;
+      for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
+      for (; i < 1; i++) {
+        const byte = bytes[i] ?? 0;
+        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; } else
+        if (byte === 86) { wire[at++] = 86; wire[at++] = 169; } else
+        wire[at++] = byte;
+      }
+      let sum = 0;
+      for (; i < end; i++) {
+        const byte = bytes[i] ?? 0;
+        sum += byte;
+        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; } else
+        if (byte === 86) { wire[at++] = 86; wire[at++] = 169; } else
+        wire[at++] = byte;
+      }
+      bytes[end] = -sum;
+      for (; i < end + 1; i++) {
+        const byte = bytes[i] ?? 0;
+        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; } else
+        if (byte === 86) { wire[at++] = 86; wire[at++] = 169; } else
+        wire[at++] = byte;
+      }
+      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
+      return wire.slice(0, at);
     },
     slots: 3,
     identity: [1],

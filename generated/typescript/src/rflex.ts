@@ -654,8 +654,8 @@ function readSonarData(r: rt.Reader): SonarData {
   const timestamp = r.u32be("timestamp");
   const readings = [];
   r.enter("readings");
-  for (let i = 0, lastAt = -1; (lastAt = r.next(lastAt, i, 0, 82)) >= 0; i++) {
-    r.enter(i);
+  for (let i_ = 0, lastAt = -1; (lastAt = r.next(lastAt, i_, 0, 82)) >= 0; i_++) {
+    r.enter(i_);
     const cluster = r.u8("cluster");
     const distance = r.u16be("distance");
     const value = { cluster, distance };
@@ -671,9 +671,9 @@ function writeSonarData(w: rt.Writer, m: SonarDataInput): void {
   w.u32be(m.timestamp, "timestamp");
   const items = w.list(m.readings, 0, 82, "readings");
   w.enter("readings");
-  for (let i = 0; i < items.length; i++) {
-    const item = w.record(items[i], i);
-    w.enter(i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    const item = w.record(items[i_], i_);
+    w.enter(i_);
     w.u8(item.cluster, "cluster");
     w.u16be(item.distance, "distance");
     w.leave();
@@ -817,6 +817,52 @@ function linuxFrame(): rt.Frame {
       if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 6, end)) return null;
       return f.event(values, group, 6, end);
     },
+    put: (f, w, given, counts) => {
+      for (const name in given) if (name !== "number") return null;
+      const class_ = f.identity(0);
+      const number_ = f.number(given["number"] ?? f.usual(0, counts), 0, 255);
+      const subclass = f.identity(1);
+      const length = f.length(w.size);
+      if (number_ < 0 || length < 0) return null;
+      const end = w.size;
+      w.room(3);
+      const { bytes } = w;
+      bytes[0] = 27;
+      bytes[1] = 2;
+      bytes[2] = class_;
+      bytes[3] = number_;
+      bytes[4] = subclass;
+      bytes[5] = length;
+      bytes[end + 1] = 27;
+      bytes[end + 2] = 3;
+      const wire = w.wire(3 * w.size);
+      let at = 0;
+      let i = 0;
+      for (; i < 2; i++) wire[at++] = bytes[i] ?? 0;
+      for (; i < 6; i++) {
+        const byte = bytes[i] ?? 0;
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
+        if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; } else
+        wire[at++] = byte;
+      }
+      let sum = 0;
+      for (; i < end; i++) {
+        const byte = bytes[i] ?? 0;
+        sum ^= byte;
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
+        if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; } else
+        wire[at++] = byte;
+      }
+      bytes[end] = sum;
+      for (; i < end + 1; i++) {
+        const byte = bytes[i] ?? 0;
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
+        if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; } else
+        wire[at++] = byte;
+      }
+      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
+      return wire.slice(0, at);
+    },
     slots: 4,
     identity: [0, 2],
     lastIdentity: 2,
@@ -889,6 +935,52 @@ function flexFrame(): rt.Frame {
       const end = length + 6;
       if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 6, end)) return null;
       return f.event(values, group, 6, end);
+    },
+    put: (f, w, given, counts) => {
+      for (const name in given) if (name !== "number") return null;
+      const class_ = f.identity(0);
+      const number_ = f.number(given["number"] ?? f.usual(0, counts), 0, 255);
+      const subclass = f.identity(1);
+      const length = f.length(w.size);
+      if (number_ < 0 || length < 0) return null;
+      const end = w.size;
+      w.room(3);
+      const { bytes } = w;
+      bytes[0] = 27;
+      bytes[1] = 2;
+      bytes[2] = class_;
+      bytes[3] = number_;
+      bytes[4] = subclass;
+      bytes[5] = length;
+      bytes[end + 1] = 27;
+      bytes[end + 2] = 3;
+      const wire = w.wire(3 * w.size);
+      let at = 0;
+      let i = 0;
+      for (; i < 2; i++) wire[at++] = bytes[i] ?? 0;
+      for (; i < 6; i++) {
+        const byte = bytes[i] ?? 0;
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
+        if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; } else
+        wire[at++] = byte;
+      }
+      let sum = 0;
+      for (; i < end; i++) {
+        const byte = bytes[i] ?? 0;
+        sum ^= byte;
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
+        if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; } else
+        wire[at++] = byte;
+      }
+      bytes[end] = sum;
+      for (; i < end + 1; i++) {
+        const byte = bytes[i] ?? 0;
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
+        if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; } else
+        wire[at++] = byte;
+      }
+      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
+      return wire.slice(0, at);
     },
     slots: 4,
     identity: [0, 2],

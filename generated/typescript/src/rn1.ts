@@ -319,8 +319,8 @@ export const planOfMoveRelativeArc: rt.MessagePlan<MoveRelativeArc> = /* @__PURE
 function readMaintenance(r: rt.Reader): Maintenance {
   const magic = new Array(3);
   r.enter("magic");
-  for (let i = 0; i < 3; i++) {
-    magic[i] = r.u7(i);
+  for (let i_ = 0; i_ < 3; i_++) {
+    magic[i_] = r.u7(i_);
   }
   r.leave();
   const magic_ = r.constant(magic, [66, 17, 122], "magic");
@@ -356,8 +356,8 @@ function readMaintenance(r: rt.Reader): Maintenance {
 function writeMaintenance(w: rt.Writer, m: MaintenanceInput): void {
   const items = w.list(w.constant(m.magic, [66, 17, 122], "magic"), 3, 3, "magic");
   w.enter("magic");
-  for (let i = 0; i < items.length; i++) {
-    w.u7(items[i], i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    w.u7(items[i_], i_);
   }
   w.leave();
   const operation = w.int(m.operation, 0, 127, "operation");
@@ -466,8 +466,8 @@ function readLidar(r: rt.Reader): Lidar {
   const status = r.u7("status");
   const distances = new Array(360);
   r.enter("distances");
-  for (let i = 0; i < 360; i++) {
-    distances[i] = r.u14(i);
+  for (let i_ = 0; i_ < 360; i_++) {
+    distances[i_] = r.u14(i_);
   }
   r.leave();
   return { message: "lidar", status, distances };
@@ -477,8 +477,8 @@ function writeLidar(w: rt.Writer, m: Lidar): void {
   w.u7(m.status, "status");
   const items = w.list(m.distances, 360, 360, "distances");
   w.enter("distances");
-  for (let i = 0; i < items.length; i++) {
-    w.u14(items[i], i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    w.u14(items[i_], i_);
   }
   w.leave();
 }
@@ -490,8 +490,8 @@ function readSonar(r: rt.Reader): Sonar {
   const status = r.u7("status");
   const distances = new Array(7);
   r.enter("distances");
-  for (let i = 0; i < 7; i++) {
-    distances[i] = r.u14(i);
+  for (let i_ = 0; i_ < 7; i_++) {
+    distances[i_] = r.u14(i_);
   }
   r.leave();
   return { message: "sonar", status, distances };
@@ -501,8 +501,8 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
   w.u7(m.status, "status");
   const items = w.list(m.distances, 7, 7, "distances");
   w.enter("distances");
-  for (let i = 0; i < items.length; i++) {
-    w.u14(items[i], i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    w.u14(items[i_], i_);
   }
   w.leave();
 }
@@ -581,6 +581,16 @@ function hostFrame(): rt.Frame {
       if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
       return f.event(values, group, at + 1, end);
     },
+    put: (f, w, given, counts) => {
+      for (const _ in given) return null;
+      const start = f.identity(0);
+      const end = w.size;
+      w.room(1);
+      const { bytes } = w;
+      bytes[0] = start;
+      bytes[end] = 255;
+      return w.taken();
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -633,6 +643,15 @@ function brainFrame(): rt.Frame {
       const end = at + group.fixed + 1;
       if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
       return f.event(values, group, at + 1, end);
+    },
+    put: (f, w, given, counts) => {
+      for (const _ in given) return null;
+      const start = f.identity(0);
+      const end = w.size;
+      w.room(0);
+      const { bytes } = w;
+      bytes[0] = start;
+      return w.taken();
     },
     slots: 1,
     identity: [0],

@@ -108,8 +108,8 @@ function readMotorsServosLeds(r: rt.Reader): MotorsServosLeds {
   const motor_2 = r.i16be("motor_2");
   const servos = new Array(8);
   r.enter("servos");
-  for (let i = 0; i < 8; i++) {
-    servos[i] = r.u16be(i);
+  for (let i_ = 0; i_ < 8; i_++) {
+    servos[i_] = r.u16be(i_);
   }
   r.leave();
   const leds = r.u8("leds");
@@ -121,8 +121,8 @@ function writeMotorsServosLeds(w: rt.Writer, m: MotorsServosLeds): void {
   w.i16be(m.motor_2, "motor_2");
   const items = w.list(m.servos, 8, 8, "servos");
   w.enter("servos");
-  for (let i = 0; i < items.length; i++) {
-    w.u16be(items[i], i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    w.u16be(items[i_], i_);
   }
   w.leave();
   w.u8(m.leds, "leds");
@@ -136,8 +136,8 @@ function readMotorsTwoServos(r: rt.Reader): MotorsTwoServos {
   const motor_2 = r.i16be("motor_2");
   const servos = new Array(2);
   r.enter("servos");
-  for (let i = 0; i < 2; i++) {
-    servos[i] = r.u16be(i);
+  for (let i_ = 0; i_ < 2; i_++) {
+    servos[i_] = r.u16be(i_);
   }
   r.leave();
   return { message: "motors_two_servos", motor_1, motor_2, servos };
@@ -148,8 +148,8 @@ function writeMotorsTwoServos(w: rt.Writer, m: MotorsTwoServos): void {
   w.i16be(m.motor_2, "motor_2");
   const items = w.list(m.servos, 2, 2, "servos");
   w.enter("servos");
-  for (let i = 0; i < items.length; i++) {
-    w.u16be(items[i], i);
+  for (let i_ = 0; i_ < items.length; i_++) {
+    w.u16be(items[i_], i_);
   }
   w.leave();
 }

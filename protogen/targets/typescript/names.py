@@ -33,7 +33,9 @@ decoderStream encode events jsonLine rt protocol
 """
 """What a module has itself."""
 
-_LOCALS = "r w m rt at f view values group end"
+_LOCALS = """
+r w m rt at f view values group end given counts name bytes wire i byte sum
+"""
 """What generated functions have themselves."""
 
 

@@ -39,6 +39,7 @@ const USUAL = {
     rescans: false,
     takesWhole: false,
     whole: null,
+    put: null,
     cutAmbiguous: false,
     isBounded: false,
     isCut: false,

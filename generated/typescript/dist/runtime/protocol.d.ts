@@ -33,8 +33,9 @@ export declare class Protocol {
     /** Names of the senders whose frames are alike, so that any may stand for the others. */
     private readonly alike;
     private kept;
-    /** What was chosen before, by the messages' names. */
     private readonly chosen;
+    /** The one that was chosen last, and most often is chosen again. */
+    private recent;
     constructor(
     /** Give the frame of each sender; they are asked when one is first needed. */
     frames: readonly (() => Frame)[], 
@@ -49,8 +50,10 @@ export declare class Protocol {
     decode(frame: Uint8Array, options?: DecodeOptions): any;
     /** The frame of a message. Throws an EncodeError. */
     encode(message: NamedMessage, options?: EncodeOptions<object>): Uint8Array;
-    /** What makes the frames of a message: an endpoint that sends it, in the forms that carry it. */
-    private makers;
+    private maker;
+    /** The same of a message that was not made with these options last. Throws an EncodeError. */
+    private another;
+    /** An endpoint that sends a message, in the forms that carry it. Throws an EncodeError. */
     private choose;
 }
 /** Makes the frames of one endpoint, one after another, and advances their counters. */
@@ -66,5 +69,5 @@ export declare class Encoder<Message extends NamedMessage = NamedMessage, Parts 
      * A given value is used once and does not change the count, nor does an EncodeError.
      */
     encode(message: Message, options?: Omit<EncodeOptions<Parts>, "sender">): Uint8Array;
-    private makers;
+    private maker;
 }

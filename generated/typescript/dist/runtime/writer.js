@@ -21,6 +21,8 @@ export class Writer extends Checks {
         /** What is written into where nobody knows how much it will be. */
         this.scratch = new Uint8Array(256);
         this.bytes = this.scratch;
+        /** A frame as it is on the wire. */
+        this.stuffed = new Uint8Array(256);
         /** Bytes so far, those in front of the payload among them. */
         this.size = 0;
         /** Values of the fields that are parts of the frame, by the names of the parts. */
@@ -52,6 +54,12 @@ export class Writer extends Checks {
         if (this.size > this.bytes.length)
             this.grow();
         return at;
+    }
+    /** Room for so many bytes of a frame as it is on the wire. */
+    wire(size) {
+        if (size > this.stuffed.length)
+            this.stuffed = new Uint8Array(2 * size);
+        return this.stuffed;
     }
     grow() {
         const larger = new Uint8Array(Math.max(2 * this.bytes.length, this.size));

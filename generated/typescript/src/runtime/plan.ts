@@ -1,5 +1,6 @@
 /** What a generated module says of a sender: its frame, as the compiler worked it out. */
 
+import type { Counts, FrameMaker, GivenParts } from "./assembly.js";
 import type { AtOnce } from "./at_once.js";
 import type { Checksum } from "./checksums.js";
 import type { Framed } from "./events.js";
@@ -251,6 +252,14 @@ export function group(
 /** Takes the frame that stands at a place; null where it is not plainly one. Throws a Fault. */
 export type TakeWhole = (frames: AtOnce, at: number) => Framed | null;
 
+/** Puts a frame around the payload that was written; null where it is not plainly one. */
+export type PutTogether = (
+  maker: FrameMaker,
+  writer: Writer,
+  given: GivenParts,
+  counts: Counts | null,
+) => Uint8Array | null;
+
 /** A sender's frame. Sizes are in bytes; content is what is there before any stuffing. */
 export interface Frame {
   /** The endpoint. */
@@ -303,6 +312,8 @@ export interface Frame {
   readonly takesWhole: boolean;
   /** What takes a frame that is there as a whole; null where nothing is generated for that. */
   readonly whole: TakeWhole | null;
+  /** What makes a frame in one go; null where nothing is generated for that. */
+  readonly put: PutTogether | null;
   readonly cutAmbiguous: boolean;
   readonly isBounded: boolean;
   /** Bytes that stay, at least, where zeros at the payload's end are left out; else null. */
@@ -325,6 +336,7 @@ const USUAL = {
   rescans: false,
   takesWhole: false,
   whole: null,
+  put: null,
   cutAmbiguous: false,
   isBounded: false,
   isCut: false,

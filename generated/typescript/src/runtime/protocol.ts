@@ -1,6 +1,6 @@
 /** The codec of a protocol: encode, decode, and an encoder that counts. */
 
-import { makerOf, type Counts, type FrameMaker, type GivenParts } from "./assembly.js";
+import { makerOf, type Counts, type GivenParts } from "./assembly.js";
 import { standsAt } from "./bytes.js";
 import { Candidate, Failure, verdictOn, type ToldValues } from "./candidate.js";
 import { DecodeError, EncodeError, Fault } from "./errors.js";
@@ -35,11 +35,48 @@ export interface NamedMessage {
   readonly message: string;
 }
 
-/** What makes the frames of a message, for what was asked for. */
-interface Choice {
-  readonly sender: string | undefined;
-  readonly form: string | undefined;
-  readonly makers: readonly FrameMaker[];
+/** Makes the frames of a message. */
+interface Maker {
+  make(message: unknown, parts: GivenParts, strict: boolean, counts: Counts | null): Uint8Array;
+}
+
+/** Makes each frame in the first form that can be made. */
+class FirstThatFits implements Maker {
+  constructor(private readonly forms: readonly Maker[]) {}
+
+  /** The frame. Throws the EncodeError of the last form. */
+  make(message: unknown, parts: GivenParts, strict: boolean, counts: Counts | null): Uint8Array {
+    const last = this.forms.length - 1;
+    for (let index = 0; index < last; index++) {
+      try {
+        return this.forms[index]!.make(message, parts, strict, counts);
+      } catch (error) {
+        if (!(error instanceof EncodeError)) throw error;
+      }
+    }
+    return this.forms[last]!.make(message, parts, strict, counts);
+  }
+}
+
+/** What makes the frames of a message that all of these send, of which there is one at least. */
+function makerOfAll(senders: readonly Sender[], name: string): Maker {
+  const makers = senders.map((sender) => makerOf(sender, sender.named(name)!));
+  return makers.length > 1 ? new FirstThatFits(makers) : makers[0]!;
+}
+
+/** What makes frames where such a sender and form are asked for. */
+class Choice {
+  /** By the names of messages. */
+  readonly makers = new Map<string, Maker>();
+
+  constructor(
+    readonly sender: string | undefined,
+    readonly form: string | undefined,
+  ) {}
+
+  is(sender: string | undefined, form: string | undefined): boolean {
+    return this.sender === sender && this.form === form;
+  }
 }
 
 const NO_OPTIONS = {};
@@ -48,8 +85,9 @@ const NO_PARTS: GivenParts = {};
 /** The senders of a protocol. */
 export class Protocol {
   private kept: readonly Sender[] | null = null;
-  /** What was chosen before, by the messages' names. */
-  private readonly chosen = new Map<string, Choice[]>();
+  private readonly chosen: Choice[] = [];
+  /** The one that was chosen last, and most often is chosen again. */
+  private recent = new Choice(undefined, undefined);
 
   constructor(
     /** Give the frame of each sender; they are asked when one is first needed. */
@@ -101,24 +139,29 @@ export class Protocol {
   /** The frame of a message. Throws an EncodeError. */
   encode(message: NamedMessage, options: EncodeOptions<object> = NO_OPTIONS): Uint8Array {
     const { parts = NO_PARTS, strict = true } = options;
-    return firstThatFits(this.makers(message, options), message, parts as GivenParts, strict);
+    return this.maker(message, options).make(message, parts as GivenParts, strict, null);
   }
 
-  /** What makes the frames of a message: an endpoint that sends it, in the forms that carry it. */
-  private makers(message: NamedMessage, options: EncodeOptions<object>): readonly FrameMaker[] {
+  private maker(message: NamedMessage, options: EncodeOptions<object>): Maker {
+    const { recent } = this;
+    const isSame = recent.is(options.sender, options.form);
+    return (isSame && recent.makers.get(message.message)) || this.another(message, options);
+  }
+
+  /** The same of a message that was not made with these options last. Throws an EncodeError. */
+  private another(message: NamedMessage, options: EncodeOptions<object>): Maker {
     const { sender, form } = options;
     const { message: name } = message;
-    let known = this.chosen.get(name);
-    if (!known) this.chosen.set(name, (known = []));
-    for (let index = 0; index < known.length; index++) {
-      const item = known[index]!;
-      if (item.sender === sender && item.form === form) return item.makers;
-    }
-    const makers = makersOf(this.choose(message, options), name);
-    known.push({ sender, form, makers });
-    return makers;
+    const known = this.chosen.find((item) => item.is(sender, form));
+    const choice = known ?? new Choice(sender, form);
+    let maker = choice.makers.get(name);
+    if (!maker) choice.makers.set(name, (maker = makerOfAll(this.choose(message, options), name)));
+    if (!known) this.chosen.push(choice);
+    this.recent = choice;
+    return maker;
   }
 
+  /** An endpoint that sends a message, in the forms that carry it. Throws an EncodeError. */
   private choose(message: NamedMessage, options: EncodeOptions<object>): readonly Sender[] {
     const { message: name } = message;
     const all = this.made.filter((sender) => sender.named(name));
@@ -142,30 +185,6 @@ export class Protocol {
     if (!inForm.length) throw new EncodeError("form", `"${options.form}" is no form of ${name}`);
     return inForm;
   }
-}
-
-/** What makes the frames of a message that all of these send. */
-function makersOf(senders: readonly Sender[], name: string): readonly FrameMaker[] {
-  return senders.map((sender) => makerOf(sender, sender.named(name)!));
-}
-
-/** The frame in the first form that can be made. Throws the EncodeError of the last. */
-function firstThatFits(
-  makers: readonly FrameMaker[],
-  message: NamedMessage,
-  parts: GivenParts,
-  strict: boolean,
-  counts?: Counts,
-): Uint8Array {
-  const last = makers.length - 1;
-  for (let index = 0; index < last; index++) {
-    try {
-      return makers[index]!.make(message, parts, strict, counts);
-    } catch (error) {
-      if (!(error instanceof EncodeError)) throw error;
-    }
-  }
-  return makers[last]!.make(message, parts, strict, counts);
 }
 
 function readAs(sender: Sender, data: Uint8Array, told: ToldValues): Framed {
@@ -206,7 +225,7 @@ export class Encoder<Message extends NamedMessage = NamedMessage, Parts = GivenP
   private readonly senders: readonly Sender[];
   private readonly counts = new Map<string, Value>();
   /** By the names of messages. */
-  private readonly known = new Map<string, readonly FrameMaker[]>();
+  private readonly known = new Map<string, Maker>();
 
   constructor(protocol: Protocol, sender: string) {
     this.senders = protocol.senders(sender);
@@ -223,20 +242,20 @@ export class Encoder<Message extends NamedMessage = NamedMessage, Parts = GivenP
   encode(message: Message, options: Omit<EncodeOptions<Parts>, "sender"> = NO_OPTIONS): Uint8Array {
     const { form, strict = true } = options;
     const { message: name } = message;
-    let makers = form === undefined ? this.known.get(name) : undefined;
-    if (!makers) {
-      makers = this.makers(name, form);
-      if (form === undefined) this.known.set(name, makers);
+    let maker = form === undefined ? this.known.get(name) : undefined;
+    if (!maker) {
+      maker = this.maker(name, form);
+      if (form === undefined) this.known.set(name, maker);
     }
     const parts = (options.parts ?? NO_PARTS) as GivenParts;
-    return firstThatFits(makers, message, parts, strict, this.counts);
+    return maker.make(message, parts, strict, this.counts);
   }
 
-  private makers(name: string, form: string | undefined): readonly FrameMaker[] {
+  private maker(name: string, form: string | undefined): Maker {
     const senders = this.senders.filter(
       (sender) => sender.named(name) && (form === undefined || sender.frame.form === form),
     );
     if (!senders.length) throw new EncodeError("message", `${name} is not sent`);
-    return makersOf(senders, name);
+    return makerOfAll(senders, name);
   }
 }

@@ -27,6 +27,8 @@ export class Writer extends Checks {
   /** What is written into where nobody knows how much it will be. */
   private scratch: Uint8Array = new Uint8Array(256);
   bytes: Uint8Array = this.scratch;
+  /** A frame as it is on the wire. */
+  private stuffed: Uint8Array = new Uint8Array(256);
   /** Bytes so far, those in front of the payload among them. */
   size = 0;
   /** Values of the fields that are parts of the frame, by the names of the parts. */
@@ -58,6 +60,12 @@ export class Writer extends Checks {
     this.size = at + size;
     if (this.size > this.bytes.length) this.grow();
     return at;
+  }
+
+  /** Room for so many bytes of a frame as it is on the wire. */
+  wire(size: number): Uint8Array {
+    if (size > this.stuffed.length) this.stuffed = new Uint8Array(2 * size);
+    return this.stuffed;
   }
 
   private grow(): void {

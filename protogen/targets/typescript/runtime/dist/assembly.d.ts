@@ -60,11 +60,18 @@ export declare class FrameMaker {
     private readonly assembly;
     private readonly message;
     /** The first identity of the message. */
-    private readonly identity;
+    private readonly values;
     /** True if a decoder could take a frame for another one. */
     private readonly isDoubtful;
     /** Bytes of every frame, where all have as many and none are stuffed; else 0. */
     private readonly size;
+    /** What makes a frame in one go, if all that has to be known is in it. */
+    private readonly put;
+    private readonly headSize;
+    /** What the length is without a payload, and its bounds in frames of one. */
+    private readonly base;
+    private readonly least;
+    private readonly greatest;
     constructor(assembly: Assembly, message: MessagePlan);
     get sender(): Sender;
     /**
@@ -73,6 +80,18 @@ export declare class FrameMaker {
      * Counters that they do not give are those of `counts`, which go on. Throws an EncodeError.
      */
     make(value: unknown, given: GivenParts, strict: boolean, counts?: Counts | null): Uint8Array;
+    /** The frame around a payload, by the description of the frame. Throws an EncodeError. */
+    private described;
+    /** An identity. */
+    identity(index: number): number;
+    /** The length of a frame whose payload ends there; -1 where it can't be. */
+    length(end: number): number;
+    /** The value of a part where callers give none. */
+    usual(index: number, counts: Counts | null): Value | null;
+    /** A value that is a number in these bounds; -1 of another one. */
+    number(value: unknown, least: number, greatest: number): number;
+    /** The checksum of some bytes. */
+    sum(bytes: Uint8Array, from: number, to: number): number;
     /** True if a decoder could take a frame of a given identity for another one. */
     private checkIdentity;
 }

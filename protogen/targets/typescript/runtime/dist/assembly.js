@@ -179,11 +179,17 @@ export class FrameMaker {
         const { sender, values } = assembly;
         const { least, greatest } = message.sizes;
         const { transparency, kept, cutAmbiguous } = sender.frame;
-        this.identity = message.identities.map((runs) => runs[0][0]);
-        sender.identityParts.forEach(({ slot }, index) => (values[slot] = this.identity[index]));
+        this.values = message.identities.map((runs) => runs[0][0]);
+        sender.identityParts.forEach(({ slot }, index) => (values[slot] = this.values[index]));
         this.isDoubtful = cutAmbiguous || !sender.group(values);
         const isFixed = least === greatest && !transparency && kept === null;
         this.size = isFixed ? least + (least ? assembly.full : assembly.empty).size : 0;
+        this.put = this.isDoubtful || message.held.length ? null : sender.frame.put;
+        this.headSize = sender.frame.headSize;
+        const { length } = sender;
+        this.base = length ? length.base : 0;
+        this.least = length ? length.least : 0;
+        this.greatest = length ? Math.min(length.greatest, this.base + sender.frame.greatestPayload) : 0;
     }
     get sender() {
         return this.assembly.sender;
@@ -194,22 +200,52 @@ export class FrameMaker {
      * Counters that they do not give are those of `counts`, which go on. Throws an EncodeError.
      */
     make(value, given, strict, counts = null) {
-        const { assembly, message, sender } = this;
-        const { headSize } = sender.frame;
+        const { assembly, headSize, put } = this;
         const writer = writerOf(strict, headSize, this.size);
-        writeMessage(message, writer, value);
-        const size = sender.trimmed(writer.bytes, headSize, writer.size - headSize);
-        const parts = message.held.length ? withHeld(given, writer.held) : given;
-        let isDoubtful = this.isDoubtful;
-        if (assembly.take(this.identity, parts, strict, counts))
-            isDoubtful = this.checkIdentity();
-        const wire = assembly.wire(writer, size);
-        if (isDoubtful)
-            assembly.check(wire, writer.bytes.slice(headSize, headSize + size));
+        writeMessage(this.message, writer, value);
+        const size = assembly.sender.trimmed(writer.bytes, headSize, writer.size - headSize);
+        writer.size = headSize + size;
+        const found = put && put(this, writer, given, counts);
+        const wire = found ?? this.described(writer, size, given, strict, counts);
         if (counts)
             for (const part of assembly.parts)
                 part.count(given, counts);
         return wire;
+    }
+    /** The frame around a payload, by the description of the frame. Throws an EncodeError. */
+    described(writer, size, given, strict, counts) {
+        const { assembly, headSize, message } = this;
+        const parts = message.held.length ? withHeld(given, writer.held) : given;
+        let isDoubtful = this.isDoubtful;
+        if (assembly.take(this.values, parts, strict, counts))
+            isDoubtful = this.checkIdentity();
+        const wire = assembly.wire(writer, size);
+        if (isDoubtful)
+            assembly.check(wire, writer.bytes.slice(headSize, headSize + size));
+        return wire;
+    }
+    // --- what printed functions ask -----------------------------------------------------------------
+    /** An identity. */
+    identity(index) {
+        return this.values[index];
+    }
+    /** The length of a frame whose payload ends there; -1 where it can't be. */
+    length(end) {
+        const value = this.base + end - this.headSize;
+        return value >= this.least && value <= this.greatest ? value : -1;
+    }
+    /** The value of a part where callers give none. */
+    usual(index, counts) {
+        return this.assembly.parts[index].usual(counts);
+    }
+    /** A value that is a number in these bounds; -1 of another one. */
+    number(value, least, greatest) {
+        const isIn = typeof value === "number" && value >= least && value <= greatest;
+        return isIn && Number.isInteger(value) ? value : -1;
+    }
+    /** The checksum of some bytes. */
+    sum(bytes, from, to) {
+        return this.assembly.sender.frame.sums[0].algorithm.compute(bytes, from, to);
     }
     /** True if a decoder could take a frame of a given identity for another one. */
     checkIdentity() {

@@ -1,4 +1,5 @@
 /** What a generated module says of a sender: its frame, as the compiler worked it out. */
+import type { Counts, FrameMaker, GivenParts } from "./assembly.js";
 import type { AtOnce } from "./at_once.js";
 import type { Checksum } from "./checksums.js";
 import type { Framed } from "./events.js";
@@ -208,6 +209,8 @@ export declare function group(messages: readonly MessagePlan[], more?: {
 }): Group;
 /** Takes the frame that stands at a place; null where it is not plainly one. Throws a Fault. */
 export type TakeWhole = (frames: AtOnce, at: number) => Framed | null;
+/** Puts a frame around the payload that was written; null where it is not plainly one. */
+export type PutTogether = (maker: FrameMaker, writer: Writer, given: GivenParts, counts: Counts | null) => Uint8Array | null;
 /** A sender's frame. Sizes are in bytes; content is what is there before any stuffing. */
 export interface Frame {
     /** The endpoint. */
@@ -260,6 +263,8 @@ export interface Frame {
     readonly takesWhole: boolean;
     /** What takes a frame that is there as a whole; null where nothing is generated for that. */
     readonly whole: TakeWhole | null;
+    /** What makes a frame in one go; null where nothing is generated for that. */
+    readonly put: PutTogether | null;
     readonly cutAmbiguous: boolean;
     readonly isBounded: boolean;
     /** Bytes that stay, at least, where zeros at the payload's end are left out; else null. */
@@ -281,6 +286,7 @@ declare const USUAL: {
     rescans: boolean;
     takesWhole: boolean;
     whole: null;
+    put: null;
     cutAmbiguous: boolean;
     isBounded: boolean;
     isCut: boolean;

@@ -6,6 +6,43 @@ import { DecodeError, EncodeError, Fault } from "./errors.js";
 import { framed } from "./events.js";
 import { Sender } from "./sender.js";
 import { Told } from "./told.js";
+/** Makes each frame in the first form that can be made. */
+class FirstThatFits {
+    constructor(forms) {
+        this.forms = forms;
+    }
+    /** The frame. Throws the EncodeError of the last form. */
+    make(message, parts, strict, counts) {
+        const last = this.forms.length - 1;
+        for (let index = 0; index < last; index++) {
+            try {
+                return this.forms[index].make(message, parts, strict, counts);
+            }
+            catch (error) {
+                if (!(error instanceof EncodeError))
+                    throw error;
+            }
+        }
+        return this.forms[last].make(message, parts, strict, counts);
+    }
+}
+/** What makes the frames of a message that all of these send, of which there is one at least. */
+function makerOfAll(senders, name) {
+    const makers = senders.map((sender) => makerOf(sender, sender.named(name)));
+    return makers.length > 1 ? new FirstThatFits(makers) : makers[0];
+}
+/** What makes frames where such a sender and form are asked for. */
+class Choice {
+    constructor(sender, form) {
+        this.sender = sender;
+        this.form = form;
+        /** By the names of messages. */
+        this.makers = new Map();
+    }
+    is(sender, form) {
+        return this.sender === sender && this.form === form;
+    }
+}
 const NO_OPTIONS = {};
 const NO_PARTS = {};
 /** The senders of a protocol. */
@@ -18,8 +55,9 @@ export class Protocol {
         this.frames = frames;
         this.alike = alike;
         this.kept = null;
-        /** What was chosen before, by the messages' names. */
-        this.chosen = new Map();
+        this.chosen = [];
+        /** The one that was chosen last, and most often is chosen again. */
+        this.recent = new Choice(undefined, undefined);
     }
     get made() {
         this.kept ?? (this.kept = this.frames.map((frame) => new Sender(frame())));
@@ -63,24 +101,28 @@ export class Protocol {
     /** The frame of a message. Throws an EncodeError. */
     encode(message, options = NO_OPTIONS) {
         const { parts = NO_PARTS, strict = true } = options;
-        return firstThatFits(this.makers(message, options), message, parts, strict);
+        return this.maker(message, options).make(message, parts, strict, null);
     }
-    /** What makes the frames of a message: an endpoint that sends it, in the forms that carry it. */
-    makers(message, options) {
+    maker(message, options) {
+        const { recent } = this;
+        const isSame = recent.is(options.sender, options.form);
+        return (isSame && recent.makers.get(message.message)) || this.another(message, options);
+    }
+    /** The same of a message that was not made with these options last. Throws an EncodeError. */
+    another(message, options) {
         const { sender, form } = options;
         const { message: name } = message;
-        let known = this.chosen.get(name);
+        const known = this.chosen.find((item) => item.is(sender, form));
+        const choice = known ?? new Choice(sender, form);
+        let maker = choice.makers.get(name);
+        if (!maker)
+            choice.makers.set(name, (maker = makerOfAll(this.choose(message, options), name)));
         if (!known)
-            this.chosen.set(name, (known = []));
-        for (let index = 0; index < known.length; index++) {
-            const item = known[index];
-            if (item.sender === sender && item.form === form)
-                return item.makers;
-        }
-        const makers = makersOf(this.choose(message, options), name);
-        known.push({ sender, form, makers });
-        return makers;
+            this.chosen.push(choice);
+        this.recent = choice;
+        return maker;
     }
+    /** An endpoint that sends a message, in the forms that carry it. Throws an EncodeError. */
     choose(message, options) {
         const { message: name } = message;
         const all = this.made.filter((sender) => sender.named(name));
@@ -101,24 +143,6 @@ export class Protocol {
             throw new EncodeError("form", `"${options.form}" is no form of ${name}`);
         return inForm;
     }
-}
-/** What makes the frames of a message that all of these send. */
-function makersOf(senders, name) {
-    return senders.map((sender) => makerOf(sender, sender.named(name)));
-}
-/** The frame in the first form that can be made. Throws the EncodeError of the last. */
-function firstThatFits(makers, message, parts, strict, counts) {
-    const last = makers.length - 1;
-    for (let index = 0; index < last; index++) {
-        try {
-            return makers[index].make(message, parts, strict, counts);
-        }
-        catch (error) {
-            if (!(error instanceof EncodeError))
-                throw error;
-        }
-    }
-    return makers[last].make(message, parts, strict, counts);
 }
 function readAs(sender, data, told) {
     const { startWords } = sender.frame;
@@ -174,19 +198,19 @@ export class Encoder {
     encode(message, options = NO_OPTIONS) {
         const { form, strict = true } = options;
         const { message: name } = message;
-        let makers = form === undefined ? this.known.get(name) : undefined;
-        if (!makers) {
-            makers = this.makers(name, form);
+        let maker = form === undefined ? this.known.get(name) : undefined;
+        if (!maker) {
+            maker = this.maker(name, form);
             if (form === undefined)
-                this.known.set(name, makers);
+                this.known.set(name, maker);
         }
         const parts = (options.parts ?? NO_PARTS);
-        return firstThatFits(makers, message, parts, strict, this.counts);
+        return maker.make(message, parts, strict, this.counts);
     }
-    makers(name, form) {
+    maker(name, form) {
         const senders = this.senders.filter((sender) => sender.named(name) && (form === undefined || sender.frame.form === form));
         if (!senders.length)
             throw new EncodeError("message", `${name} is not sent`);
-        return makersOf(senders, name);
+        return makerOfAll(senders, name);
     }
 }

@@ -14,6 +14,8 @@ export declare class Writer extends Checks {
     /** What is written into where nobody knows how much it will be. */
     private scratch;
     bytes: Uint8Array;
+    /** A frame as it is on the wire. */
+    private stuffed;
     /** Bytes so far, those in front of the payload among them. */
     size: number;
     /** Values of the fields that are parts of the frame, by the names of the parts. */
@@ -28,6 +30,8 @@ export declare class Writer extends Checks {
     taken(): Uint8Array;
     /** The place of so many more bytes. */
     room(size: number): number;
+    /** Room for so many bytes of a frame as it is on the wire. */
+    wire(size: number): Uint8Array;
     private grow;
     /** Leave a number to the frame, whose part it is. */
     part(name: string, value: Value): void;
