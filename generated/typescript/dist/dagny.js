@@ -35,8 +35,8 @@ export const PowerCode = {
 };
 
 function readSonar(r) {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "sonar", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "sonar", data: data_ };
 }
 
 function writeSonar(w, m) {
@@ -47,8 +47,8 @@ function writeSonar(w, m) {
 export const planOfSonar = /* @__PURE__ */ rt.plan("sonar", [[[83, 83]]], [0, 128, 1], readSonar, writeSonar);
 
 function readGps(r) {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "gps", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "gps", data: data_ };
 }
 
 function writeGps(w, m) {
@@ -59,8 +59,8 @@ function writeGps(w, m) {
 export const planOfGps = /* @__PURE__ */ rt.plan("gps", [[[71, 71]]], [0, 128, 1], readGps, writeGps);
 
 function readBump(r) {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "bump", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "bump", data: data_ };
 }
 
 function writeBump(w, m) {
@@ -71,8 +71,8 @@ function writeBump(w, m) {
 export const planOfBump = /* @__PURE__ */ rt.plan("bump", [[[66, 66]]], [0, 128, 1], readBump, writeBump);
 
 function readOdometry(r) {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "odometry", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "odometry", data: data_ };
 }
 
 function writeOdometry(w, m) {
@@ -83,8 +83,8 @@ function writeOdometry(w, m) {
 export const planOfOdometry = /* @__PURE__ */ rt.plan("odometry", [[[79, 79]]], [0, 128, 1], readOdometry, writeOdometry);
 
 function readSpeed(r) {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "speed", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "speed", data: data_ };
 }
 
 function writeSpeed(w, m) {
@@ -95,8 +95,8 @@ function writeSpeed(w, m) {
 export const planOfSpeed = /* @__PURE__ */ rt.plan("speed", [[[79, 79]]], [0, 128, 1], readSpeed, writeSpeed);
 
 function readWheelSlip(r) {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "wheel_slip", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "wheel_slip", data: data_ };
 }
 
 function writeWheelSlip(w, m) {
@@ -107,8 +107,8 @@ function writeWheelSlip(w, m) {
 export const planOfWheelSlip = /* @__PURE__ */ rt.plan("wheel_slip", [[[87, 87]]], [0, 128, 1], readWheelSlip, writeWheelSlip);
 
 function readBattery(r) {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "battery", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "battery", data: data_ };
 }
 
 function writeBattery(w, m) {
@@ -119,8 +119,8 @@ function writeBattery(w, m) {
 export const planOfBattery = /* @__PURE__ */ rt.plan("battery", [[[98, 98]]], [0, 128, 1], readBattery, writeBattery);
 
 function readReflexSettings(r) {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "reflex_settings", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "reflex_settings", data: data_ };
 }
 
 function writeReflexSettings(w, m) {
@@ -131,8 +131,8 @@ function writeReflexSettings(w, m) {
 export const planOfReflexSettings = /* @__PURE__ */ rt.plan("reflex_settings", [[[82, 82]]], [0, 128, 1], readReflexSettings, writeReflexSettings);
 
 function readHardwareStatus(r) {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "hardware_status", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "hardware_status", data: data_ };
 }
 
 function writeHardwareStatus(w, m) {
@@ -225,8 +225,8 @@ function writeLaser(w, m) {
 export const planOfLaser = /* @__PURE__ */ rt.plan("laser", [[[76, 76]]], [0, 512, 1], readLaser, writeLaser);
 
 function readCommand(r) {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "command", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "command", data: data_ };
 }
 
 function writeCommand(w, m) {
@@ -284,8 +284,9 @@ function hostFrame() {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "id", key: "id", slot: 0 },
+      { name: "id", key: "id" },
     ],
+    partsOf: (v) => ({ id: v[0] }),
     sums: [
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
@@ -335,8 +336,9 @@ function robotFrame() {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "id", key: "id", slot: 0 },
+      { name: "id", key: "id" },
     ],
+    partsOf: (v) => ({ id: v[0] }),
     sums: [
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],

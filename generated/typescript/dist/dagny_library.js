@@ -274,15 +274,34 @@ function hostFrame() {
     ],
     payloadIndex: 1,
     whole: (f, at) => {
-      if (!f.begin(0, 1)) return null;
-      const { content: view } = f;
+      const { data, size, content, view } = f;
+      if (at + 2 > size) return null;
+      let place = at;
+      let filled = 0;
+      let due = 1;
+      while (filled < due) {
+        if (place === size) return null;
+        let byte = data[place++] ?? 0;
+        if (byte === 27) {
+          if (place === size) return null;
+          byte = data[place++] ?? 0;
+          if (byte === 22) byte = 13;
+          else if (byte === 0) byte = 27;
+          else return null;
+        }
+        else if (byte === 13) return null;
+        content[filled++] = byte;
+        if (filled === 1) {
+          const id = view.getUint8(0);
+          const group = f.group(id);
+          if (group === undefined || group.fixed === null) return null;
+          due = group.fixed + 1;
+        }
+      }
+      const end = due;
+      if (place + 1 > size || data[place] !== 13) return null;
       const id = view.getUint8(0);
-      const values = [id];
-      const group = f.group(values);
-      if (group === undefined || group.fixed === null) return null;
-      const end = group.fixed + 1;
-      if (!f.fill(end)) return null;
-      return f.event(values, group, 1, end);
+      return f.event({ id }, f.group(id), 1, end, place + 1);
     },
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
@@ -309,8 +328,9 @@ function hostFrame() {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "id", key: "id", slot: 0 },
+      { name: "id", key: "id" },
     ],
+    partsOf: (v) => ({ id: v[0] }),
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
     firstStuffed: 0,
     lastStuffed: 1,
@@ -350,15 +370,34 @@ function robotFrame() {
     ],
     payloadIndex: 1,
     whole: (f, at) => {
-      if (!f.begin(0, 1)) return null;
-      const { content: view } = f;
+      const { data, size, content, view } = f;
+      if (at + 2 > size) return null;
+      let place = at;
+      let filled = 0;
+      let due = 1;
+      while (filled < due) {
+        if (place === size) return null;
+        let byte = data[place++] ?? 0;
+        if (byte === 27) {
+          if (place === size) return null;
+          byte = data[place++] ?? 0;
+          if (byte === 22) byte = 13;
+          else if (byte === 0) byte = 27;
+          else return null;
+        }
+        else if (byte === 13) return null;
+        content[filled++] = byte;
+        if (filled === 1) {
+          const id = view.getUint8(0);
+          const group = f.group(id);
+          if (group === undefined || group.fixed === null) return null;
+          due = group.fixed + 1;
+        }
+      }
+      const end = due;
+      if (place + 1 > size || data[place] !== 13) return null;
       const id = view.getUint8(0);
-      const values = [id];
-      const group = f.group(values);
-      if (group === undefined || group.fixed === null) return null;
-      const end = group.fixed + 1;
-      if (!f.fill(end)) return null;
-      return f.event(values, group, 1, end);
+      return f.event({ id }, f.group(id), 1, end, place + 1);
     },
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
@@ -385,8 +424,9 @@ function robotFrame() {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "id", key: "id", slot: 0 },
+      { name: "id", key: "id" },
     ],
+    partsOf: (v) => ({ id: v[0] }),
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
     firstStuffed: 0,
     lastStuffed: 1,

@@ -341,18 +341,36 @@ function pcFrame() {
     ],
     payloadIndex: 4,
     whole: (f, at) => {
-      if (!f.begin(1, 5)) return null;
-      const { content: view } = f;
-      if (view.getUint8(0) !== 85) return null;
-      const length = view.getUint8(1);
-      if (length < 2 || length > 124) return null;
+      const { data, size, content, view } = f;
+      if (at + 5 > size || data[at] !== 85) return null;
+      let place = at + 1;
+      let filled = 1;
+      let due = 4;
+      let sum = 0;
+      while (filled < due) {
+        if (place === size) return null;
+        let byte = data[place++] ?? 0;
+        if (byte === 86) {
+          if (place === size) return null;
+          byte = data[place++] ?? 0;
+          if (byte === 170) byte = 85;
+          else if (byte === 169) byte = 86;
+          else return null;
+        }
+        else if (byte === 85) return null;
+        content[filled++] = byte;
+        sum += byte;
+        if (filled === 4) {
+          const length = view.getUint8(1);
+          if (length < 2 || length > 124) return null;
+          due = length + 3;
+        }
+      }
+      const end = due - 1;
+      if (sum & 255) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
-      const values = [counter, command, length];
-      const group = f.group(values);
-      const end = length + 2;
-      if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 1, end)) return null;
-      return f.event(values, group, 4, end);
+      return f.event({ counter, command }, f.group(command), 4, end, place);
     },
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "counter") return null;
@@ -399,9 +417,10 @@ function pcFrame() {
     identity: [1],
     lastIdentity: 1,
     shown: [
-      { name: "counter", key: "counter", slot: 0 },
-      { name: "command", key: "command", slot: 1 },
+      { name: "counter", key: "counter" },
+      { name: "command", key: "command" },
     ],
+    partsOf: (v) => ({ counter: v[0], command: v[1] }),
     sums: [
       { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
@@ -451,18 +470,36 @@ function espFrame() {
     ],
     payloadIndex: 4,
     whole: (f, at) => {
-      if (!f.begin(1, 5)) return null;
-      const { content: view } = f;
-      if (view.getUint8(0) !== 85) return null;
-      const length = view.getUint8(1);
-      if (length < 2 || length > 124) return null;
+      const { data, size, content, view } = f;
+      if (at + 5 > size || data[at] !== 85) return null;
+      let place = at + 1;
+      let filled = 1;
+      let due = 4;
+      let sum = 0;
+      while (filled < due) {
+        if (place === size) return null;
+        let byte = data[place++] ?? 0;
+        if (byte === 86) {
+          if (place === size) return null;
+          byte = data[place++] ?? 0;
+          if (byte === 170) byte = 85;
+          else if (byte === 169) byte = 86;
+          else return null;
+        }
+        else if (byte === 85) return null;
+        content[filled++] = byte;
+        sum += byte;
+        if (filled === 4) {
+          const length = view.getUint8(1);
+          if (length < 2 || length > 124) return null;
+          due = length + 3;
+        }
+      }
+      const end = due - 1;
+      if (sum & 255) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
-      const values = [counter, command, length];
-      const group = f.group(values);
-      const end = length + 2;
-      if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 1, end)) return null;
-      return f.event(values, group, 4, end);
+      return f.event({ counter, command }, f.group(command), 4, end, place);
     },
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "counter") return null;
@@ -509,9 +546,10 @@ function espFrame() {
     identity: [1],
     lastIdentity: 1,
     shown: [
-      { name: "counter", key: "counter", slot: 0 },
-      { name: "command", key: "command", slot: 1 },
+      { name: "counter", key: "counter" },
+      { name: "command", key: "command" },
     ],
+    partsOf: (v) => ({ counter: v[0], command: v[1] }),
     sums: [
       { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],

@@ -359,15 +359,15 @@ function hostFrame() {
     ],
     payloadIndex: 1,
     whole: (f, at) => {
-      if (!f.reach(at + 3)) return null;
-      const { view } = f;
+      const { data, size, view } = f;
+      if (at + 4 > size) return null;
       const start = view.getUint8(at);
-      const values = [start];
-      const group = f.group(values);
+      const group = f.group(start);
       if (group === undefined || group.fixed === null) return null;
       const end = at + group.fixed + 1;
-      if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
-      return f.event(values, group, at + 1, end);
+      if (end + 1 > size || data[end] !== 255) return null;
+      if (!f.isSevenBit(at + 1, end)) return null;
+      return f.event({ start }, group, at + 1, end, end + 1);
     },
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
@@ -383,8 +383,9 @@ function hostFrame() {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "start", key: "start", slot: 0 },
+      { name: "start", key: "start" },
     ],
+    partsOf: (v) => ({ start: v[0] }),
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
@@ -422,15 +423,15 @@ function brainFrame() {
     ],
     payloadIndex: 1,
     whole: (f, at) => {
-      if (!f.reach(at + 6)) return null;
-      const { view } = f;
+      const { data, size, view } = f;
+      if (at + 6 > size) return null;
       const start = view.getUint8(at);
-      const values = [start];
-      const group = f.group(values);
+      const group = f.group(start);
       if (group === undefined || group.fixed === null) return null;
       const end = at + group.fixed + 1;
-      if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
-      return f.event(values, group, at + 1, end);
+      if (end > size) return null;
+      if (!f.isSevenBit(at + 1, end)) return null;
+      return f.event({ start }, group, at + 1, end, end);
     },
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
@@ -445,8 +446,9 @@ function brainFrame() {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "start", key: "start", slot: 0 },
+      { name: "start", key: "start" },
     ],
+    partsOf: (v) => ({ start: v[0] }),
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,

@@ -147,8 +147,9 @@ function daemonFrame() {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "type", key: "type", slot: 0 },
+      { name: "type", key: "type" },
     ],
+    partsOf: (v) => ({ type: v[0] }),
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
@@ -189,8 +190,9 @@ function boardFrame() {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "type", key: "type", slot: 0 },
+      { name: "type", key: "type" },
     ],
+    partsOf: (v) => ({ type: v[0] }),
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,

@@ -237,8 +237,8 @@ export interface GivenParts {
 }
 
 function readSonar(r: rt.Reader): Sonar {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "sonar", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "sonar", data: data_ };
 }
 
 function writeSonar(w: rt.Writer, m: Sonar): void {
@@ -249,8 +249,8 @@ function writeSonar(w: rt.Writer, m: Sonar): void {
 export const planOfSonar: rt.MessagePlan<Sonar> = /* @__PURE__ */ rt.plan("sonar", [[[83, 83]]], [0, 128, 1], readSonar, writeSonar);
 
 function readGps(r: rt.Reader): Gps {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "gps", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "gps", data: data_ };
 }
 
 function writeGps(w: rt.Writer, m: Gps): void {
@@ -261,8 +261,8 @@ function writeGps(w: rt.Writer, m: Gps): void {
 export const planOfGps: rt.MessagePlan<Gps> = /* @__PURE__ */ rt.plan("gps", [[[71, 71]]], [0, 128, 1], readGps, writeGps);
 
 function readBump(r: rt.Reader): Bump {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "bump", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "bump", data: data_ };
 }
 
 function writeBump(w: rt.Writer, m: Bump): void {
@@ -273,8 +273,8 @@ function writeBump(w: rt.Writer, m: Bump): void {
 export const planOfBump: rt.MessagePlan<Bump> = /* @__PURE__ */ rt.plan("bump", [[[66, 66]]], [0, 128, 1], readBump, writeBump);
 
 function readOdometry(r: rt.Reader): Odometry {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "odometry", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "odometry", data: data_ };
 }
 
 function writeOdometry(w: rt.Writer, m: Odometry): void {
@@ -285,8 +285,8 @@ function writeOdometry(w: rt.Writer, m: Odometry): void {
 export const planOfOdometry: rt.MessagePlan<Odometry> = /* @__PURE__ */ rt.plan("odometry", [[[79, 79]]], [0, 128, 1], readOdometry, writeOdometry);
 
 function readSpeed(r: rt.Reader): Speed {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "speed", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "speed", data: data_ };
 }
 
 function writeSpeed(w: rt.Writer, m: Speed): void {
@@ -297,8 +297,8 @@ function writeSpeed(w: rt.Writer, m: Speed): void {
 export const planOfSpeed: rt.MessagePlan<Speed> = /* @__PURE__ */ rt.plan("speed", [[[79, 79]]], [0, 128, 1], readSpeed, writeSpeed);
 
 function readWheelSlip(r: rt.Reader): WheelSlip {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "wheel_slip", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "wheel_slip", data: data_ };
 }
 
 function writeWheelSlip(w: rt.Writer, m: WheelSlip): void {
@@ -309,8 +309,8 @@ function writeWheelSlip(w: rt.Writer, m: WheelSlip): void {
 export const planOfWheelSlip: rt.MessagePlan<WheelSlip> = /* @__PURE__ */ rt.plan("wheel_slip", [[[87, 87]]], [0, 128, 1], readWheelSlip, writeWheelSlip);
 
 function readBattery(r: rt.Reader): Battery {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "battery", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "battery", data: data_ };
 }
 
 function writeBattery(w: rt.Writer, m: Battery): void {
@@ -321,8 +321,8 @@ function writeBattery(w: rt.Writer, m: Battery): void {
 export const planOfBattery: rt.MessagePlan<Battery> = /* @__PURE__ */ rt.plan("battery", [[[98, 98]]], [0, 128, 1], readBattery, writeBattery);
 
 function readReflexSettings(r: rt.Reader): ReflexSettings {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "reflex_settings", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "reflex_settings", data: data_ };
 }
 
 function writeReflexSettings(w: rt.Writer, m: ReflexSettings): void {
@@ -333,8 +333,8 @@ function writeReflexSettings(w: rt.Writer, m: ReflexSettings): void {
 export const planOfReflexSettings: rt.MessagePlan<ReflexSettings> = /* @__PURE__ */ rt.plan("reflex_settings", [[[82, 82]]], [0, 128, 1], readReflexSettings, writeReflexSettings);
 
 function readHardwareStatus(r: rt.Reader): HardwareStatus {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "hardware_status", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "hardware_status", data: data_ };
 }
 
 function writeHardwareStatus(w: rt.Writer, m: HardwareStatus): void {
@@ -427,8 +427,8 @@ function writeLaser(w: rt.Writer, m: Laser): void {
 export const planOfLaser: rt.MessagePlan<Laser> = /* @__PURE__ */ rt.plan("laser", [[[76, 76]]], [0, 512, 1], readLaser, writeLaser);
 
 function readCommand(r: rt.Reader): Command {
-  const data = r.octets(r.rest(0, 128, "data"), false, "data");
-  return { message: "command", data };
+  const data_ = r.octets(r.rest(0, 128, "data"), false, "data");
+  return { message: "command", data: data_ };
 }
 
 function writeCommand(w: rt.Writer, m: Command): void {
@@ -486,8 +486,9 @@ function hostFrame(): rt.Frame {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "id", key: "id", slot: 0 },
+      { name: "id", key: "id" },
     ],
+    partsOf: (v) => ({ id: v[0] }),
     sums: [
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
@@ -537,8 +538,9 @@ function robotFrame(): rt.Frame {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "id", key: "id", slot: 0 },
+      { name: "id", key: "id" },
     ],
+    partsOf: (v) => ({ id: v[0] }),
     sums: [
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],

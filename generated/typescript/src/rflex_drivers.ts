@@ -843,8 +843,8 @@ export const planOfConfirmInitializeDigitalIo: rt.MessagePlan<ConfirmInitializeD
 function readChangedBumpers(r: rt.Reader): ChangedBumpers {
   const timestamp = r.u32be("timestamp");
   const address = r.u8("address");
-  const data = r.u16be("data");
-  return { message: "changed_bumpers", timestamp, address, data };
+  const data_ = r.u16be("data");
+  return { message: "changed_bumpers", timestamp, address, data: data_ };
 }
 
 function writeChangedBumpers(w: rt.Writer, m: ChangedBumpers): void {
@@ -887,8 +887,8 @@ export const planOfCheckIoChangedAnswer: rt.MessagePlan<CheckIoChangedAnswer> = 
 function readChangedByte(r: rt.Reader): ChangedByte {
   const timestamp = r.u32be("timestamp");
   const address = r.u8("address");
-  const data = r.u16be("data");
-  return { message: "changed_byte", timestamp, address, data };
+  const data_ = r.u16be("data");
+  return { message: "changed_byte", timestamp, address, data: data_ };
 }
 
 function writeChangedByte(w: rt.Writer, m: ChangedByte): void {
@@ -931,8 +931,8 @@ function writeIrRun(w: rt.Writer, m: IrRun): void {
 export const planOfIrRun: rt.MessagePlan<IrRun> = /* @__PURE__ */ rt.plan("ir_run", [[[6, 6]], [[0, 0]]], [21], readIrRun, writeIrRun);
 
 function readIrReport(r: rt.Reader): IrReport {
-  const data = r.octets(r.rest(0, 255, "data"), false, "data");
-  return { message: "ir_report", data };
+  const data_ = r.octets(r.rest(0, 255, "data"), false, "data");
+  return { message: "ir_report", data: data_ };
 }
 
 function writeIrReport(w: rt.Writer, m: IrReport): void {
@@ -981,18 +981,45 @@ function linuxFrame(): rt.Frame {
     ],
     payloadIndex: 5,
     whole: (f, at) => {
-      if (!f.begin(2, 7)) return null;
-      const { content: view } = f;
-      if (view.getUint8(0) !== 27 || view.getUint8(1) !== 2) return null;
+      const { data, size, content, view } = f;
+      if (at + 9 > size || data[at] !== 27 || data[at + 1] !== 2) return null;
+      let place = at + 2;
+      let filled = 2;
+      let due = 6;
+      let sum = 0;
+      while (filled < due) {
+        if (place === size) return null;
+        let byte = data[place++] ?? 0;
+        if (byte === 27) {
+          if (place === size) return null;
+          byte = data[place++] ?? 0;
+          if (byte === 0) byte = 27;
+          else return null;
+        }
+        else if (byte === 124) {
+          if (place === size) return null;
+          byte = data[place++] ?? 0;
+          if (byte === 27) {
+            if (place === size) return null;
+            byte = data[place++] ?? 0;
+            if (byte === 1) byte = 124;
+            else return null;
+          }
+          else return null;
+        }
+        content[filled++] = byte;
+        sum ^= byte;
+        if (filled === 6) {
+          const length = view.getUint8(5);
+          due = length + 7;
+        }
+      }
+      const end = due - 1;
+      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum) return null;
       const class_ = view.getUint8(2);
       const number_ = view.getUint8(3);
       const subclass = view.getUint8(4);
-      const length = view.getUint8(5);
-      const values = [class_, number_, subclass, length];
-      const group = f.group(values);
-      const end = length + 6;
-      if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 2, end)) return null;
-      return f.event(values, group, 6, end);
+      return f.event({ class: class_, number: number_, subclass }, f.group(256 * (class_) + subclass), 6, end, place + 2);
     },
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "number") return null;
@@ -1044,10 +1071,11 @@ function linuxFrame(): rt.Frame {
     identity: [0, 2],
     lastIdentity: 2,
     shown: [
-      { name: "class", key: "class", slot: 0 },
-      { name: "number", key: "number", slot: 1 },
-      { name: "subclass", key: "subclass", slot: 2 },
+      { name: "class", key: "class" },
+      { name: "number", key: "number" },
+      { name: "subclass", key: "subclass" },
     ],
+    partsOf: (v) => ({ class: v[0], number: v[1], subclass: v[2] }),
     sums: [
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
@@ -1102,18 +1130,45 @@ function flexFrame(): rt.Frame {
     ],
     payloadIndex: 5,
     whole: (f, at) => {
-      if (!f.begin(2, 7)) return null;
-      const { content: view } = f;
-      if (view.getUint8(0) !== 27 || view.getUint8(1) !== 2) return null;
+      const { data, size, content, view } = f;
+      if (at + 10 > size || data[at] !== 27 || data[at + 1] !== 2) return null;
+      let place = at + 2;
+      let filled = 2;
+      let due = 6;
+      let sum = 0;
+      while (filled < due) {
+        if (place === size) return null;
+        let byte = data[place++] ?? 0;
+        if (byte === 27) {
+          if (place === size) return null;
+          byte = data[place++] ?? 0;
+          if (byte === 0) byte = 27;
+          else return null;
+        }
+        else if (byte === 124) {
+          if (place === size) return null;
+          byte = data[place++] ?? 0;
+          if (byte === 27) {
+            if (place === size) return null;
+            byte = data[place++] ?? 0;
+            if (byte === 1) byte = 124;
+            else return null;
+          }
+          else return null;
+        }
+        content[filled++] = byte;
+        sum ^= byte;
+        if (filled === 6) {
+          const length = view.getUint8(5);
+          due = length + 7;
+        }
+      }
+      const end = due - 1;
+      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum) return null;
       const class_ = view.getUint8(2);
       const number_ = view.getUint8(3);
       const subclass = view.getUint8(4);
-      const length = view.getUint8(5);
-      const values = [class_, number_, subclass, length];
-      const group = f.group(values);
-      const end = length + 6;
-      if (!f.fill(end + 1) || view.getUint8(end) !== f.sum(0, 2, end)) return null;
-      return f.event(values, group, 6, end);
+      return f.event({ class: class_, number: number_, subclass }, f.group(256 * (class_) + subclass), 6, end, place + 2);
     },
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "number") return null;
@@ -1165,10 +1220,11 @@ function flexFrame(): rt.Frame {
     identity: [0, 2],
     lastIdentity: 2,
     shown: [
-      { name: "class", key: "class", slot: 0 },
-      { name: "number", key: "number", slot: 1 },
-      { name: "subclass", key: "subclass", slot: 2 },
+      { name: "class", key: "class" },
+      { name: "number", key: "number" },
+      { name: "subclass", key: "subclass" },
     ],
+    partsOf: (v) => ({ class: v[0], number: v[1], subclass: v[2] }),
     sums: [
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],

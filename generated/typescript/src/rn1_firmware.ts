@@ -703,15 +703,15 @@ function hostFrame(): rt.Frame {
     ],
     payloadIndex: 1,
     whole: (f, at) => {
-      if (!f.reach(at + 2)) return null;
-      const { view } = f;
+      const { data, size, view } = f;
+      if (at + 3 > size) return null;
       const start = view.getUint8(at);
-      const values = [start];
-      const group = f.group(values);
+      const group = f.group(start);
       if (group === undefined || group.fixed === null) return null;
       const end = at + group.fixed + 1;
-      if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
-      return f.event(values, group, at + 1, end);
+      if (end + 1 > size || data[end] !== 255) return null;
+      if (!f.isSevenBit(at + 1, end)) return null;
+      return f.event({ start }, group, at + 1, end, end + 1);
     },
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
@@ -727,8 +727,9 @@ function hostFrame(): rt.Frame {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "start", key: "start", slot: 0 },
+      { name: "start", key: "start" },
     ],
+    partsOf: (v) => ({ start: v[0] }),
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,
@@ -767,15 +768,15 @@ function brainFrame(): rt.Frame {
     ],
     payloadIndex: 1,
     whole: (f, at) => {
-      if (!f.reach(at + 3)) return null;
-      const { view } = f;
+      const { data, size, view } = f;
+      if (at + 3 > size) return null;
       const start = view.getUint8(at);
-      const values = [start];
-      const group = f.group(values);
+      const group = f.group(start);
       if (group === undefined || group.fixed === null) return null;
       const end = at + group.fixed + 1;
-      if (!f.reach(end) || !f.isSevenBit(at + 1, end)) return null;
-      return f.event(values, group, at + 1, end);
+      if (end > size) return null;
+      if (!f.isSevenBit(at + 1, end)) return null;
+      return f.event({ start }, group, at + 1, end, end);
     },
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
@@ -790,8 +791,9 @@ function brainFrame(): rt.Frame {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "start", key: "start", slot: 0 },
+      { name: "start", key: "start" },
     ],
+    partsOf: (v) => ({ start: v[0] }),
     firstStuffed: -1,
     lastStuffed: -1,
     behindRegion: 0,

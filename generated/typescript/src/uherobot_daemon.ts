@@ -234,8 +234,9 @@ function daemonFrame(): rt.Frame {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "type", key: "type", slot: 0 },
+      { name: "type", key: "type" },
     ],
+    partsOf: (v) => ({ type: v[0] }),
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,
@@ -276,8 +277,9 @@ function boardFrame(): rt.Frame {
     identity: [0],
     lastIdentity: 0,
     shown: [
-      { name: "type", key: "type", slot: 0 },
+      { name: "type", key: "type" },
     ],
+    partsOf: (v) => ({ type: v[0] }),
     transparency: rt.base16(),
     firstStuffed: 1,
     lastStuffed: 3,

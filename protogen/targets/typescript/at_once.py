@@ -6,11 +6,13 @@ has others for that, so that it has no more to say than where everything is.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
+from typing import NamedTuple
 
 from protogen.model.frame_places import Place, PlacedPart, Run
 from protogen.model.frame_plan import FramePlan
-from protogen.model.part_plans import ChecksumPlan
+from protogen.model.part_plans import ChecksumPlan, StuffedRegion
 from protogen.model.parts import (
     BitsPart,
     ChoicePart,
@@ -25,11 +27,20 @@ from protogen.model.transparency import Escape, Substitution
 from protogen.model.types import Integer
 from protogen.targets.braces import BracedLines
 from protogen.targets.naming import Thing
-from protogen.targets.typescript.literals import Code, call, integer, is_big, literal
+from protogen.targets.typescript.literals import (
+    GREATEST_BITS,
+    Code,
+    call,
+    integer,
+    is_big,
+    literal,
+)
 from protogen.targets.typescript.names import locals_table
 
 _VIEWED = {8: "Uint8", 16: "Uint16", 32: "Uint32", 64: "BigUint64"}
 """What a `DataView` reads, by the bits."""
+_FEW = 8
+"""So many bytes that are stuffed are compared one by one."""
 
 
 def is_taken_at_once(plan: FramePlan) -> bool:
@@ -38,14 +49,19 @@ def is_taken_at_once(plan: FramePlan) -> bool:
     is_odd = any(part.is_optional or not _is_simple(part) for part in parts)
     is_fitted = plan.is_cut or plan.frame.payload.kept is not None
     needs_more = plan.virtual or plan.further_lengths or plan.shares_delimiter or is_fitted
-    is_listed = region is None or (
-        isinstance(region.encoding, Substitution | Escape) and not (region.lenient or region.behind)
-    )
     sums_one = all(map(_sums_one_run, plan.checksums))
     fixed = any(sizes.fixed is not None for group in plan.groups for sizes in group.sizes)
     tells_size = plan.length is not None or fixed
-    plain = plan.takes_whole and is_listed and sums_one and tells_size
-    return plain and not (is_odd or needs_more)
+    is_numbered = plan.identity_bits <= GREATEST_BITS
+    plain = plan.takes_whole and sums_one and tells_size and is_numbered
+    is_listed = region is None or (_is_listed(region) and region.before < plan.head_size)
+    return plain and is_listed and not (is_odd or needs_more)
+
+
+def _is_listed(region: StuffedRegion) -> bool:
+    """True if a few sequences are all that a region has besides plain bytes."""
+    is_listed = isinstance(region.encoding, Substitution | Escape) and len(region.codes) <= _FEW
+    return is_listed and not (region.lenient or region.behind)
 
 
 def _is_simple(part: Part) -> bool:
@@ -62,70 +78,166 @@ def _sums_one_run(plan: ChecksumPlan) -> bool:
 
 
 class AtOnce:
-    """Prints the function of a sender, which has the values of parts in the order of `slots`."""
+    """Prints the function of a sender; `shown` has the members of events by the names of parts."""
 
-    def __init__(self, sender: Sender, slots: Mapping[str, int]) -> None:
+    def __init__(self, sender: Sender, shown: Mapping[str, str]) -> None:
         self._plan: FramePlan = sender.plan
         self._greatest = sender.framing.payload.greatest
-        self._slots = slots
+        self._shown = shown
         self._lines = BracedLines(2, 2)
         self._locals = locals_table()
-        self._values: dict[str, str] = {}
+        self._folding = _folding(self._plan)
+        self._values: dict[str, Code] = {}
         """Variables, by the parts whose values they have."""
 
     def text(self) -> Code:
         """The function, of the runtime's `AtOnce` and the place of a frame."""
-        plan = self._plan
-        self._begin()
-        for item in plan.head:
-            if isinstance(item.part, LiteralPart):
-                places = enumerate(item.part.bytes, item.offset)
-                self._refuse(*(f"{self._byte(place)} !== {byte}" for place, byte in places))
-            elif isinstance(item.part, NumberPart):
-                self._number(item)
-        names = sorted(self._slots, key=self._slots.__getitem__)
-        values = f"[{', '.join(self._values[name] for name in names)}]"
-        self._lines.add(f"const values = {values};", "const group = f.group(values);")
-        self._end()
+        plan, region = self._plan, self._plan.region
+        self._lines.add(f"const {{ {', '.join(self._members())} }} = f;")
+        self._refuse(f"at + {plan.least} > size", *_differ("data", "at", plan.start_bytes))
+        if region is None:
+            self._numbers(plan.head)
+            self._find_end()
+        else:
+            self._unstuff(region)
+            self._numbers(item for item in plan.head if not isinstance(item.part, LengthPart))
         self._check()
-        self._lines.add(f"return f.event(values, group, {self._place(plan.head_size)}, end);")
+        self._event()
         return Code("\n".join(["(f, at) => {", *self._lines.lines, "  }"]))
 
-    def _begin(self) -> None:
-        """Print what takes the parts that are there in any frame."""
-        plan, region = self._plan, self._plan.region
-        least = plan.head_size + plan.payload.least + plan.tail_size
-        if region is None:
-            self._refuse(f"!f.reach({self._place(least)})")
-        else:
-            self._refuse(f"!f.begin({region.before}, {least})")
-        self._lines.add(f"const {{ {'view' if region is None else 'content: view'} }} = f;")
+    def _members(self) -> Iterator[str]:
+        """What the function needs of the runtime's object."""
+        plan = self._plan
+        yield from ("data", "size")
+        if plan.region:
+            yield "content"
+        has_numbers = any(isinstance(item.part, NumberPart) for item in plan.head)
+        if has_numbers or (plan.checksums and not self._folding):
+            yield "view"
 
-    def _end(self) -> None:
-        """Print the place behind the payload."""
-        plan, length = self._plan, self._plan.length
-        if length is not None:
-            size, start = self._values[length.part.name], plan.head_size - length.base
-        else:
-            self._refuse("group === undefined", "group.fixed === null")
-            size, start = "group.fixed", plan.head_size
+    # --- content that is not stuffed --------------------------------------------------------------
+
+    def _find_end(self) -> None:
+        """Print the place behind the payload, and what is looked for there and in front of it."""
+        plan = self._plan
+        size, start = self._sizes()
         self._lines.add(f"const end = {self._place(start, size)};")
-
-    def _check(self) -> None:
-        """Print what holds all bytes of the frame against what they have to be."""
-        plan, start = self._plan, self._place(self._plan.head_size)
         behind = _behind("end", plan.tail_size)
-        tests = [f"!f.{'fill' if plan.region else 'reach'}({behind})"]
-        if plan.seven_bit:
-            tests.append(f"!f.isSevenBit({start}, end)")
+        room = _behind("end", plan.tail_size + len(plan.end_bytes))
+        tests = [f"{room} > size", *_differ("data", behind, plan.end_bytes)]
         marks = [word[-1] for word in plan.start_words if plan.start_is_unique]
         marks += plan.end_bytes[-1:] if plan.end_is_unique else b""
-        first = len(plan.start_words[0]) if plan.start_words else 0
-        is_payload = first == plan.head_size and not plan.tail_size
+        is_payload = plan.start_size == plan.head_size and not plan.tail_size
         is_known = plan.seven_bit and is_payload and min(marks, default=128) > 127
-        if marks and plan.region is None and not is_known:
-            tests.append(f"!f.isClear({self._place(first)}, {behind})")
-        for index, item in enumerate(plan.checksums):
+        if marks and not is_known:
+            tests.append(f"!f.isClear({self._place(plan.start_size)}, {behind})")
+        self._refuse(*tests)
+
+    def _sizes(self) -> tuple[str, int]:
+        """What the payload's size is known by, and what that is less than its end."""
+        plan, length = self._plan, self._plan.length
+        if length is not None:
+            return self._values[length.part.name], plan.head_size - length.base
+        self._lines.add(f"const group = {self._group()};")
+        self._refuse("group === undefined", "group.fixed === null")
+        return "group.fixed", plan.head_size
+
+    # --- content that is stuffed ------------------------------------------------------------------
+
+    def _unstuff(self, region: StuffedRegion) -> None:
+        """Print the loop that takes the stuffing off, and sums up on the way if it can."""
+        plan, add, folding = self._plan, self._lines.add, self._folding
+        taken, head = len(plan.start_bytes), plan.head_size
+        add(f"let place = {_behind('at', taken)};", f"let filled = {taken};", f"let due = {head};")
+        if region.before > taken:
+            add(f"while (filled < {region.before}) content[filled++] = data[place++] ?? 0;")
+        if folding:
+            add(f"let sum = {folding.first};")
+        with self._lines.block("while (filled < due)"):
+            self._refuse("place === size")
+            add("let byte = data[place++] ?? 0;")
+            self._replace(region.codes)
+            add("content[filled++] = byte;")
+            if folding:
+                add(folding.step)
+            with self._lines.block(f"if (filled === {head})"):
+                self._measure()
+        add(f"const end = {_behind('due', -plan.tail_size)};")
+        room = [f"{_behind('place', len(plan.end_bytes))} > size"] if plan.end_bytes else []
+        sum_ = [folding.wrong] if folding else []
+        self._refuse(*room, *_differ("data", "place", plan.end_bytes), *sum_)
+
+    def _measure(self) -> None:
+        """Print what the head says of the bytes of content that are due."""
+        plan, length = self._plan, self._plan.length
+        names = {item.name for item in plan.identity} if length is None else {length.part.name}
+        self._numbers(item for item in plan.head if item.name in names)
+        size, start = self._sizes()
+        self._lines.add(f"due = {_behind(size, start + plan.tail_size)};")
+
+    def _replace(self, codes: Sequence[tuple[int, bytes]]) -> None:
+        """Print what sequences stand for; a byte that is always replaced by one is refused."""
+        self._sequences(codes)
+        begun = {word[0] for _, word in codes}
+        refused = [f"byte === {byte}" for byte, _ in codes if byte not in begun]
+        if refused:
+            self._lines.add(f"else if ({' || '.join(refused)}) return null;")
+
+    def _sequences(self, codes: Iterable[tuple[int, bytes]]) -> None:
+        """Print what a byte begins, or what it ends, of sequences or of what is left of them."""
+        word = "if"
+        for first, group in groupby(codes, lambda code: code[1][0]):
+            ends = [(byte, rest[1:]) for byte, rest in group]
+            head, word = f"{word} (byte === {first})", "else if"
+            byte, rest = ends[0]
+            if not rest:
+                self._lines.add(f"{head} byte = {byte};")
+                continue
+            with self._lines.block(head):
+                self._refuse("place === size")
+                self._lines.add("byte = data[place++] ?? 0;")
+                self._sequences(ends)
+                self._lines.add("else return null;")
+
+    # --- what both have ---------------------------------------------------------------------------
+
+    def _numbers(self, items: Iterable[PlacedPart]) -> None:
+        """Print variables of numbers, and what refuses bytes and values that parts can't have."""
+        bytes_ = "content" if self._plan.region else "data"
+        for item in items:
+            part, place = item.part, self._place(item.offset)
+            if isinstance(part, LiteralPart) and item.offset >= len(self._plan.start_bytes):
+                self._refuse(*_differ(bytes_, place, part.bytes))
+            elif isinstance(part, NumberPart):
+                name = self._locals.add(part.name, Thing("variable", ("local", part.name)))
+                self._values[part.name] = Code(name)
+                self._lines.add(f"const {name} = {_plain(part.type, place)};")
+                self._refuse(*self._wrong(item, name))
+
+    def _wrong(self, item: PlacedPart, name: str) -> Iterator[str]:
+        """What is true of a value that the part can't have."""
+        part = item.part
+        assert isinstance(part, NumberPart)
+        if isinstance(part, ChoicePart):
+            yield " && ".join(f"{name} !== {_spelled(part, value)}" for value in part.values)
+            return
+        least, greatest = part.least, part.greatest
+        if isinstance(part, LengthPart):
+            length = self._plan.counted(part)
+            least = max(least, length.base)
+            greatest = min(length.greatest, length.base + self._greatest)
+        elif item not in self._plan.bounded:
+            return
+        if least > 0:
+            yield f"{name} < {_spelled(part, least)}"
+        if greatest < part.type.greatest:
+            yield f"{name} > {_spelled(part, greatest)}"
+
+    def _check(self) -> None:
+        """Print what holds the payload and the checksums against what they have to be."""
+        plan = self._plan
+        tests = [f"!f.isSevenBit({self._place(plan.head_size)}, end)"] if plan.seven_bit else []
+        for index, item in enumerate(() if self._folding else plan.checksums):
             (run,) = item.covers
             assert isinstance(run, Run)
             found = _plain(item.part.type, self._at(item.placed.place))
@@ -133,7 +245,23 @@ class AtOnce:
             tests.append(f"{found} !== {due}")
         self._refuse(*tests)
 
-    # --- places and numbers -----------------------------------------------------------------------
+    def _event(self) -> None:
+        """Print what the event has, and where everything is."""
+        plan = self._plan
+        parts = {key: self._values[name] for name, key in self._shown.items()}
+        is_found = plan.region is None and plan.length is None
+        group = Code("group") if is_found else self._group()
+        last = _behind("end", plan.tail_size) if plan.region is None else "place"
+        places = self._place(plan.head_size), Code("end"), _behind(last, len(plan.end_bytes))
+        self._lines.add(f"return {call('f.event', parts, group, *places)};")
+
+    def _group(self) -> Code:
+        """The messages of the identity, whose parts make up one number."""
+        number = ""
+        for part in self._plan.identity:
+            value = self._values[part.name]
+            number = f"{256**part.size} * ({number}) + {value}" if number else value
+        return call("f.group", Code(number or "0"))
 
     def _place(self, offset: int, *more: str) -> Code:
         """A place so many bytes behind the first one."""
@@ -144,38 +272,37 @@ class AtOnce:
         return _behind("end", place.offset) if place.is_tail else self._place(place.offset)
 
     def _refuse(self, *tests: str) -> None:
-        self._lines.add(f"if ({' || '.join(tests)}) return null;")
+        if tests:
+            self._lines.add(f"if ({' || '.join(tests)}) return null;")
 
-    def _number(self, item: PlacedPart) -> None:
-        """Print the variable of a part, and what refuses values that it can't have."""
-        part = item.part
-        assert isinstance(part, NumberPart)
-        name = self._locals.add(part.name, Thing("variable", ("local", part.name)))
-        self._values[part.name] = name
-        self._lines.add(f"const {name} = {_plain(part.type, self._place(item.offset))};")
-        if test := self._wrong(item, name):
-            self._refuse(test)
 
-    def _byte(self, place: int) -> Code:
-        return call("view.getUint8", self._place(place))
+class _Folding(NamedTuple):
+    """A checksum that is taken in the loop that takes stuffing off, itself included."""
 
-    def _wrong(self, item: PlacedPart, name: str) -> str:
-        """What is true of a value that the part can't have; empty where it can have all."""
-        part = item.part
-        assert isinstance(part, NumberPart)
-        if isinstance(part, ChoicePart):
-            return " && ".join(f"{name} !== {_spelled(part, value)}" for value in part.values)
-        least, greatest = part.least, part.greatest
-        if isinstance(part, LengthPart):
-            length = self._plan.counted(part)
-            least = max(least, length.base)
-            greatest = min(length.greatest, length.base + self._greatest)
-        elif item not in self._plan.bounded:
-            return ""
-        tests = [f"{name} < {_spelled(part, least)}"] if least > 0 else []
-        if greatest < part.type.greatest:
-            tests.append(f"{name} > {_spelled(part, greatest)}")
-        return " || ".join(tests)
+    first: int
+    """What it begins with."""
+    step: str
+    wrong: str
+
+
+def _folding(plan: FramePlan) -> _Folding | None:
+    """How the checksum is taken together with the bytes; None where that is too much."""
+    if plan.region is None or plan.tail_size != 1 or len(plan.checksums) != 1:
+        return None
+    (item,) = plan.checksums
+    (run,) = item.covers
+    spec = item.part.algorithm
+    assert isinstance(run, Run)
+    is_whole = plan.region.before <= run.first.offset <= plan.head_size and not run.end.offset
+    if not (spec.is_folded_byte and is_whole and run.end.is_tail) or run.first.is_tail:
+        return None
+    is_all = run.first.offset == plan.region.before
+    test = "" if is_all else f"if (filled > {run.first.offset}) "
+    if spec.kind == "xor" and spec.is_bare:
+        return _Folding(spec.init, f"{test}sum ^= byte;", "sum")
+    if spec.kind == "sum" and spec.is_bare and spec.negated:
+        return _Folding(spec.init, f"{test}sum += byte;", "sum & 255")
+    return None
 
 
 def _plain(type_: Integer, place: str) -> Code | None:
@@ -184,6 +311,12 @@ def _plain(type_: Integer, place: str) -> Code | None:
         return None
     is_little = type_.size > 1 and type_.byte_order == "little"
     return call(f"view.get{_VIEWED[type_.bits]}", Code(place), is_little or None)
+
+
+def _differ(name: str, place: str, due: bytes) -> Iterator[str]:
+    """What is true of each byte that is not what it has to be."""
+    for offset, byte in enumerate(due):
+        yield f"{name}[{_behind(place, offset)}] !== {byte}"
 
 
 def _behind(place: str, offset: int) -> Code:

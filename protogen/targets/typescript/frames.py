@@ -41,6 +41,7 @@ from protogen.targets.typescript.literals import (
     integer,
     is_big,
     lines,
+    literal,
     told,
 )
 from protogen.targets.typescript.names import Names
@@ -67,8 +68,10 @@ class FramePrinter:
         self._sender = sender
         self._plan: FramePlan = sender.plan
         self._names = names
-        self._shown = [item.name for item in sender.frame.shown_parts]
-        every = dict.fromkeys([*self._shown, *(item.name for item in sender.frame.lengths)])
+        shown = [item.name for item in sender.frame.shown_parts]
+        self._keys = {name: names.shown(sender.name, name) for name in shown}
+        """Members of the parts of events, by the names of parts."""
+        every = dict.fromkeys([*shown, *(item.name for item in sender.frame.lengths)])
         self._slots = {name: slot for slot, name in enumerate(every)}
         """Places of the values of parts."""
         self._sums = [item.part.name for item in sender.plan.checksums]
@@ -94,7 +97,8 @@ class FramePrinter:
             "lastIdentity": self._slots[sent[-1].name] if sent else -1,
             "told": _lines(map(self._told, frame.told)),
             "virtual": _lines(map(self._virtual, plan.virtual)),
-            "shown": _lines(map(self._shown_part, self._shown)),
+            "shown": _lines({"name": name, "key": key} for name, key in self._keys.items()),
+            "partsOf": self._parts_of(),
             "sums": _lines(map(self._sum, plan.checksums)),
             "transparency": None if region is None else self._transparency(),
             "firstStuffed": min(stuffed, default=-1),
@@ -111,7 +115,7 @@ class FramePrinter:
     def _whole(self) -> Code | None:
         if not is_taken_at_once(self._plan):
             return None
-        return AtOnce(self._sender, self._slots).text()
+        return AtOnce(self._sender, self._keys).text()
 
     def _plan_name(self, message: Message) -> Code:
         return Code(self._names.functions[message.name][2])
@@ -204,9 +208,10 @@ class FramePrinter:
         default = None if part.default is None else _shown(part, part.default)
         return _numbered(part) | {"values": values, "default": default}
 
-    def _shown_part(self, name: str) -> Data:
-        own = self._names.shown(self._sender.name, name)
-        return {"name": name, "key": own, "slot": self._slots[name]}
+    def _parts_of(self) -> Code:
+        """The function that makes the parts of events out of values by their slots."""
+        found = {key: Code(f"v[{self._slots[name]}]") for name, key in self._keys.items()}
+        return Code(f"(v) => ({literal(found)})")
 
     # --- checksums and stuffing -------------------------------------------------------------------
 

@@ -4,7 +4,7 @@
  * It has the places and bounds of a frame as constants, and takes none that is odd in any way: for
  * these, and for frames in pieces, there are others.
  */
-import { hasHighBit, NO_BYTES, standsAt } from "./bytes.js";
+import { hasHighBit, NO_BYTES } from "./bytes.js";
 import { Fault } from "./errors.js";
 import { Framed } from "./events.js";
 import { holds } from "./plan.js";
@@ -14,29 +14,30 @@ export class AtOnce {
     constructor(sender, whole) {
         this.sender = sender;
         this.whole = whole;
+        /** What came in. */
         this.data = NO_BYTES;
+        /** The bytes of it that are there. */
         this.size = 0;
         this.at = 0;
         this.offset = 0;
-        /** Place in the input behind the bytes that are taken. */
-        this.place = 0;
-        /** Bytes of content that are taken off. */
-        this.filled = 0;
         this.reader = new Reader(NO_BYTES);
         const { frame } = sender;
         this.frame = frame;
-        this.steps = frame.transparency?.steps?.() ?? null;
-        this.scratch = this.bytes = new Uint8Array(frame.greatest + 1);
-        this.content = this.view = new DataView(this.scratch.buffer);
+        this.isStuffed = frame.transparency !== null;
+        this.content = new Uint8Array(frame.greatest + 1);
+        this.content.set(frame.startBytes);
+        this.view = new DataView(this.content.buffer);
+        this.groups = plainGroups(sender);
         this.marks = marksOf(sender);
     }
     /** Take frames from a start on, one behind another; the place behind the last one. */
     take(data, size, start, offset, events) {
         if (this.data !== data) {
             this.data = data;
-            this.view = new DataView(data.buffer);
-            if (!this.steps)
-                this.bytes = data;
+            if (!this.isStuffed) {
+                this.content = data;
+                this.view = new DataView(data.buffer);
+            }
         }
         this.size = size;
         this.offset = offset;
@@ -54,39 +55,6 @@ export class AtOnce {
         return this.at;
     }
     // --- what generated functions call ---------------------------------------------------------
-    /** Take content that is not stuffed up to a place. */
-    reach(place) {
-        this.place = place;
-        return place + this.frame.end.length <= this.size;
-    }
-    /** Take a few bytes that are not stuffed, and then stuffed ones until so many are there. */
-    begin(before, due) {
-        const { at, data, scratch } = this;
-        for (let index = 0; index < before; index++)
-            scratch[index] = data[at + index];
-        this.place = at + before;
-        this.filled = before;
-        return this.fill(due);
-    }
-    /** Take stuffed bytes until so many are there. */
-    fill(due) {
-        const { data, size, scratch, steps } = this;
-        let { place, filled } = this;
-        while (filled < due) {
-            if (place >= size)
-                return false;
-            let step = steps[data[place++]];
-            while (step < 0) {
-                if (step === -1 || place >= size)
-                    return false;
-                step = steps[256 * (-2 - step) + data[place++]];
-            }
-            scratch[filled++] = step;
-        }
-        this.place = place;
-        this.filled = filled;
-        return true;
-    }
     /** True if nothing stands there that may begin another frame or end this one. */
     isClear(from, to) {
         const { data, marks } = this;
@@ -97,38 +65,57 @@ export class AtOnce {
     }
     /** True if the bytes have their most significant bits clear. */
     isSevenBit(from, to) {
-        return !hasHighBit(this.bytes, from, to);
+        return !hasHighBit(this.content, from, to);
     }
     /** The checksum of bytes. */
     sum(index, from, to) {
-        return this.frame.sums[index].algorithm.compute(this.bytes, from, to);
+        return this.frame.sums[index].algorithm.compute(this.content, from, to);
     }
-    /** The messages of frames with these values; undefined where there are none. */
-    group(values) {
-        return this.sender.group(values);
+    /** The messages of an identity, which is the number of all its parts; undefined: look further. */
+    group(identity) {
+        return this.groups.get(identity);
     }
-    /** The event of the frame with these values and such a payload. Throws a Fault. */
-    event(values, group, from, to) {
-        const { sender, data, at, frame, place } = this;
-        if (!group || group.messages.length > 1)
+    /** The event of the frame up to a place, with such a payload. Throws a Fault. */
+    event(parts, group, from, to, behind) {
+        const { at, reader } = this;
+        const size = behind - at;
+        if (!group || size > this.frame.givenUpAt || !holds(group.carried[0], to - from))
             return null;
         const plan = group.messages[0];
-        const sizes = group.carried[0];
-        const payload = to - from;
-        if (!holds(plan.sizes, payload))
-            return null;
-        if (sizes !== plan.sizes && !holds(sizes, payload))
-            return null;
-        const { end } = frame;
-        const size = place + end.length - at;
-        if (size > frame.givenUpAt || !standsAt(data, this.size, place, end))
-            return null;
-        const reader = this.reader.restart(this.bytes, from, to, sender.held(plan, values));
-        const message = plan.read(reader);
+        const message = plan.read(reader.restart(this.content, from, to));
         reader.finish();
-        const offset = this.offset + at;
-        return new Framed("message", offset, size, data, at, sender, values, NO_BYTES, message, plan);
+        return new Framed(this.offset + at, size, this.data, at, this.sender, parts, message, plan);
     }
+}
+/** As many identities of a message are listed at most. */
+const LISTED = 256;
+/** The groups of one message that needs nothing but its payload, by the number of the identity. */
+function plainGroups(sender) {
+    const found = new Map();
+    const factors = sender.identityParts.map(({ number }) => 256 ** number.size);
+    for (const group of sender.frame.groups) {
+        if (group.messages.length > 1 || group.messages[0].held.length)
+            continue;
+        for (const identity of numbersOf(group.identities, factors))
+            found.set(identity, group);
+    }
+    return found;
+}
+/** Identities as numbers, each part above those behind it; none where there are very many. */
+function numbersOf(identities, factors) {
+    let found = [0];
+    identities.forEach((runs, index) => {
+        const values = runs.flatMap(([first, last]) => valuesOf(Number(first), Number(last)));
+        const isMany = found.length * values.length > LISTED;
+        const listed = isMany ? [] : values;
+        found = found.flatMap((number) => listed.map((value) => number * factors[index] + value));
+    });
+    return found;
+}
+/** The values from the first to the last, or as many of them as show that they are too many. */
+function valuesOf(first, last) {
+    const length = Math.min(last - first, LISTED) + 1;
+    return Array.from({ length }, (_, index) => first + index);
 }
 /** The bytes that may end a start or an end inside a frame. */
 export function marksOf({ frame, completesStart }) {

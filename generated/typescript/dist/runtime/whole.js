@@ -288,7 +288,8 @@ export class WholeFrames {
         const reader = this.reader.restart(bytes, start, behind, sender.held(only, values));
         const message = only.read(reader);
         reader.finish();
-        return new Framed("message", offset, size, data, at, sender, values, NO_BYTES, message, only);
+        const parts = frame.partsOf(values);
+        return new Framed(offset, size, data, at, sender, parts, message, only);
     }
     isRight(sum, run, bytes, base) {
         const { payload } = this;

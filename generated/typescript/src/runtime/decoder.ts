@@ -109,7 +109,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
   /** Take what another decoder found on the same bus, which may tell an identity here. */
   hear(event: Event): void {
     if (!(event instanceof Framed)) return;
-    this.search.told.hear(event.codec, event.values, event.plan?.name ?? null, event.message);
+    this.search.told.hear(event);
     this.restart();
   }
 
@@ -258,7 +258,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
     this.done = start + cut.size;
     this.events.push(event);
     const { told } = this.search;
-    if (told.isNeeded) told.passFrame(sender, cut.values, event.plan?.name ?? null, event.message);
+    if (told.isNeeded) told.passFrame(event);
     return null;
   }
 

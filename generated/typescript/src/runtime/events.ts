@@ -1,6 +1,6 @@
 /** Events of a decoder: each covers some bytes of the input, and all of them cover all of it. */
 
-import { type Cut } from "./candidate.js";
+import type { Cut } from "./candidate.js";
 import type { Reason } from "./errors.js";
 import type { Value } from "./numbers.js";
 import type { MessagePlan } from "./plan.js";
@@ -69,23 +69,28 @@ class Span {
   }
 }
 
+/** Values of the parts of a frame that events show. */
+export type PartValues = Readonly<Record<string, Value | undefined>>;
+
 /** A valid frame. What is seldom asked for is made then. */
 export class Framed extends Span {
   constructor(
-    readonly kind: "message" | "unknown",
     offset: number,
     size: number,
     data: Uint8Array,
     start: number,
     /** What knows the frame. */
     readonly codec: Sender,
-    /** Values of its parts, by their slots. */
-    readonly values: readonly (Value | undefined)[],
-    readonly payload: Uint8Array,
+    readonly parts: PartValues,
     readonly message: unknown,
+    /** The message's; null of an unknown one. */
     readonly plan: MessagePlan | null,
   ) {
     super(offset, size, data, start);
+  }
+
+  get kind(): "message" | "unknown" {
+    return this.plan ? "message" : "unknown";
   }
 
   get sender(): string {
@@ -95,11 +100,20 @@ export class Framed extends Span {
   get form(): string {
     return this.codec.frame.form;
   }
+}
 
-  get parts(): Record<string, Value> {
-    const found: Record<string, Value> = {};
-    for (const part of this.codec.frame.shown) found[part.key] = this.values[part.slot]!;
-    return found;
+/** A valid frame whose identity belongs to no message. */
+export class UnknownFrame extends Framed {
+  constructor(
+    offset: number,
+    size: number,
+    data: Uint8Array,
+    start: number,
+    codec: Sender,
+    parts: PartValues,
+    readonly payload: Uint8Array,
+  ) {
+    super(offset, size, data, start, codec, parts, null, null);
   }
 }
 
@@ -132,8 +146,9 @@ export function framed(
   size: number,
 ): Framed {
   const { values, payload } = cut;
+  const parts = codec.frame.partsOf(values);
   const group = codec.group(values);
-  const [plan, message] = group ? codec.read(group, payload, values) : [null, null];
-  const kind = plan ? "message" : "unknown";
-  return new Framed(kind, offset, size, data, start, codec, values, payload, message, plan);
+  if (!group) return new UnknownFrame(offset, size, data, start, codec, parts, payload);
+  const [plan, message] = codec.read(group, payload, values);
+  return new Framed(offset, size, data, start, codec, parts, message, plan);
 }

@@ -3,7 +3,7 @@
 import { makerOf, unknownFrameOf } from "./assembly.js";
 import { equal, toHex } from "./bytes.js";
 import { EncodeError } from "./errors.js";
-import { Framed, type AnyEvent, type Event } from "./events.js";
+import { Framed, UnknownFrame, type AnyEvent, type Event } from "./events.js";
 
 /** A value as JSON has it: bytes as hexadecimal digits, integers of any size as numbers. */
 export function jsonValue(value: unknown): string {
@@ -53,8 +53,8 @@ export function jsonLine(event: Event): string {
   }
   if (found.form) members.push(member("form", JSON.stringify(found.form)));
   members.push(member("parts", jsonValue(found.parts)));
-  if (found.plan) members.push(member("fields", jsonValue(fieldsOf(found.message))));
-  else members.push(member("payload", jsonValue(found.payload)));
+  if (found instanceof UnknownFrame) members.push(member("payload", jsonValue(found.payload)));
+  else members.push(member("fields", jsonValue(fieldsOf(found.message))));
   if (!givesBack(found)) members.push(member("raw", jsonValue(found.raw)));
   return `{${members.join(", ")}}`;
 }
@@ -67,12 +67,13 @@ function fieldsOf(message: unknown): object {
 
 function givesBack(event: Framed): boolean {
   const parts = Object.fromEntries(
-    event.codec.frame.shown.map((part) => [part.name, event.values[part.slot]]),
+    event.codec.frame.shown.map((part) => [part.name, event.parts[part.key]]),
   );
   try {
-    const wire = event.plan
-      ? makerOf(event.codec, event.plan).make(event.message, parts, false)
-      : unknownFrameOf(event.codec, event.payload, parts);
+    const wire =
+      event instanceof UnknownFrame
+        ? unknownFrameOf(event.codec, event.payload, parts)
+        : makerOf(event.codec, event.plan!).make(event.message, parts, false);
     return equal(wire, event.raw);
   } catch (error) {
     if (error instanceof EncodeError) return false;

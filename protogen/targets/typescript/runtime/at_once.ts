@@ -5,35 +5,30 @@
  * these, and for frames in pieces, there are others.
  */
 
-import { hasHighBit, NO_BYTES, standsAt } from "./bytes.js";
+import { hasHighBit, NO_BYTES } from "./bytes.js";
 import { Fault } from "./errors.js";
-import { Framed } from "./events.js";
-import type { Value } from "./numbers.js";
+import { Framed, type PartValues } from "./events.js";
 import { holds } from "./plan.js";
-import type { Frame, Group, TakeWhole } from "./plan.js";
+import type { Frame, Group, Runs, TakeWhole } from "./plan.js";
 import { Reader } from "./reader.js";
 import type { Sender } from "./sender.js";
 
 /** A place in some input, for a generated function. Its methods say if all is well so far. */
 export class AtOnce {
-  /** What came in, from the first byte of the frame on. */
+  /** What came in. */
+  data: Uint8Array = NO_BYTES;
+  /** The bytes of it that are there. */
+  size = 0;
+  /** Content without its stuffing; what came in where nothing is stuffed. */
+  content: Uint8Array;
+  /** The same, for numbers of several bytes. */
   view: DataView;
-  /** What is taken of a frame where it is stuffed. */
-  readonly content: DataView;
-  private data: Uint8Array = NO_BYTES;
-  private size = 0;
   private at = 0;
   private offset = 0;
-  /** Place in the input behind the bytes that are taken. */
-  private place = 0;
-  /** Bytes of content that are taken off. */
-  private filled = 0;
-  /** Content where it is stuffed, and what came in where it is not. */
-  private bytes: Uint8Array;
-  private readonly steps: Int16Array | null;
-  private readonly scratch: Uint8Array;
+  private readonly isStuffed: boolean;
   private readonly reader = new Reader(NO_BYTES);
   private readonly frame: Frame;
+  private readonly groups: ReadonlyMap<number, Group>;
   /** Bytes that may end a start or an end inside the frame. */
   private readonly marks: Uint8Array;
 
@@ -43,9 +38,11 @@ export class AtOnce {
   ) {
     const { frame } = sender;
     this.frame = frame;
-    this.steps = frame.transparency?.steps?.() ?? null;
-    this.scratch = this.bytes = new Uint8Array(frame.greatest + 1);
-    this.content = this.view = new DataView(this.scratch.buffer);
+    this.isStuffed = frame.transparency !== null;
+    this.content = new Uint8Array(frame.greatest + 1);
+    this.content.set(frame.startBytes);
+    this.view = new DataView(this.content.buffer);
+    this.groups = plainGroups(sender);
     this.marks = marksOf(sender);
   }
 
@@ -53,8 +50,10 @@ export class AtOnce {
   take(data: Uint8Array, size: number, start: number, offset: number, events: unknown[]): number {
     if (this.data !== data) {
       this.data = data;
-      this.view = new DataView(data.buffer);
-      if (!this.steps) this.bytes = data;
+      if (!this.isStuffed) {
+        this.content = data;
+        this.view = new DataView(data.buffer);
+      }
     }
     this.size = size;
     this.offset = offset;
@@ -72,39 +71,6 @@ export class AtOnce {
 
   // --- what generated functions call ---------------------------------------------------------
 
-  /** Take content that is not stuffed up to a place. */
-  reach(place: number): boolean {
-    this.place = place;
-    return place + this.frame.end.length <= this.size;
-  }
-
-  /** Take a few bytes that are not stuffed, and then stuffed ones until so many are there. */
-  begin(before: number, due: number): boolean {
-    const { at, data, scratch } = this;
-    for (let index = 0; index < before; index++) scratch[index] = data[at + index]!;
-    this.place = at + before;
-    this.filled = before;
-    return this.fill(due);
-  }
-
-  /** Take stuffed bytes until so many are there. */
-  fill(due: number): boolean {
-    const { data, size, scratch, steps } = this;
-    let { place, filled } = this;
-    while (filled < due) {
-      if (place >= size) return false;
-      let step = steps![data[place++]!]!;
-      while (step < 0) {
-        if (step === -1 || place >= size) return false;
-        step = steps![256 * (-2 - step) + data[place++]!]!;
-      }
-      scratch[filled++] = step;
-    }
-    this.place = place;
-    this.filled = filled;
-    return true;
-  }
-
   /** True if nothing stands there that may begin another frame or end this one. */
   isClear(from: number, to: number): boolean {
     const { data, marks } = this;
@@ -114,37 +80,67 @@ export class AtOnce {
 
   /** True if the bytes have their most significant bits clear. */
   isSevenBit(from: number, to: number): boolean {
-    return !hasHighBit(this.bytes, from, to);
+    return !hasHighBit(this.content, from, to);
   }
 
   /** The checksum of bytes. */
   sum(index: number, from: number, to: number): number | bigint {
-    return this.frame.sums[index]!.algorithm.compute(this.bytes, from, to);
+    return this.frame.sums[index]!.algorithm.compute(this.content, from, to);
   }
 
-  /** The messages of frames with these values; undefined where there are none. */
-  group(values: readonly Value[]): Group | undefined {
-    return this.sender.group(values);
+  /** The messages of an identity, which is the number of all its parts; undefined: look further. */
+  group(identity: number): Group | undefined {
+    return this.groups.get(identity);
   }
 
-  /** The event of the frame with these values and such a payload. Throws a Fault. */
-  event(values: Value[], group: Group | undefined, from: number, to: number): Framed | null {
-    const { sender, data, at, frame, place } = this;
-    if (!group || group.messages.length > 1) return null;
+  /** The event of the frame up to a place, with such a payload. Throws a Fault. */
+  event(
+    parts: PartValues,
+    group: Group | undefined,
+    from: number,
+    to: number,
+    behind: number,
+  ): Framed | null {
+    const { at, reader } = this;
+    const size = behind - at;
+    if (!group || size > this.frame.givenUpAt || !holds(group.carried[0]!, to - from)) return null;
     const plan = group.messages[0]!;
-    const sizes = group.carried[0]!;
-    const payload = to - from;
-    if (!holds(plan.sizes, payload)) return null;
-    if (sizes !== plan.sizes && !holds(sizes, payload)) return null;
-    const { end } = frame;
-    const size = place + end.length - at;
-    if (size > frame.givenUpAt || !standsAt(data, this.size, place, end)) return null;
-    const reader = this.reader.restart(this.bytes, from, to, sender.held(plan, values));
-    const message = plan.read(reader);
+    const message = plan.read(reader.restart(this.content, from, to));
     reader.finish();
-    const offset = this.offset + at;
-    return new Framed("message", offset, size, data, at, sender, values, NO_BYTES, message, plan);
+    return new Framed(this.offset + at, size, this.data, at, this.sender, parts, message, plan);
   }
+}
+
+/** As many identities of a message are listed at most. */
+const LISTED = 256;
+
+/** The groups of one message that needs nothing but its payload, by the number of the identity. */
+function plainGroups(sender: Sender): ReadonlyMap<number, Group> {
+  const found = new Map<number, Group>();
+  const factors = sender.identityParts.map(({ number }) => 256 ** number!.size);
+  for (const group of sender.frame.groups) {
+    if (group.messages.length > 1 || group.messages[0]!.held.length) continue;
+    for (const identity of numbersOf(group.identities, factors)) found.set(identity, group);
+  }
+  return found;
+}
+
+/** Identities as numbers, each part above those behind it; none where there are very many. */
+function numbersOf(identities: Runs, factors: readonly number[]): readonly number[] {
+  let found = [0];
+  identities.forEach((runs, index) => {
+    const values = runs.flatMap(([first, last]) => valuesOf(Number(first), Number(last)));
+    const isMany = found.length * values.length > LISTED;
+    const listed = isMany ? [] : values;
+    found = found.flatMap((number) => listed.map((value) => number * factors[index]! + value));
+  });
+  return found;
+}
+
+/** The values from the first to the last, or as many of them as show that they are too many. */
+function valuesOf(first: number, last: number): readonly number[] {
+  const length = Math.min(last - first, LISTED) + 1;
+  return Array.from({ length }, (_, index) => first + index);
 }
 
 /** The bytes that may end a start or an end inside a frame. */

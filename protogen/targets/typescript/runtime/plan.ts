@@ -3,7 +3,7 @@
 import type { Counts, FrameMaker, GivenParts } from "./assembly.js";
 import type { AtOnce } from "./at_once.js";
 import type { Checksum } from "./checksums.js";
-import type { Framed } from "./events.js";
+import type { Framed, PartValues } from "./events.js";
 import type { PartNumber, Value } from "./numbers.js";
 import type { Reader } from "./reader.js";
 import type { Transparency } from "./transparency.js";
@@ -171,7 +171,6 @@ export interface Shown {
   readonly name: string;
   /** The name in generated code. */
   readonly key: string;
-  readonly slot: number;
 }
 
 /** Sizes in bytes: `least`, `least + step`, ... up to `greatest`; a step of 0 is one size. */
@@ -281,6 +280,8 @@ export interface Frame {
   readonly told: readonly Told[];
   readonly virtual: readonly Virtual[];
   readonly shown: readonly Shown[];
+  /** The same of a frame with such values, by their slots. */
+  readonly partsOf: (values: readonly (Value | undefined)[]) => PartValues;
   readonly sums: readonly Sum[];
   readonly start: "word" | "after_end" | "anywhere";
   /** What a frame starts with; of one size. */

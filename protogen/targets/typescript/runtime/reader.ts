@@ -52,7 +52,7 @@ export class Reader {
   }
 
   /** Begin at another payload. */
-  restart(bytes: Uint8Array, at: number, end: number, held: HeldParts): this {
+  restart(bytes: Uint8Array, at: number, end: number, held: HeldParts = NO_PARTS): this {
     this.bytes = bytes;
     this.held = held;
     this.at = at;

@@ -1,6 +1,7 @@
 /** What a receiver is told of identities that are not sent: by its program, or by frames. */
 
 import type { ToldValues } from "./candidate.js";
+import type { Framed } from "./events.js";
 import type { Value } from "./numbers.js";
 import { ownOf, type LengthNumber, type Told as ToldPart } from "./plan.js";
 import type { Sender } from "./sender.js";
@@ -89,47 +90,43 @@ export class Told {
   }
 
   /** Take a frame: what was told may hold no more, and it may tell something itself. */
-  passFrame(sender: Sender, values: ToldValues, name: string | null, message: unknown): void {
-    for (const part of sender.frame.told) {
+  passFrame(event: Framed): void {
+    for (const part of event.codec.frame.told) {
       const following = this.following.get(part.name) ?? [];
       if (following.length || part.once) {
         this.values.set(part.name, following.shift() ?? part.default);
       }
     }
-    this.hear(sender, values, name, message);
+    this.hear(event);
   }
 
   /** Take the numbers of a frame, which may tell something of those behind it. */
-  hear(sender: Sender, values: ToldValues, name: string | null, message: unknown): void {
-    const told = new Set(sender.frame.told.map((part) => part.slot));
+  hear(event: Framed): void {
     for (const part of this.parts.values()) {
       for (const teller of part.setBy) {
         const listed = teller.message
-          ? ofField(teller, name, message)
-          : ofPart(sender, values, teller.name, told);
+          ? ofField(teller, event)
+          : ofPart(teller.name, event);
         if (listed) this.fresh.set(part.name, listed.length ? listed : [part.default]);
       }
     }
   }
 }
 
-function ofPart(
-  sender: Sender,
-  values: ToldValues,
-  name: string,
-  told: ReadonlySet<number>,
-): readonly number[] | null {
-  const shown = sender.frame.shown.find((part) => part.name === name && !told.has(part.slot));
-  const value = shown && values[shown.slot];
+/** The number of a part that was sent. */
+function ofPart(name: string, { codec, parts }: Framed): readonly number[] | null {
+  const { shown, told } = codec.frame;
+  const isTold = told.some((part) => part.name === name);
+  const part = isTold ? undefined : shown.find((item) => item.name === name);
+  const value = part && parts[part.key];
   return value === undefined || typeof value === "string" ? null : [Number(value)];
 }
 
 function ofField(
   teller: { readonly message: string; readonly name: string },
-  name: string | null,
-  message: unknown,
+  { plan, message }: Framed,
 ): readonly number[] | null {
-  if (name !== teller.message) return null;
+  if (plan?.name !== teller.message) return null;
   const value = (message as Record<string, unknown>)[teller.name];
   if (value === null || value === undefined) return null;
   return Array.isArray(value) ? value.map(Number) : [Number(value)];

@@ -314,7 +314,8 @@ export class WholeFrames {
     const reader = this.reader.restart(bytes, start, behind, sender.held(only, values));
     const message = only.read(reader);
     reader.finish();
-    return new Framed("message", offset, size, data, at, sender, values, NO_BYTES, message, only);
+    const parts = frame.partsOf(values);
+    return new Framed(offset, size, data, at, sender, parts, message, only);
   }
 
   private isRight(sum: Sum, run: Run | undefined, bytes: Uint8Array, base: number): boolean {

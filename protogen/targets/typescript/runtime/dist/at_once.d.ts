@@ -4,53 +4,42 @@
  * It has the places and bounds of a frame as constants, and takes none that is odd in any way: for
  * these, and for frames in pieces, there are others.
  */
-import { Framed } from "./events.js";
-import type { Value } from "./numbers.js";
+import { Framed, type PartValues } from "./events.js";
 import type { Group, TakeWhole } from "./plan.js";
 import type { Sender } from "./sender.js";
 /** A place in some input, for a generated function. Its methods say if all is well so far. */
 export declare class AtOnce {
     private readonly sender;
     private readonly whole;
-    /** What came in, from the first byte of the frame on. */
+    /** What came in. */
+    data: Uint8Array;
+    /** The bytes of it that are there. */
+    size: number;
+    /** Content without its stuffing; what came in where nothing is stuffed. */
+    content: Uint8Array;
+    /** The same, for numbers of several bytes. */
     view: DataView;
-    /** What is taken of a frame where it is stuffed. */
-    readonly content: DataView;
-    private data;
-    private size;
     private at;
     private offset;
-    /** Place in the input behind the bytes that are taken. */
-    private place;
-    /** Bytes of content that are taken off. */
-    private filled;
-    /** Content where it is stuffed, and what came in where it is not. */
-    private bytes;
-    private readonly steps;
-    private readonly scratch;
+    private readonly isStuffed;
     private readonly reader;
     private readonly frame;
+    private readonly groups;
     /** Bytes that may end a start or an end inside the frame. */
     private readonly marks;
     constructor(sender: Sender, whole: TakeWhole);
     /** Take frames from a start on, one behind another; the place behind the last one. */
     take(data: Uint8Array, size: number, start: number, offset: number, events: unknown[]): number;
-    /** Take content that is not stuffed up to a place. */
-    reach(place: number): boolean;
-    /** Take a few bytes that are not stuffed, and then stuffed ones until so many are there. */
-    begin(before: number, due: number): boolean;
-    /** Take stuffed bytes until so many are there. */
-    fill(due: number): boolean;
     /** True if nothing stands there that may begin another frame or end this one. */
     isClear(from: number, to: number): boolean;
     /** True if the bytes have their most significant bits clear. */
     isSevenBit(from: number, to: number): boolean;
     /** The checksum of bytes. */
     sum(index: number, from: number, to: number): number | bigint;
-    /** The messages of frames with these values; undefined where there are none. */
-    group(values: readonly Value[]): Group | undefined;
-    /** The event of the frame with these values and such a payload. Throws a Fault. */
-    event(values: Value[], group: Group | undefined, from: number, to: number): Framed | null;
+    /** The messages of an identity, which is the number of all its parts; undefined: look further. */
+    group(identity: number): Group | undefined;
+    /** The event of the frame up to a place, with such a payload. Throws a Fault. */
+    event(parts: PartValues, group: Group | undefined, from: number, to: number, behind: number): Framed | null;
 }
 /** The bytes that may end a start or an end inside a frame. */
 export declare function marksOf({ frame, completesStart }: Sender): Uint8Array;

@@ -87,7 +87,7 @@ export class Decoder {
     hear(event) {
         if (!(event instanceof Framed))
             return;
-        this.search.told.hear(event.codec, event.values, event.plan?.name ?? null, event.message);
+        this.search.told.hear(event);
         this.restart();
     }
     /** Let a candidate that has taken no byte know what was told since it was made. */
@@ -240,7 +240,7 @@ export class Decoder {
         this.events.push(event);
         const { told } = this.search;
         if (told.isNeeded)
-            told.passFrame(sender, cut.values, event.plan?.name ?? null, event.message);
+            told.passFrame(event);
         return null;
     }
     /** Go on behind the candidate's first byte, where the next frame may start. */

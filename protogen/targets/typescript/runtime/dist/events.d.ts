@@ -1,5 +1,5 @@
 /** Events of a decoder: each covers some bytes of the input, and all of them cover all of it. */
-import { type Cut } from "./candidate.js";
+import type { Cut } from "./candidate.js";
 import type { Reason } from "./errors.js";
 import type { Value } from "./numbers.js";
 import type { MessagePlan } from "./plan.js";
@@ -55,24 +55,29 @@ declare class Span {
     constructor(offset: number, size: number, data: Uint8Array, start: number);
     get raw(): Uint8Array;
 }
+/** Values of the parts of a frame that events show. */
+export type PartValues = Readonly<Record<string, Value | undefined>>;
 /** A valid frame. What is seldom asked for is made then. */
 export declare class Framed extends Span {
-    readonly kind: "message" | "unknown";
     /** What knows the frame. */
     readonly codec: Sender;
-    /** Values of its parts, by their slots. */
-    readonly values: readonly (Value | undefined)[];
-    readonly payload: Uint8Array;
+    readonly parts: PartValues;
     readonly message: unknown;
+    /** The message's; null of an unknown one. */
     readonly plan: MessagePlan | null;
-    constructor(kind: "message" | "unknown", offset: number, size: number, data: Uint8Array, start: number, 
+    constructor(offset: number, size: number, data: Uint8Array, start: number, 
     /** What knows the frame. */
-    codec: Sender, 
-    /** Values of its parts, by their slots. */
-    values: readonly (Value | undefined)[], payload: Uint8Array, message: unknown, plan: MessagePlan | null);
+    codec: Sender, parts: PartValues, message: unknown, 
+    /** The message's; null of an unknown one. */
+    plan: MessagePlan | null);
+    get kind(): "message" | "unknown";
     get sender(): string;
     get form(): string;
-    get parts(): Record<string, Value>;
+}
+/** A valid frame whose identity belongs to no message. */
+export declare class UnknownFrame extends Framed {
+    readonly payload: Uint8Array;
+    constructor(offset: number, size: number, data: Uint8Array, start: number, codec: Sender, parts: PartValues, payload: Uint8Array);
 }
 /** Bytes that are no frame. */
 export declare class Invalid extends Span {

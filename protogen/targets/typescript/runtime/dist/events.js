@@ -1,5 +1,4 @@
 /** Events of a decoder: each covers some bytes of the input, and all of them cover all of it. */
-import {} from "./candidate.js";
 /** Base of events. The bytes are looked up where they came in, which nobody changes. */
 class Span {
     constructor(offset, size, data, start) {
@@ -14,18 +13,19 @@ class Span {
 }
 /** A valid frame. What is seldom asked for is made then. */
 export class Framed extends Span {
-    constructor(kind, offset, size, data, start, 
+    constructor(offset, size, data, start, 
     /** What knows the frame. */
-    codec, 
-    /** Values of its parts, by their slots. */
-    values, payload, message, plan) {
+    codec, parts, message, 
+    /** The message's; null of an unknown one. */
+    plan) {
         super(offset, size, data, start);
-        this.kind = kind;
         this.codec = codec;
-        this.values = values;
-        this.payload = payload;
+        this.parts = parts;
         this.message = message;
         this.plan = plan;
+    }
+    get kind() {
+        return this.plan ? "message" : "unknown";
     }
     get sender() {
         return this.codec.frame.sender;
@@ -33,11 +33,12 @@ export class Framed extends Span {
     get form() {
         return this.codec.frame.form;
     }
-    get parts() {
-        const found = {};
-        for (const part of this.codec.frame.shown)
-            found[part.key] = this.values[part.slot];
-        return found;
+}
+/** A valid frame whose identity belongs to no message. */
+export class UnknownFrame extends Framed {
+    constructor(offset, size, data, start, codec, parts, payload) {
+        super(offset, size, data, start, codec, parts, null, null);
+        this.payload = payload;
     }
 }
 /** Bytes that are no frame. */
@@ -53,8 +54,10 @@ export class Invalid extends Span {
 /** The event of a complete frame, with the message of its payload. Throws a Fault. */
 export function framed(codec, cut, offset, data, start, size) {
     const { values, payload } = cut;
+    const parts = codec.frame.partsOf(values);
     const group = codec.group(values);
-    const [plan, message] = group ? codec.read(group, payload, values) : [null, null];
-    const kind = plan ? "message" : "unknown";
-    return new Framed(kind, offset, size, data, start, codec, values, payload, message, plan);
+    if (!group)
+        return new UnknownFrame(offset, size, data, start, codec, parts, payload);
+    const [plan, message] = codec.read(group, payload, values);
+    return new Framed(offset, size, data, start, codec, parts, message, plan);
 }

@@ -2,7 +2,7 @@
 import { makerOf, unknownFrameOf } from "./assembly.js";
 import { equal, toHex } from "./bytes.js";
 import { EncodeError } from "./errors.js";
-import { Framed } from "./events.js";
+import { Framed, UnknownFrame } from "./events.js";
 /** A value as JSON has it: bytes as hexadecimal digits, integers of any size as numbers. */
 export function jsonValue(value) {
     if (value === null || value === undefined)
@@ -58,10 +58,10 @@ export function jsonLine(event) {
     if (found.form)
         members.push(member("form", JSON.stringify(found.form)));
     members.push(member("parts", jsonValue(found.parts)));
-    if (found.plan)
-        members.push(member("fields", jsonValue(fieldsOf(found.message))));
-    else
+    if (found instanceof UnknownFrame)
         members.push(member("payload", jsonValue(found.payload)));
+    else
+        members.push(member("fields", jsonValue(fieldsOf(found.message))));
     if (!givesBack(found))
         members.push(member("raw", jsonValue(found.raw)));
     return `{${members.join(", ")}}`;
@@ -72,11 +72,11 @@ function fieldsOf(message) {
     return fields;
 }
 function givesBack(event) {
-    const parts = Object.fromEntries(event.codec.frame.shown.map((part) => [part.name, event.values[part.slot]]));
+    const parts = Object.fromEntries(event.codec.frame.shown.map((part) => [part.name, event.parts[part.key]]));
     try {
-        const wire = event.plan
-            ? makerOf(event.codec, event.plan).make(event.message, parts, false)
-            : unknownFrameOf(event.codec, event.payload, parts);
+        const wire = event instanceof UnknownFrame
+            ? unknownFrameOf(event.codec, event.payload, parts)
+            : makerOf(event.codec, event.plan).make(event.message, parts, false);
         return equal(wire, event.raw);
     }
     catch (error) {

@@ -37,7 +37,7 @@ export declare class Reader {
     /** `held` has the parts of the frame that are fields. */
     constructor(bytes: Uint8Array, held?: HeldParts);
     /** Begin at another payload. */
-    restart(bytes: Uint8Array, at: number, end: number, held: HeldParts): this;
+    restart(bytes: Uint8Array, at: number, end: number, held?: HeldParts): this;
     /** The Fault of a field. */
     fault(step: Step, reason: "size" | "value" | "encoding", problem: string, missing?: number): Fault;
     /** Begin what lies inside of a field or an element. */

@@ -23,7 +23,7 @@ export class Reader {
         this.end = bytes.length;
     }
     /** Begin at another payload. */
-    restart(bytes, at, end, held) {
+    restart(bytes, at, end, held = NO_PARTS) {
         this.bytes = bytes;
         this.held = held;
         this.at = at;

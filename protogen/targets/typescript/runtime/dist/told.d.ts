@@ -1,5 +1,6 @@
 /** What a receiver is told of identities that are not sent: by its program, or by frames. */
 import type { ToldValues } from "./candidate.js";
+import type { Framed } from "./events.js";
 import type { Sender } from "./sender.js";
 /** A number, or those of frames that follow each other. */
 export type Telling = number | readonly number[];
@@ -24,7 +25,7 @@ export declare class Told {
     /** What holds for one frame that is all there is, without lengths that are not given. */
     valuesForOne(sender: Sender, given: Readonly<Record<string, unknown>>, data: number): ToldValues;
     /** Take a frame: what was told may hold no more, and it may tell something itself. */
-    passFrame(sender: Sender, values: ToldValues, name: string | null, message: unknown): void;
+    passFrame(event: Framed): void;
     /** Take the numbers of a frame, which may tell something of those behind it. */
-    hear(sender: Sender, values: ToldValues, name: string | null, message: unknown): void;
+    hear(event: Framed): void;
 }

@@ -79,36 +79,38 @@ export class Told {
         return found;
     }
     /** Take a frame: what was told may hold no more, and it may tell something itself. */
-    passFrame(sender, values, name, message) {
-        for (const part of sender.frame.told) {
+    passFrame(event) {
+        for (const part of event.codec.frame.told) {
             const following = this.following.get(part.name) ?? [];
             if (following.length || part.once) {
                 this.values.set(part.name, following.shift() ?? part.default);
             }
         }
-        this.hear(sender, values, name, message);
+        this.hear(event);
     }
     /** Take the numbers of a frame, which may tell something of those behind it. */
-    hear(sender, values, name, message) {
-        const told = new Set(sender.frame.told.map((part) => part.slot));
+    hear(event) {
         for (const part of this.parts.values()) {
             for (const teller of part.setBy) {
                 const listed = teller.message
-                    ? ofField(teller, name, message)
-                    : ofPart(sender, values, teller.name, told);
+                    ? ofField(teller, event)
+                    : ofPart(teller.name, event);
                 if (listed)
                     this.fresh.set(part.name, listed.length ? listed : [part.default]);
             }
         }
     }
 }
-function ofPart(sender, values, name, told) {
-    const shown = sender.frame.shown.find((part) => part.name === name && !told.has(part.slot));
-    const value = shown && values[shown.slot];
+/** The number of a part that was sent. */
+function ofPart(name, { codec, parts }) {
+    const { shown, told } = codec.frame;
+    const isTold = told.some((part) => part.name === name);
+    const part = isTold ? undefined : shown.find((item) => item.name === name);
+    const value = part && parts[part.key];
     return value === undefined || typeof value === "string" ? null : [Number(value)];
 }
-function ofField(teller, name, message) {
-    if (name !== teller.message)
+function ofField(teller, { plan, message }) {
+    if (plan?.name !== teller.message)
         return null;
     const value = message[teller.name];
     if (value === null || value === undefined)
