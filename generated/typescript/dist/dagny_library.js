@@ -314,12 +314,11 @@ function hostFrame() {
       const wire = w.wire(2 * w.size);
       let at = 0;
       let i = 0;
-      for (; i < 0; i++) wire[at++] = bytes[i] ?? 0;
       for (; i < end; i++) {
         const byte = bytes[i] ?? 0;
-        if (byte === 13) { wire[at++] = 27; wire[at++] = 22; } else
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
-        wire[at++] = byte;
+        if (byte === 13) { wire[at++] = 27; wire[at++] = 22; }
+        else if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
+        else wire[at++] = byte;
       }
       for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
       return wire.slice(0, at);
@@ -410,12 +409,11 @@ function robotFrame() {
       const wire = w.wire(2 * w.size);
       let at = 0;
       let i = 0;
-      for (; i < 0; i++) wire[at++] = bytes[i] ?? 0;
       for (; i < end; i++) {
         const byte = bytes[i] ?? 0;
-        if (byte === 13) { wire[at++] = 27; wire[at++] = 22; } else
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
-        wire[at++] = byte;
+        if (byte === 13) { wire[at++] = 27; wire[at++] = 22; }
+        else if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
+        else wire[at++] = byte;
       }
       for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
       return wire.slice(0, at);

@@ -389,28 +389,21 @@ function pcFrame() {
       let at = 0;
       let i = 0;
       for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
-      for (; i < 1; i++) {
-        const byte = bytes[i] ?? 0;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; } else
-        if (byte === 86) { wire[at++] = 86; wire[at++] = 169; } else
-        wire[at++] = byte;
-      }
       let sum = 0;
       for (; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum += byte;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; } else
-        if (byte === 86) { wire[at++] = 86; wire[at++] = 169; } else
-        wire[at++] = byte;
+        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
+        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
+        else wire[at++] = byte;
       }
       bytes[end] = -sum;
       for (; i < end + 1; i++) {
         const byte = bytes[i] ?? 0;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; } else
-        if (byte === 86) { wire[at++] = 86; wire[at++] = 169; } else
-        wire[at++] = byte;
+        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
+        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
+        else wire[at++] = byte;
       }
-      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
       return wire.slice(0, at);
     },
     slots: 3,
@@ -518,28 +511,21 @@ function espFrame() {
       let at = 0;
       let i = 0;
       for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
-      for (; i < 1; i++) {
-        const byte = bytes[i] ?? 0;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; } else
-        if (byte === 86) { wire[at++] = 86; wire[at++] = 169; } else
-        wire[at++] = byte;
-      }
       let sum = 0;
       for (; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum += byte;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; } else
-        if (byte === 86) { wire[at++] = 86; wire[at++] = 169; } else
-        wire[at++] = byte;
+        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
+        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
+        else wire[at++] = byte;
       }
       bytes[end] = -sum;
       for (; i < end + 1; i++) {
         const byte = bytes[i] ?? 0;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; } else
-        if (byte === 86) { wire[at++] = 86; wire[at++] = 169; } else
-        wire[at++] = byte;
+        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
+        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
+        else wire[at++] = byte;
       }
-      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
       return wire.slice(0, at);
     },
     slots: 3,

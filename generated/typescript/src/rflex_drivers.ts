@@ -1043,26 +1043,20 @@ function linuxFrame(): rt.Frame {
       let at = 0;
       let i = 0;
       for (; i < 2; i++) wire[at++] = bytes[i] ?? 0;
-      for (; i < 2; i++) {
-        const byte = bytes[i] ?? 0;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
-        if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; } else
-        wire[at++] = byte;
-      }
       let sum = 0;
       for (; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum ^= byte;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
-        if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; } else
-        wire[at++] = byte;
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
+        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
+        else wire[at++] = byte;
       }
       bytes[end] = sum;
       for (; i < end + 1; i++) {
         const byte = bytes[i] ?? 0;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
-        if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; } else
-        wire[at++] = byte;
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
+        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
+        else wire[at++] = byte;
       }
       for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
       return wire.slice(0, at);
@@ -1192,26 +1186,20 @@ function flexFrame(): rt.Frame {
       let at = 0;
       let i = 0;
       for (; i < 2; i++) wire[at++] = bytes[i] ?? 0;
-      for (; i < 2; i++) {
-        const byte = bytes[i] ?? 0;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
-        if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; } else
-        wire[at++] = byte;
-      }
       let sum = 0;
       for (; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum ^= byte;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
-        if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; } else
-        wire[at++] = byte;
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
+        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
+        else wire[at++] = byte;
       }
       bytes[end] = sum;
       for (; i < end + 1; i++) {
         const byte = bytes[i] ?? 0;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; } else
-        if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; } else
-        wire[at++] = byte;
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
+        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
+        else wire[at++] = byte;
       }
       for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
       return wire.slice(0, at);

@@ -114,25 +114,34 @@ class PutTogether:
         """Print what copies all bytes, those of a region as they are stuffed."""
         plan, add = self._plan, self._lines.add
         add(f"const wire = w.wire({region.longest} * w.size);", "let at = 0;", "let i = 0;")
-        add(f"for (; i < {region.before}; i++) wire[at++] = bytes[i] ?? 0;")
+        copied, stuffed = Place(Side.HEAD, 0), Place(Side.HEAD, region.before)
+        if stuffed != copied:
+            add(f"for (; i < {_at(stuffed)}; i++) wire[at++] = bytes[i] ?? 0;")
         if (found := self._summed) is not None:
-            spec = found.part.algorithm
-            self._loop(region, _at(_run(found).first))
+            spec, first = found.part.algorithm, _run(found).first
+            self._loop(region, stuffed, first)
             add(f"let sum = {spec.init};")
-            self._loop(region, "end", f"sum {'^' if spec.kind == 'xor' else '+'}= byte;")
+            stuffed = Place(Side.TAIL, 0)
+            self._loop(region, first, stuffed, f"sum {'^' if spec.kind == 'xor' else '+'}= byte;")
             add(f"bytes[end] = {'-' * spec.negated}sum;")
-        self._loop(region, _at(Place(Side.TAIL, plan.tail_size)))
-        add("for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;", "return wire.slice(0, at);")
+        self._loop(region, stuffed, Place(Side.TAIL, plan.tail_size))
+        if plan.end_bytes:
+            add("for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;")
+        add("return wire.slice(0, at);")
 
-    def _loop(self, region: StuffedRegion, end: str, *summing: str) -> None:
-        """Print what stuffs the bytes up to a place."""
-        with self._lines.block(f"for (; i < {end}; i++)"):
+    def _loop(self, region: StuffedRegion, first: Place, end: Place, *summing: str) -> None:
+        """Print what stuffs the bytes from a place to another, if there are any."""
+        if first == end:
+            return
+        with self._lines.block(f"for (; i < {_at(end)}; i++)"):
             # No byte is missing, but types don't know that.
             self._lines.add("const byte = bytes[i] ?? 0;", *summing)
+            word = ""
             for byte, sequence in region.codes:
                 put = " ".join(f"wire[at++] = {item};" for item in sequence)
-                self._lines.add(f"if (byte === {byte}) {{ {put} }} else")
-            self._lines.add("wire[at++] = byte;")
+                self._lines.add(f"{word}if (byte === {byte}) {{ {put} }}")
+                word = "else "
+            self._lines.add(f"{word}wire[at++] = byte;")
 
 
 def _bytes(part: TypedPart, name: str) -> list[str]:
