@@ -49,8 +49,19 @@ def named(name: str) -> ChecksumSpec:
     return spec
 
 
+def with_few_terms(width: int, poly: int, *, reflected: bool) -> ChecksumSpec:
+    """A CRC of a polynomial that leaves some byte of the register without a term."""
+    name = f"few-{width}-{poly:X}-{reflected:d}"
+    return ChecksumSpec(name, "crc", width, init=1, poly=poly, refin=reflected, refout=reflected)
+
+
+FEW_TERMS = tuple(
+    with_few_terms(width, poly, reflected=reflected)
+    for width, poly in ((8, 0x01), (8, 0x80), (16, 0x0001), (16, 0x0100), (16, 0x8000))
+    for reflected in (False, True)
+)
 FLETCHERS = (named("fletcher-16"), named("fletcher-16/256"))
-SPECS = (*crc_catalogue(), *(drawn_crc(index) for index in range(24)), *FLETCHERS)
+SPECS = (*crc_catalogue(), *(drawn_crc(index) for index in range(24)), *FEW_TERMS, *FLETCHERS)
 
 
 @cache

@@ -831,6 +831,8 @@ DAGNY_API void dagny_robot_decoder_flush(struct dagny_robot_decoder *decoder);
 /** The same, under the name for a silence. */
 #define dagny_robot_decoder_idle dagny_robot_decoder_flush
 
+#ifndef DAGNY_NO_HANDLERS
+
 /* --- handlers --------------------------------------------------------------------------------- */
 
 /*
@@ -910,6 +912,8 @@ void dagny_on_command_from_robot(void *user, const struct dagny_command *message
 
 /** Calls the functions above; give it to dagny_robot_decoder_init. */
 DAGNY_API void dagny_robot_dispatch(void *user, const struct dagny_robot_event *event);
+
+#endif
 
 #ifdef DAGNY_NAMES
 

@@ -819,6 +819,8 @@ DAGNY_LIBRARY_API void dagny_library_robot_decoder_flush(
 /** The same, under the name for a silence. */
 #define dagny_library_robot_decoder_idle dagny_library_robot_decoder_flush
 
+#ifndef DAGNY_LIBRARY_NO_HANDLERS
+
 /* --- handlers --------------------------------------------------------------------------------- */
 
 /*
@@ -892,6 +894,8 @@ void dagny_library_on_shutdown_from_robot(void *user, const struct dagny_library
 /** Calls the functions above; give it to dagny_library_robot_decoder_init. */
 DAGNY_LIBRARY_API void dagny_library_robot_dispatch(void *user,
                                                     const struct dagny_library_robot_event *event);
+
+#endif
 
 #ifdef DAGNY_LIBRARY_NAMES
 

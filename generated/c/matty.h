@@ -680,6 +680,8 @@ MATTY_API void matty_esp_decoder_flush(struct matty_esp_decoder *decoder);
 /** The same, under the name for a silence. */
 #define matty_esp_decoder_idle matty_esp_decoder_flush
 
+#ifndef MATTY_NO_HANDLERS
+
 /* --- handlers --------------------------------------------------------------------------------- */
 
 /*
@@ -736,6 +738,8 @@ void matty_on_gps(void *user, const struct matty_gps *message, const struct matt
 
 /** Calls the functions above; give it to matty_esp_decoder_init. */
 MATTY_API void matty_esp_dispatch(void *user, const struct matty_esp_event *event);
+
+#endif
 
 #ifdef MATTY_NAMES
 

@@ -839,6 +839,8 @@ MATTY_V4_API void matty_v4_esp_decoder_flush(struct matty_v4_esp_decoder *decode
 /** The same, under the name for a silence. */
 #define matty_v4_esp_decoder_idle matty_v4_esp_decoder_flush
 
+#ifndef MATTY_V4_NO_HANDLERS
+
 /* --- handlers --------------------------------------------------------------------------------- */
 
 /*
@@ -910,6 +912,8 @@ void matty_v4_on_version(void *user, const struct matty_v4_version *message,
 
 /** Calls the functions above; give it to matty_v4_esp_decoder_init. */
 MATTY_V4_API void matty_v4_esp_dispatch(void *user, const struct matty_v4_esp_event *event);
+
+#endif
 
 #ifdef MATTY_V4_NAMES
 

@@ -1186,6 +1186,8 @@ RFLEX_API void rflex_flex_decoder_flush(struct rflex_flex_decoder *decoder);
 /** The same, under the name for a silence. */
 #define rflex_flex_decoder_idle rflex_flex_decoder_flush
 
+#ifndef RFLEX_NO_HANDLERS
+
 /* --- handlers --------------------------------------------------------------------------------- */
 
 /*
@@ -1295,6 +1297,8 @@ void rflex_on_changed_byte(void *user, const struct rflex_changed_byte *message,
 
 /** Calls the functions above; give it to rflex_flex_decoder_init. */
 RFLEX_API void rflex_flex_dispatch(void *user, const struct rflex_flex_event *event);
+
+#endif
 
 #ifdef RFLEX_NAMES
 

@@ -1424,6 +1424,8 @@ RFLEX_DRIVERS_API void rflex_drivers_flex_decoder_flush(struct rflex_drivers_fle
 /** The same, under the name for a silence. */
 #define rflex_drivers_flex_decoder_idle rflex_drivers_flex_decoder_flush
 
+#ifndef RFLEX_DRIVERS_NO_HANDLERS
+
 /* --- handlers --------------------------------------------------------------------------------- */
 
 /*
@@ -1559,6 +1561,8 @@ void rflex_drivers_on_ir_report(void *user, const struct rflex_drivers_ir_report
 /** Calls the functions above; give it to rflex_drivers_flex_decoder_init. */
 RFLEX_DRIVERS_API void rflex_drivers_flex_dispatch(void *user,
                                                    const struct rflex_drivers_flex_event *event);
+
+#endif
 
 #ifdef RFLEX_DRIVERS_NAMES
 

@@ -742,6 +742,8 @@ RN1_API void rn1_brain_decoder_flush(struct rn1_brain_decoder *decoder);
 /** The same, under the name for a silence. */
 #define rn1_brain_decoder_idle rn1_brain_decoder_flush
 
+#ifndef RN1_NO_HANDLERS
+
 /* --- handlers --------------------------------------------------------------------------------- */
 
 /*
@@ -797,6 +799,8 @@ void rn1_on_facing(void *user, const struct rn1_facing *message,
 
 /** Calls the functions above; give it to rn1_brain_decoder_init. */
 RN1_API void rn1_brain_dispatch(void *user, const struct rn1_brain_event *event);
+
+#endif
 
 #ifdef RN1_NAMES
 

@@ -931,6 +931,8 @@ RN1_FIRMWARE_API void rn1_firmware_brain_decoder_flush(struct rn1_firmware_brain
 /** The same, under the name for a silence. */
 #define rn1_firmware_brain_decoder_idle rn1_firmware_brain_decoder_flush
 
+#ifndef RN1_FIRMWARE_NO_HANDLERS
+
 /* --- handlers --------------------------------------------------------------------------------- */
 
 /*
@@ -1009,6 +1011,8 @@ void rn1_firmware_on_debug_numbers(void *user, const struct rn1_firmware_debug_n
 /** Calls the functions above; give it to rn1_firmware_brain_decoder_init. */
 RN1_FIRMWARE_API void rn1_firmware_brain_dispatch(void *user,
                                                   const struct rn1_firmware_brain_event *event);
+
+#endif
 
 #ifdef RN1_FIRMWARE_NAMES
 

@@ -444,6 +444,8 @@ UHEROBOT_API void uherobot_board_decoder_flush(struct uherobot_board_decoder *de
 /** The same, under the name for a silence. */
 #define uherobot_board_decoder_idle uherobot_board_decoder_flush
 
+#ifndef UHEROBOT_NO_HANDLERS
+
 /* --- handlers --------------------------------------------------------------------------------- */
 
 /*
@@ -475,6 +477,8 @@ void uherobot_on_status(void *user, const struct uherobot_status *message,
 
 /** Calls the functions above; give it to uherobot_board_decoder_init. */
 UHEROBOT_API void uherobot_board_dispatch(void *user, const struct uherobot_board_event *event);
+
+#endif
 
 #ifdef UHEROBOT_NAMES
 

@@ -417,6 +417,8 @@ UHEROBOT_DAEMON_API void uherobot_daemon_board_decoder_flush(
 /** The same, under the name for a silence. */
 #define uherobot_daemon_board_decoder_idle uherobot_daemon_board_decoder_flush
 
+#ifndef UHEROBOT_DAEMON_NO_HANDLERS
+
 /* --- handlers --------------------------------------------------------------------------------- */
 
 /*
@@ -443,6 +445,8 @@ void uherobot_daemon_on_status(void *user, const struct uherobot_daemon_status *
 /** Calls the functions above; give it to uherobot_daemon_board_decoder_init. */
 UHEROBOT_DAEMON_API void uherobot_daemon_board_dispatch(
     void *user, const struct uherobot_daemon_board_event *event);
+
+#endif
 
 #ifdef UHEROBOT_DAEMON_NAMES
 

@@ -176,8 +176,9 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
 def _bounds(field: Field, start: str) -> Iterable[tuple[str, int]]:
     """The least and the greatest raw value that the schema states, as words behind `start`."""
     if field.ranged and len(start) + len("min") <= _SIGNIFICANT:
+        special = {item.name for item in field.special}
         for word, bound in (("min", field.least), ("max", field.greatest)):
-            if bound is not None:
+            if bound is not None and word not in special:
                 yield word, int(bound)
 
 

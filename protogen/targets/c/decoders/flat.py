@@ -149,6 +149,8 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         if self.known_by_identity and group.fixed is not None:
             return True
         message = group.messages[0]
+        if len(group.messages) == 1 and message.takes_any_size:
+            return True
         if self.fits_payloads and message.fixed:
             return message.takes_any_size
         return len(group.messages) == 1 and bool(message.checks) and not message.fixed

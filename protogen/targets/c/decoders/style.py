@@ -35,6 +35,7 @@ def decoder_style(frame: ReceivedFrame) -> DecoderStyle:
         and frame.known_from > 0
         and _head_is_plain(frame)
         and _tail_is_plain(frame)
+        and _tail_stays(frame)
         and _region_is_plain(frame)
         and not (frame.plan.seven_bit and not _high_bytes_show(frame))
     )
@@ -62,6 +63,14 @@ def _head_is_plain(frame: ReceivedFrame) -> bool:
 def _tail_is_plain(frame: ReceivedFrame) -> bool:
     """True if nothing behind the payload is checked but checksums, which are always there."""
     return not frame.checks_tail and not frame.optional_tail
+
+
+def _tail_stays(frame: ReceivedFrame) -> bool:
+    """True if what an event shows of the tail is still where its payload ends.
+
+    One that is cut ends elsewhere, and the zeros that fill one up take the tail's place.
+    """
+    return not frame.fits_payloads or all(part.in_head for part in frame.parts)
 
 
 def _region_is_plain(frame: ReceivedFrame) -> bool:

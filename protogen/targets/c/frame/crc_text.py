@@ -117,8 +117,8 @@ def _by_shifts(register: Register, shifts: Shifts) -> Iterator[str]:
 
 
 def _xored(name: str, shifts: tuple[int, ...]) -> str:
-    """The shifts of a byte that leave something of it in a byte."""
-    return " ^ ".join(_shifted(name, shift) for shift in shifts if abs(shift) < 8)
+    """The shifts of a byte that leave something of it in a byte; polynomials may have few."""
+    return " ^ ".join(_shifted(name, shift) for shift in shifts if abs(shift) < 8) or "0U"
 
 
 def _shifted(name: str, shift: int) -> str:
