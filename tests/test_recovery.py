@@ -119,7 +119,7 @@ def test_every_undamaged_frame_is_found(path: Path, sender: str) -> None:
     # The promise without "but": whatever begins with, or behind, something protected.
     assert found[Fate.COVERED] == 0 or not is_protected(spec)
     assert found[Fate.NOT_DUE] == 0 or isinstance(spec.start, AfterEnd) or spec.silence is not None
-    # Elsewhere it takes a checksum that is right by chance: with few bits, in some frames more often.
+    # Elsewhere it takes a checksum that is right by chance, in few frames sometimes more often.
     expected = BY_CHANCE.get(path.stem, 0) * found.total()
     assert found[Fate.COVERED] <= max(0.005 * found.total(), expected + 2 * sqrt(expected))
 
