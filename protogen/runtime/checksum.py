@@ -205,10 +205,10 @@ class Crc(Frozen):
 
     def compute(self, data: bytes) -> int:
         """Return the checksum of `data`, 0 .. 2**width - 1."""
-        register = _reversed_bits(self.init, self.width) if self.refin else self.init
+        register = reversed_bits(self.init, self.width) if self.refin else self.init
         register = _engine(self.width, self.poly, self.refin)(data, register)
         if self.refin != self.refout:
-            register = _reversed_bits(register, self.width)
+            register = reversed_bits(register, self.width)
         return register ^ self.xorout
 
     def function(self) -> Callable[[bytes], int]:
@@ -271,7 +271,7 @@ def _plain_table(poly: int, width: int) -> tuple[int, ...]:
 
 def _reflected_engine(width: int, poly: int) -> _Engine:
     """Return a table engine for bytes that enter least significant bit first."""
-    table = _reflected_table(_reversed_bits(poly, width))
+    table = _reflected_table(reversed_bits(poly, width))
 
     def advance(data: bytes, register: int) -> int:
         for byte in data:
@@ -301,14 +301,15 @@ def _mirrored(engine: _Engine, width: int) -> _Engine:
     """Return the same polynomial with bytes entering in the other bit order."""
 
     def advance(data: bytes, register: int) -> int:
-        mirrored = engine(data.translate(_REVERSED_BYTES), _reversed_bits(register, width))
-        return _reversed_bits(mirrored, width)
+        mirrored = engine(data.translate(_REVERSED_BYTES), reversed_bits(register, width))
+        return reversed_bits(mirrored, width)
 
     return advance
 
 
-def _reversed_bits(value: int, width: int) -> int:
+def reversed_bits(value: int, width: int) -> int:
+    """The number with its bits in the other order."""
     return int(f"{value:0{width}b}"[::-1], 2)
 
 
-_REVERSED_BYTES = bytes(_reversed_bits(byte, 8) for byte in range(256))
+_REVERSED_BYTES = bytes(reversed_bits(byte, 8) for byte in range(256))

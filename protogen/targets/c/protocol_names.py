@@ -218,4 +218,5 @@ def writer_parameter(protocol: Protocol) -> str:
 def choose_writer(names: Names, chosen: Protocol) -> None:
     """Have the writer that the chosen senders need: others of the protocol may need more."""
     names.writer = writer_parameter(chosen)
-    names.writing = "put, user" if is_stateless(chosen) else "writer"
+    names.is_stateless = is_stateless(chosen)
+    names.writing = "put, user" if names.is_stateless else "writer"

@@ -22,7 +22,9 @@ class Names:
         self.writer = ""
         """The parameters of functions that send byte by byte."""
         self.writing = ""
-        """Arguments with which these hand the writer on. Both depend on the senders printed."""
+        """Arguments with which these hand the writer on."""
+        self.is_stateless = False
+        """True if the writer is a function and its argument. All depend on the senders printed."""
         self.file = ""
         """The name of the files, but for its end."""
         self.senders: dict[str, str] = {}

@@ -172,7 +172,6 @@ export function substitution(codes, lenient = false) {
     };
     return {
         isStrict: !lenient,
-        steps: () => (lenient ? null : (sequences ?? (sequences = sequencesOf(codes))).steps),
         encode: (bytes) => put(bytes, bytes.length, 0, bytes.length),
         put,
         decoder() {

@@ -27,8 +27,6 @@ export abstract class Unstuffer {
 export interface Transparency {
   /** True if only what a sender makes of some bytes is taken off. */
   readonly isStrict: boolean;
-  /** What becomes of each byte, where only listed sequences are replaced; else null. */
-  steps?(): Int16Array | null;
   /** The region on the wire that stands for the bytes. */
   encode(bytes: Uint8Array): Uint8Array;
   /** The first `size` bytes, with a region of them as it is on the wire. */
@@ -208,7 +206,6 @@ export function substitution(
   };
   return {
     isStrict: !lenient,
-    steps: () => (lenient ? null : (sequences ??= sequencesOf(codes)).steps),
     encode: (bytes) => put(bytes, bytes.length, 0, bytes.length),
     put,
     decoder() {

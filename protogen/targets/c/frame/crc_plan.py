@@ -14,6 +14,7 @@ import msgspec
 
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.types import storage_bits
+from protogen.runtime.checksum import reversed_bits
 
 BLOCK = 4
 """Bytes that hosts take at once."""
@@ -55,7 +56,7 @@ class Register(msgspec.Struct, frozen=True):
     @property
     def terms(self) -> tuple[int, ...]:
         """Powers of the polynomial but the greatest, which is the number of `bits`."""
-        poly = mirrored(self.poly, self.bits) if self.reflected else self.poly
+        poly = reversed_bits(self.poly, self.bits) if self.reflected else self.poly
         return tuple(place for place in range(self.bits) if poly >> place & 1)
 
 
@@ -93,16 +94,13 @@ def crc_plan(spec: ChecksumSpec) -> CrcPlan:
     return CrcPlan(register, shifts if affordable else None, table)
 
 
-def mirrored(value: int, width: int) -> int:
-    """The number with its bits in the other order."""
-    return int(f"{value:0{width}b}"[::-1], 2)
-
-
 def register_of(spec: ChecksumSpec) -> Register:
     """The register of a CRC."""
     bits, width = storage_bits(spec.width), spec.width
     if spec.refin:
-        return Register(bits, mirrored(spec.poly, width), mirrored(spec.init, width), True, 0)
+        return Register(
+            bits, reversed_bits(spec.poly, width), reversed_bits(spec.init, width), True, 0
+        )
     spare = bits - width
     return Register(bits, spec.poly << spare, spec.init << spare, False, spare)
 

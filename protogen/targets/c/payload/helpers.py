@@ -294,7 +294,7 @@ class Helpers:
         arguments = (names.writer, f"{unsigned_type(type_.bits)} value")
         # A writer is one argument; a function and what it is called with are two, which have to be
         # kept from one byte to the next.
-        is_short = layout.size <= _SHORT and names.writing == "put, user"
+        is_short = layout.size <= _SHORT and names.is_stateless
         name = f"write_{layout_name(layout)}"
         return self.helper(name, "void", arguments, body, is_short=is_short)
 
