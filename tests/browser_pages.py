@@ -56,6 +56,11 @@ def served(folder: Path) -> Iterator[str]:
         server.shutdown()
 
 
+def address_of(page: Any) -> str:
+    """The address as the page itself knows it: `page.url` hears of a change only later."""
+    return str(page.evaluate("location.href"))
+
+
 class Opened:
     """A page that was opened as a file, and what it complained of."""
 

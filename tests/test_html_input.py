@@ -8,7 +8,7 @@ from typing import Any
 from urllib.parse import urlencode
 
 import pytest
-from browser_pages import Opened, chromium, written
+from browser_pages import Opened, address_of, chromium, written
 
 from protogen.compiler import compile_file
 
@@ -104,7 +104,7 @@ def test_a_link_keeps_the_lines_of_a_log(browser, folder):
     with Opened(browser, folder / "matty.html") as opened:
         opened.page.fill("#bytes", log)
         opened.page.wait_for_selector("#events article >> nth=1")
-        url = opened.page.url
+        url = address_of(opened.page)
     assert url.endswith("#" + urlencode({"d": "any", "hex": log}))
     with Opened(browser, folder / "matty.html") as opened:
         opened.page.goto(url)

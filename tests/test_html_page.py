@@ -12,7 +12,7 @@ from random import Random
 from typing import Any
 
 import pytest
-from browser_pages import Opened, chromium, explained, titles, written
+from browser_pages import Opened, address_of, chromium, explained, titles, written
 from test_markdown import HOSTILE
 
 from protogen.cli.wire.codec import Codec, open_codec
@@ -510,7 +510,7 @@ class TestPage:
         page.click("#tab-encode")
         page.select_option("#message", "go")
         page.fill('[data-key="speed"]', "-7")
-        url = page.url
+        url = address_of(page)
         with Opened(browser, folder / "matty.html") as opened:
             opened.page.goto(url)
             # The form is there already; the address is read behind that.

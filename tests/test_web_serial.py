@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 import typescript_engine as engine
-from browser_pages import AXE, SCHEMES, chromium, served
+from browser_pages import AXE, SCHEMES, address_of, chromium, served
 from compiled import ROOT, module_at, protocol_of
 from corpus import material_of, portions, stream_of
 from tooling import unavailable
@@ -230,7 +230,7 @@ class TestLive:
         page.feed(ACK)
         page.page.select_option("#endpoint", "pc")
         assert page.rows("messages") == []
-        assert page.page.url.endswith("?protocol=matty&endpoint=pc")
+        assert address_of(page.page).endswith("?protocol=matty&endpoint=pc")
         page.feed(bytes.fromhex("55 02 01 53 AA"))
         assert page.rows("messages")[0][:3] == ["stop", "pc", "1"]
 
