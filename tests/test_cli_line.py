@@ -247,6 +247,15 @@ class TestTap:
         assert 700 < sum(byte.bit_count() for byte in received) < 1_100
         assert b"".join(item.data for item in found_in(file)) == received
 
+    def test_a_port_that_does_not_open_leaves_the_old_recording(self, tmp_path: Path) -> None:
+        file = tmp_path / "run.pgrec"
+        file.write_bytes(b"of yesterday")
+        missing = str(tmp_path / "ttyUSB7")
+        done = run("tap", MATTY, f"esp={missing}", "pc=pty:", "-o", str(file), "--force")
+        assert done.exit_code == 2
+        assert missing in done.stderr
+        assert file.read_bytes() == b"of yesterday"
+
     def test_one_endpoint_can_not_be_at_both_ends(self) -> None:
         done = run("tap", MATTY, "esp=pty:", "esp=pty:")
         assert done.exit_code == 2

@@ -23,12 +23,14 @@ from protogen.cli.line.options import (
     line_settings,
     named_port,
 )
-from protogen.cli.line.recorders import Force, RecordingFormat, open_recorder
+from protogen.cli.line.recorders import Force, RecordingFormat, check_output, open_recorder
 from protogen.cli.line.running import run_until_stopped, tell, tell_name
 from protogen.cli.line.shown_events import ShownEvents
 from protogen.cli.options import Quiet, SchemaFile
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from protogen.link.damage import DamageRates
     from protogen.link.ports.port import Arrival
     from protogen.link.ports.settings import LineSettings
@@ -75,25 +77,31 @@ def tap(  # noqa: PLR0913 - each option is one argument
     settings = line_settings(codec.protocol.link, baud, dtr, rts)
     rates = damage_rates(drop, flip, delay)
     passed: dict[str, Passed] = {}
+    if output is not None:
+        check_output(output, force=force)
     with ExitStack() as stack:
-        recorder = None
-        if output is not None:
-            recorder = open_recorder(output, format, None, None, force=force)
-            stack.callback(recorder.close)
         shown = (
             None if quiet else ShownEvents(codec, [name for name in ends if name not in _LETTERS])
         )
-
         if shown is not None:
             sys.setswitchinterval(_SWITCH_INTERVAL)
 
-        def take(source: str, arrival: Arrival) -> None:
-            if recorder is not None:
-                recorder.write(arrival.data, arrival.when, source)
-            if shown is not None:
-                shown.take(source, arrival.data)
+        def begin() -> Take:
+            """Begin the recording, once the ports are open: if one is not, an old file stays."""
+            recorder = None
+            if output is not None:
+                recorder = open_recorder(output, format, None, None, force=force)
+                stack.callback(recorder.close)
 
-        run_until_stopped(lambda: _tap(ends, settings, rates, seed, take, passed))
+            def take(source: str, arrival: Arrival) -> None:
+                if recorder is not None:
+                    recorder.write(arrival.data, arrival.when, source)
+                if shown is not None:
+                    shown.take(source, arrival.data)
+
+            return take
+
+        run_until_stopped(lambda: _tap(ends, settings, rates, seed, begin, passed))
         if shown is not None:
             shown.end()
     for name, way in passed.items():
@@ -120,7 +128,7 @@ async def _tap(
     settings: LineSettings,
     rates: DamageRates,
     seed: int,
-    take: Take,
+    begin: Callable[[], Take],
     passed: dict[str, Passed],
 ) -> None:
     from protogen.link.damage import Damage
@@ -135,5 +143,6 @@ async def _tap(
             damage = None if rates.is_none else Damage(rates, f"{seed} {name}")
             opened.append(End(name, port, damage))
             passed[name] = opened[-1].passed
+        take = begin()
         tell(f"passing on {opened[0].port.name} and {opened[1].port.name}; Ctrl-C ends it")
         await tap(opened[0], opened[1], take)
