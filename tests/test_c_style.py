@@ -27,8 +27,11 @@ FLAT, DELIMITED, PUSH = DecoderStyle.FLAT, DecoderStyle.DELIMITED, DecoderStyle.
         ("schemas/rn1", "brain", "messages", FLAT),
         # An end that stands nowhere else tells the size of some payload: only then is it known.
         ("schemas/rn1", "host", "messages", DELIMITED),
-        # The same where the end has two bytes, one of which may be read in vain.
-        ("tests/framings/digit_parts", "station", "messages", PUSH),
+        # The same where the end has two bytes.
+        ("tests/framings/digit_parts", "station", "messages", DELIMITED),
+        ("tests/framings/hex_lines", "station", "messages", DELIMITED),
+        # The first of which may be stuffed.
+        ("tests/framings/text_parts", "station", "messages", PUSH),
         # Start and end are told by what stands behind their common first byte.
         ("schemas/rflex", "linux", "messages", FLAT),
         # A start that nothing of a frame can be, and a length in the head.

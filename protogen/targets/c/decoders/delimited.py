@@ -12,10 +12,12 @@ from protogen.model.frame_plan import StartRule, Store
 from protogen.targets.c.decoders.flat import FlatDecoder
 from protogen.targets.c.decoders.groups import GroupView
 from protogen.targets.c.decoders.received import ReceivedFrame
+from protogen.targets.c.frame.expressions import byte
 from protogen.targets.c.frame.stuffing import StuffingKind
 
 _SHORT_COBS = 254
 """Content of so many bytes can be one group of COBS that is full."""
+_DIGITS = b"0123456789ABCDEFabcdef"
 _KINDS = (
     StuffingKind.CODES,
     StuffingKind.LENIENT_ESCAPE,
@@ -43,9 +45,14 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
         return 1 if self.is_cobs else 0
 
     @property
+    def behind(self) -> int:
+        """Bytes of the buffer behind the content: the first of an end, until the second comes."""
+        return 1 if self.end_size > 1 and self.stuffing is None else 0
+
+    @property
     def buffer_size(self) -> int:
         """Bytes of the buffer."""
-        return self.in_front + self.around + self.greatest_payload
+        return self.in_front + self.around + self.greatest_payload + self.behind
 
     @cached_property
     def counter(self) -> str:
@@ -102,9 +109,10 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
     # --- start and end ----------------------------------------------------------------------------
 
     @property
-    def end(self) -> int:
-        """The end's byte."""
-        return self.plan.end_bytes[0]
+    def end(self) -> str:
+        """The condition that a byte is the end, or its last one."""
+        held = "decoder->held != 0U && " if self.end_size > 1 else ""
+        return f"{held}byte == {byte(self.plan.end_bytes[-1])}"
 
     @property
     def has_start(self) -> bool:
@@ -141,7 +149,7 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
     @property
     def least(self) -> int:
         """The number of bytes in the buffer of a frame with an empty payload."""
-        return self.in_front + self.around
+        return self.in_front + self.around + self.behind
 
     @property
     def is_complete(self) -> str:
@@ -153,8 +161,8 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
             found = [f"at == {self.least + self.only_size}U"]
         else:
             found = [f"payload <= {self.greatest_payload}U"]
-        if self.least <= self.begun and not self.only_size:
-            found.append(f"at > {self.begun}U")  # Else it is an idle line.
+        if self.least - self.behind <= self.begun and not self.only_size:
+            found.append(f"at > {self.begun + self.behind}U")  # Else it is an idle line.
         if self.stuffing is not None:
             found.append("node == 0U")
         if self.groups_fill:
@@ -201,6 +209,11 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
         return message.takes_any_size or (bool(message.checks) and not message.fixed)
 
     @property
+    def checks_head(self) -> bool:
+        """False: nothing is looked at before the end is there."""
+        return False
+
+    @property
     def compares_size(self) -> bool:
         """True if a length in the head has to say how large the payload turned out to be."""
         return self.only_size is None and any(number.is_length for number in self.head_numbers)
@@ -222,16 +235,26 @@ def is_delimited(frame: ReceivedFrame) -> bool:
     return (
         plan.store is Store.CONTENT
         and plan.end_is_unique
-        and len(plan.end_bytes) == 1
+        and _end_is_plain(frame)
         and _start_is_plain(frame)
         and not plan.is_cut_off
         and not plan.ends_idle
         and not frame.told_parts
         and not frame.length_over_wire
-        and not frame.checks_tail
+        and not any(number.contradicts for number in frame.tail_numbers)
         and not frame.optional_tail
         and _region_is_plain(frame)
     )
+
+
+def _end_is_plain(frame: ReceivedFrame) -> bool:
+    """True if the end is one byte, or two of which the first means nothing else where it stands."""
+    end, stuffing = frame.plan.end_bytes, frame.stuffing
+    if len(end) == 1:
+        return True
+    if len(end) != 2 or end[0] == end[1] or frame.plan.shares_delimiter:
+        return False
+    return stuffing is None or (stuffing.kind is StuffingKind.BASE16 and end[0] not in _DIGITS)
 
 
 def _start_is_plain(frame: ReceivedFrame) -> bool:

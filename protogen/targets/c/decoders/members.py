@@ -129,6 +129,7 @@ def _of_delimited(view: DelimitedDecoder) -> tuple[Member, ...]:
             Member(view.counter, "payload", "Size of the payload of a complete frame."),
         ),
         (view.stuffing is not None, Member("uint8_t", "node", node)),
+        (view.end_size > 1, Member("uint8_t", "held", "1: the first byte of an end was the last.")),
         (view.keeps_code, Member("uint8_t", "code", "First half of a byte, or a group's code.")),
         (True, Member("uint8_t", "buffer", "Bytes of the candidate.", view.buffer_size)),
     )

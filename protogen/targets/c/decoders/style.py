@@ -26,7 +26,7 @@ def decoder_style(frame: ReceivedFrame) -> DecoderStyle:
 
     Where nobody asks what was wrong, what does not fit is given up. A flat decoder is for frames
     that begin with a protected start and tell their size in their head: a byte of a start is
-    always one. A delimited one is for those with a protected end. Nothing of their identity is told.
+    always one. A delimited one is for those with a protected end. Nothing of an identity is told.
     """
     if frame.all_events or not (_tail_stays(frame) and _payload_is_plain(frame)):
         return DecoderStyle.PUSH
