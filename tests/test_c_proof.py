@@ -36,6 +36,9 @@ TRIMMED = ROOT / "tests" / "framings" / "trimmed_stuffed.yaml"
 """Payloads that a decoder fills up in its buffer."""
 DIGITS = ROOT / "tests" / "framings" / "digit_words.yaml"
 """Digits around a payload, which a decoder reads and compares."""
+COBS = ROOT / "tests" / "framings" / "cobs.yaml"
+HDLC = ROOT / "tests" / "framings" / "hdlc.yaml"
+"""Frames that are judged at their end, where messages alone are asked for."""
 IDLE = ROOT / "tests" / "framings" / "idle_end.yaml"
 """Frames that only a silence ends, so that a decoder holds one byte more than they have."""
 BITS = ROOT / "tests" / "c_schemas" / "part_bits.yaml"
@@ -82,6 +85,8 @@ PUSHES: list[tuple[Path, Events, str]] = (
         (SEQUENCES, "messages", WIDE),
         (SIZED, "messages", WIDE),
         (BITS, "messages", WIDE),
+        (COBS, "messages", WIDE),
+        (HDLC, "messages", NARROW),
         (MIRRORS, "messages", NARROW),
         (HELD, "all", WIDE),
         (FORMS, "messages", WIDE),

@@ -15,7 +15,7 @@ from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.protocol_names import names_of
 
 ROOT = Path(__file__).parent.parent
-FLAT, PUSH = DecoderStyle.FLAT, DecoderStyle.PUSH
+FLAT, DELIMITED, PUSH = DecoderStyle.FLAT, DecoderStyle.DELIMITED, DecoderStyle.PUSH
 
 
 @pytest.mark.parametrize(
@@ -25,8 +25,13 @@ FLAT, PUSH = DecoderStyle.FLAT, DecoderStyle.PUSH
         ("schemas/rn1", "brain", "all", PUSH),
         # A byte of a set that stands nowhere else, and a size that it tells.
         ("schemas/rn1", "brain", "messages", FLAT),
-        # An end tells the size of some payload: only then is it known.
-        ("schemas/rn1", "host", "messages", PUSH),
+        # An end that stands nowhere else tells the size of some payload: only then is it known.
+        ("schemas/rn1", "host", "messages", DELIMITED),
+        # The same where the end has two bytes.
+        ("tests/framings/digit_parts", "station", "messages", DELIMITED),
+        ("tests/framings/hex_lines", "station", "messages", DELIMITED),
+        # The first of which may be stuffed.
+        ("tests/framings/text_parts", "station", "messages", PUSH),
         # Start and end are told by what stands behind their common first byte.
         ("schemas/rflex", "linux", "messages", FLAT),
         # A start that nothing of a frame can be, and a length in the head.
@@ -37,14 +42,17 @@ FLAT, PUSH = DecoderStyle.FLAT, DecoderStyle.PUSH
         ("tests/framings/bounded_length", "station", "messages", PUSH),
         # The same of a literal.
         ("tests/framings/sync_length_crc", "station", "messages", PUSH),
-        # A frame starts where the one before ended.
+        # A frame starts where the one before ended, and ends with what may stand in its data.
         ("schemas/dagny", "host", "messages", PUSH),
-        ("tests/framings/slip_end_only", "station", "messages", PUSH),
+        # It starts where the one before ended.
+        ("tests/framings/slip_end_only", "station", "messages", DELIMITED),
         # The end is the next frame's start.
-        ("tests/framings/hdlc", "station", "messages", PUSH),
-        ("tests/framings/slip", "station", "messages", PUSH),
+        ("tests/framings/hdlc", "station", "messages", DELIMITED),
+        ("tests/framings/slip", "station", "messages", DELIMITED),
         # The bytes that follow decide what a byte is.
-        ("tests/framings/cobs", "station", "messages", PUSH),
+        ("tests/framings/cobs", "station", "messages", DELIMITED),
+        # Somebody asks what was wrong.
+        ("tests/framings/cobs", "station", "all", PUSH),
         # Nothing but a checksum tells a frame from other bytes.
         ("tests/framings/checksum_only", "station", "messages", PUSH),
         # And only a silence ends it.

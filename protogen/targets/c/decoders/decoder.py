@@ -8,6 +8,7 @@ from functools import cached_property
 from msgspec.structs import astuple
 
 from protogen.model.protocol import Sender
+from protogen.targets.c.decoders.delimited import DelimitedDecoder
 from protogen.targets.c.decoders.flat import FlatDecoder
 from protogen.targets.c.decoders.groups import groups_of
 from protogen.targets.c.decoders.push import PushDecoder
@@ -30,6 +31,22 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
         return FlatDecoder(*astuple(self)) if is_flat else None
 
     @cached_property
+    def delimited(self) -> DelimitedDecoder | None:
+        """View of a decoder that judges frames at their end, if this is one."""
+        is_delimited = decoder_style(self) is DecoderStyle.DELIMITED
+        return DelimitedDecoder(*astuple(self)) if is_delimited else None
+
+    @property
+    def polled(self) -> FlatDecoder | DelimitedDecoder | None:
+        """View of a decoder whose `push` returns which message is complete, if this is one."""
+        return self.flat or self.delimited
+
+    @property
+    def size_type(self) -> str:
+        """The type of what counts bytes of a frame that is received."""
+        return self.counter if self.delimited is None else self.delimited.counter
+
+    @cached_property
     def push(self) -> PushDecoder:
         """View of a decoder with states."""
         return PushDecoder(*astuple(self))
@@ -37,7 +54,7 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
     @cached_property
     def whole(self) -> WholeFrames | None:
         """View of how `feed` takes a frame at once, if it can."""
-        return whole_frames(self)
+        return None if self.delimited else whole_frames(self)
 
     @property
     def takes_content(self) -> bool:
@@ -58,8 +75,8 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
 
     @property
     def only_size(self) -> int | None:
-        """Size of the payload, where a flat decoder knows messages of one fixed size alone."""
-        return None if self.flat is None else self.flat.only_size
+        """Size of the payload, where a polled decoder knows messages of one fixed size alone."""
+        return None if self.polled is None else self.polled.only_size
 
 
 def decoder_view(

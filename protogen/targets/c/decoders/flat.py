@@ -65,12 +65,21 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         """The counter that still has the size of content when a frame is complete."""
         return "content" if self.idle_member == "limit" else "limit"
 
+    def size_kept(self, payload: str) -> str:
+        """The size of a payload as that counter holds it."""
+        return f"({self.counter})({payload} + {self.around}U)"
+
     @property
     def shown_size(self) -> str:
         """The payload's size of a complete frame, as an argument in front of others."""
         if self.only_size is not None:
             return ""
         return f"({self.counter})(decoder->{self.size_member} - {self.around}U), "
+
+    @property
+    def kept_content(self) -> str:
+        """Where the content begins in the buffer."""
+        return "decoder->buffer"
 
     @property
     def has_no_room(self) -> str:

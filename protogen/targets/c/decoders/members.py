@@ -6,6 +6,7 @@ import msgspec
 
 from protogen.targets.c.decoders.candidate import Candidate
 from protogen.targets.c.decoders.decoder import DecoderView
+from protogen.targets.c.decoders.delimited import DelimitedDecoder
 from protogen.targets.c.frame.stuffing import StuffingKind
 
 POINTERS = 2
@@ -38,12 +39,14 @@ class Member(msgspec.Struct, frozen=True):
 
 def memory_of(view: DecoderView) -> int:
     """Bytes that the decoder takes on an 8-bit controller."""
-    pointers = 0 if view.flat else POINTERS
+    pointers = 0 if view.polled else POINTERS
     return pointers * SMALL_POINTER + sum(member.size for member in members_of(view))
 
 
 def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
     """The members, behind the handler and its `user` where there is one; the buffers last."""
+    if isinstance(view, DecoderView) and view.delimited is not None:
+        return _of_delimited(view.delimited)
     plan, push, stuffing = view.plan, view.push, view.stuffing
     kind = None if stuffing is None else stuffing.kind
     is_push = view.flat is None
@@ -112,6 +115,25 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
         about = "Where each byte of content ends on the wire."
         found.append(Member(view.counter, "ends", about, plan.greatest))
     return tuple(found)
+
+
+def _of_delimited(view: DelimitedDecoder) -> tuple[Member, ...]:
+    """The members of a decoder that judges frames at their end."""
+    node = "Place inside a sequence of the stuffing; 0 outside."
+    if view.is_cobs:
+        node = "Bytes up to the code of the next group."
+    found = (
+        (True, Member(view.counter, "content", "Bytes in the buffer.")),
+        (
+            view.size_is_kept,
+            Member(view.counter, "payload", "Size of the payload of a complete frame."),
+        ),
+        (view.stuffing is not None, Member("uint8_t", "node", node)),
+        (view.end_size > 1, Member("uint8_t", "held", "1: the first byte of an end was the last.")),
+        (view.keeps_code, Member("uint8_t", "code", "First half of a byte, or a group's code.")),
+        (True, Member("uint8_t", "buffer", "Bytes of the candidate.", view.buffer_size)),
+    )
+    return tuple(member for is_there, member in found if is_there)
 
 
 def candidate_members(view: Candidate) -> tuple[Member, ...]:

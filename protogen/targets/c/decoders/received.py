@@ -281,6 +281,11 @@ class ReceivedFrame(NamedDecoder, frozen=True, dict=True):
         sent = (PartView(item, member(item.name), self.numbers) for item in self.plan.shown)
         return (*(part for part in self.told_parts if not part.is_length), *sent)
 
+    @property
+    def shows_inline(self) -> bool:
+        """True if what events show of parts needs no functions."""
+        return not any(isinstance(part, PartView) and part.calls for part in self.parts)
+
     def held_in_content(self, item: ReceivedMessage) -> str:
         """The numbers of the frame that a check takes, out of `content`, as further arguments."""
         values = {part.member: part.value("0") for part in self.parts}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import Enum, auto
 
 from protogen.model.frame_plan import StartRule, Store
+from protogen.targets.c.decoders.delimited import is_delimited
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.stuffing import StuffingKind
 
@@ -16,18 +17,28 @@ class DecoderStyle(Enum):
     """A machine with states, which calls a handler: any frame, any events."""
     FLAT = auto()
     """No more states than how much of a frame is there; `push` returns the message."""
+    DELIMITED = auto()
+    """The same where a frame is judged at its end, whatever its head says."""
 
 
 def decoder_style(frame: ReceivedFrame) -> DecoderStyle:
     """The style for frames of which some events are asked.
 
-    A flat decoder is for frames that begin with a protected start and tell their size in their
-    head, where nobody asks what was wrong: a byte of a start is always one, and what does not fit
-    is given up. Nothing of their identity is told.
+    Where nobody asks what was wrong, what does not fit is given up. A flat decoder is for frames
+    that begin with a protected start and tell their size in their head: a byte of a start is
+    always one. A delimited one is for those with a protected end. Nothing of an identity is told.
     """
-    is_flat = (
-        not frame.all_events
-        and frame.plan.store is Store.CONTENT
+    if frame.all_events or not (_tail_stays(frame) and _payload_is_plain(frame)):
+        return DecoderStyle.PUSH
+    if _is_flat(frame):
+        return DecoderStyle.FLAT
+    return DecoderStyle.DELIMITED if is_delimited(frame) else DecoderStyle.PUSH
+
+
+def _is_flat(frame: ReceivedFrame) -> bool:
+    """True if a frame is told by its start, and its size by its head."""
+    return (
+        frame.plan.store is Store.CONTENT
         and not frame.plan.is_cut_off
         and not frame.told_parts
         and _delimiters_are_seen(frame)
@@ -35,11 +46,8 @@ def decoder_style(frame: ReceivedFrame) -> DecoderStyle:
         and frame.known_from > 0
         and _head_is_plain(frame)
         and _tail_is_plain(frame)
-        and _tail_stays(frame)
         and _region_is_plain(frame)
-        and not (frame.plan.seven_bit and not _high_bytes_show(frame))
     )
-    return DecoderStyle.FLAT if is_flat else DecoderStyle.PUSH
 
 
 def _delimiters_are_seen(frame: ReceivedFrame) -> bool:
@@ -81,6 +89,11 @@ def _region_is_plain(frame: ReceivedFrame) -> bool:
     return frame.is_stuffed_behind_start and frame.stuffing.kind in alone
 
 
-def _high_bytes_show(frame: ReceivedFrame) -> bool:
+def _payload_is_plain(frame: ReceivedFrame) -> bool:
     """True if no byte with its most significant bit set can get into a payload unseen."""
+    return not frame.plan.seven_bit or _high_bytes_show(frame)
+
+
+def _high_bytes_show(frame: ReceivedFrame) -> bool:
+    """True if every byte with that bit set is a start or an end."""
     return frame.gives_up_high_bytes or set(range(128, 256)) <= set(frame.never_passed)

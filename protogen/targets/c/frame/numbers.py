@@ -105,6 +105,12 @@ class PartView(msgspec.Struct, frozen=True):
         """What is said of it."""
         return comment_of(self.part.type)
 
+    @property
+    def calls(self) -> bool:
+        """True if functions read it: of digits, or of bits that lie in several bytes."""
+        type_ = self.part.type
+        return type_.text is not None or (type_.within is not None and type_.whole.size > 1)
+
     def value(self, payload: str) -> str:
         """Its value, read from `content` or `tail`; `payload` is the C of the payload's size."""
         at = "content" if self.placed.in_head else "tail"

@@ -143,7 +143,7 @@ def _decoder(
         decoder.name,
         decoder.prefix,
         decoder.all_events,
-        decoder.flat is not None,
+        decoder.polled is not None,
         tuple(DrivenPart(part.name, part.type, part.part, part.member) for part in decoder.parts),
         tuple(
             DrivenHandler(item.function, item.message.struct, indices[item.message.name])

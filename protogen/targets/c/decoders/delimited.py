@@ -1,0 +1,279 @@
+"""A decoder of frames that a protected end delimits: bytes are kept, and judged at the end.
+
+No frame begins inside of another one's bytes, so nothing is read again: what does not fit is given
+up until the next end or start.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from protogen.model.frame_plan import StartRule, Store
+from protogen.targets.c.decoders.flat import FlatDecoder
+from protogen.targets.c.decoders.groups import GroupView
+from protogen.targets.c.decoders.received import ReceivedFrame
+from protogen.targets.c.frame.expressions import byte
+from protogen.targets.c.frame.stuffing import StuffingKind
+
+_SHORT_COBS = 254
+"""Content of so many bytes can be one group of COBS that is full."""
+_DIGITS = b"0123456789ABCDEFabcdef"
+_KINDS = (
+    StuffingKind.CODES,
+    StuffingKind.LENIENT_ESCAPE,
+    StuffingKind.BASE16,
+    StuffingKind.COBS,
+)
+
+
+class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
+    """Counters and conditions of such a decoder."""
+
+    # --- sizes ------------------------------------------------------------------------------------
+
+    @cached_property
+    def greatest_payload(self) -> int:
+        """Bytes of the greatest payload that some message can have; no longer frame is kept."""
+        messages = [message for group in self.groups for message in group.messages]
+        if any(message.can_be_longer for message in messages):
+            return self.plan.payload.greatest
+        return max((max(message.greatest, message.fills) for message in messages), default=0)
+
+    @property
+    def in_front(self) -> int:
+        """Bytes of the buffer in front of the content: a zero for the first group of COBS."""
+        return 1 if self.is_cobs else 0
+
+    @property
+    def behind(self) -> int:
+        """Bytes of the buffer behind the content: the first of an end, until the second comes."""
+        return 1 if self.end_size > 1 and self.stuffing is None else 0
+
+    @property
+    def buffer_size(self) -> int:
+        """Bytes of the buffer."""
+        return self.in_front + self.around + self.greatest_payload + self.behind
+
+    @cached_property
+    def counter(self) -> str:
+        """The type of what counts bytes of the buffer, and one more."""
+        bits = next(bits for bits in (8, 16, 32) if self.buffer_size < (1 << bits) - 4)
+        return f"uint{bits}_t"
+
+    @property
+    def kept_content(self) -> str:
+        """Where the content begins in the buffer."""
+        return f"&decoder->buffer[{self.in_front}]" if self.in_front else "decoder->buffer"
+
+    @property
+    def size_is_kept(self) -> bool:
+        """True if a member says how large the payload of a complete frame is."""
+        if self.only_size is not None:
+            return False
+        messages = [message for group in self.groups for message in group.messages]
+        vary = any(message.is_fitted or not message.fixed for message in messages)
+        return vary or self.shows_tail
+
+    @property
+    def tells_sizes(self) -> bool:
+        """True if the message tells it, and there are several."""
+        return self.only_size is None and not self.size_is_kept
+
+    @cached_property
+    def sizes(self) -> dict[int, tuple[str, ...]]:
+        """The constants of the messages by the size of their payload, where that is fixed."""
+        found: dict[int, tuple[str, ...]] = {}
+        for group in self.groups:
+            for message in group.messages:
+                found[message.least] = (*found.get(message.least, ()), message.constant)
+        return found
+
+    @property
+    def size_member(self) -> str:
+        """The member that says so."""
+        return "payload"
+
+    def size_kept(self, payload: str) -> str:
+        """The size of a payload as that member holds it."""
+        return payload
+
+    @property
+    def shown_size(self) -> str:
+        """The payload's size of a complete frame, as an argument in front of others."""
+        if self.only_size is not None:
+            return ""
+        if self.size_is_kept:
+            return "decoder->payload, "
+        return f"{self.prefix}_payload_size(message), "
+
+    # --- start and end ----------------------------------------------------------------------------
+
+    @property
+    def end(self) -> str:
+        """The condition that a byte is the end, or its last one."""
+        held = "decoder->held != 0U && " if self.end_size > 1 else ""
+        return f"{held}byte == {byte(self.plan.end_bytes[-1])}"
+
+    @property
+    def has_start(self) -> bool:
+        """True if something marks the start; else the end of the frame before does."""
+        return self.plan.start is not StartRule.AFTER_END
+
+    @property
+    def begins_itself(self) -> bool:
+        """True if a start is no end, too."""
+        return self.has_start and not self.plan.shares_delimiter
+
+    @property
+    def begun(self) -> int:
+        """The number of bytes in the buffer behind an end."""
+        return self.first_head if self.plan.shares_delimiter else 0
+
+    @property
+    def idle_member(self) -> str:
+        """The counter that says that bytes pass by until a frame may begin."""
+        return "content"
+
+    @property
+    def idle_value(self) -> int:
+        """Value of that counter then: nothing, or more than there is room for."""
+        return 0 if self.has_start else self.buffer_size + 1
+
+    @property
+    def has_no_room(self) -> str:
+        """The condition that no byte of content is taken."""
+        if not self.has_start:
+            return f"at >= {self.buffer_size}U"
+        return f"({self.counter})(at - 1U) >= {self.buffer_size - 1}U"
+
+    @property
+    def least(self) -> int:
+        """The number of bytes in the buffer of a frame with an empty payload."""
+        return self.in_front + self.around + self.behind
+
+    @property
+    def is_complete(self) -> str:
+        """The condition that an end ends a frame, as far as sizes and stuffing tell.
+
+        What is too short, or given up, has a payload greater than any.
+        """
+        if self.only_size is not None:
+            found = [f"at == {self.least + self.only_size}U"]
+        else:
+            found = [f"payload <= {self.greatest_payload}U"]
+        if self.least - self.behind <= self.begun and not self.only_size:
+            found.append(f"at > {self.begun + self.behind}U")  # Else it is an idle line.
+        if self.stuffing is not None:
+            found.append("node == 0U")
+        if self.groups_fill:
+            found.append("code != 0U")
+        return " && ".join(found)
+
+    # --- COBS -------------------------------------------------------------------------------------
+
+    @property
+    def is_cobs(self) -> bool:
+        """True if a zero stands for the code of each group but the first."""
+        return self.stuffing is not None and self.stuffing.is_cobs
+
+    @property
+    def groups_fill(self) -> bool:
+        """True if a group of COBS may be full, so that no zero stands behind it."""
+        return self.is_cobs and self.around + self.greatest_payload >= _SHORT_COBS
+
+    @property
+    def keeps_code(self) -> bool:
+        """True if half a byte, or the code of a group, is kept."""
+        is_base16 = self.stuffing is not None and self.stuffing.kind is StuffingKind.BASE16
+        return is_base16 or self.groups_fill
+
+    # --- messages ---------------------------------------------------------------------------------
+
+    @property
+    def always_known(self) -> bool:
+        """False: any bytes may stand between two ends."""
+        return False
+
+    @property
+    def tells_by_key(self) -> bool:
+        """True if there is an identity."""
+        return self.identified
+
+    def size_is_certain(self, group: GroupView) -> bool:
+        """True if a payload of that identity has a size that its message can have."""
+        if self.only_size is not None:
+            return True
+        message = group.messages[0]
+        if len(group.messages) != 1:
+            return False
+        return message.takes_any_size or (bool(message.checks) and not message.fixed)
+
+    @property
+    def checks_head(self) -> bool:
+        """False: nothing is looked at before the end is there."""
+        return False
+
+    @property
+    def compares_size(self) -> bool:
+        """True if a length in the head has to say how large the payload turned out to be."""
+        return self.only_size is None and any(number.is_length for number in self.head_numbers)
+
+    @property
+    def checks_parts(self) -> bool:
+        """True if something of the head is looked at behind the start, besides the identity."""
+        literals = any(literal.index >= self.plan.start_size for literal in self.head_literals)
+        numbers = (
+            n.seven_bit or n.fault or n.bounds or n.contradicts or n.is_length
+            for n in self.head_numbers
+        )
+        return literals or any(numbers)
+
+
+def is_delimited(frame: ReceivedFrame) -> bool:
+    """True if a frame can be judged at its end, and nothing of it is looked at twice."""
+    plan = frame.plan
+    return (
+        plan.store is Store.CONTENT
+        and plan.end_is_unique
+        and _end_is_plain(frame)
+        and _start_is_plain(frame)
+        and not plan.is_cut_off
+        and not plan.ends_idle
+        and not frame.told_parts
+        and not frame.length_over_wire
+        and not any(number.contradicts for number in frame.tail_numbers)
+        and not frame.optional_tail
+        and _region_is_plain(frame)
+    )
+
+
+def _end_is_plain(frame: ReceivedFrame) -> bool:
+    """True if the end is one byte, or two of which the first means nothing else where it stands."""
+    end, stuffing = frame.plan.end_bytes, frame.stuffing
+    if len(end) == 1:
+        return True
+    if len(end) != 2 or end[0] == end[1] or frame.plan.shares_delimiter:
+        return False
+    return stuffing is None or (stuffing.kind is StuffingKind.BASE16 and end[0] not in _DIGITS)
+
+
+def _start_is_plain(frame: ReceivedFrame) -> bool:
+    """True if the end of the frame before is the start, or one byte that stands nowhere else."""
+    plan = frame.plan
+    if plan.start is StartRule.AFTER_END:
+        return True
+    if plan.start not in (StartRule.LITERAL, StartRule.SET):
+        return False
+    return plan.start_is_unique and plan.start_size == 1
+
+
+def _region_is_plain(frame: ReceivedFrame) -> bool:
+    """True if nothing is stuffed, or all between the delimiters is."""
+    region, stuffing = frame.plan.region, frame.stuffing
+    if region is None or stuffing is None:
+        return True
+    before = 0 if frame.plan.start is StartRule.AFTER_END else 1
+    is_whole = frame.region_to_end and region.before == before
+    if stuffing.is_cobs and (before or stuffing.lenient):
+        return False
+    return is_whole and stuffing.kind in _KINDS

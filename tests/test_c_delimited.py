@@ -1,0 +1,122 @@
+"""C decoders of frames that a protected end delimits, where messages alone are asked for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from random import Random
+
+import pytest
+from c_engine import check_events, process_of
+from compiled import ROOT, module_at, protocol_of
+from corpus import marks_of, material_of, stream_of
+from test_c_decoder import steps_of
+
+from protogen.fuzzing.c_calls import Step
+from protogen.targets.c.decoders.members import members_of, memory_of
+from protogen.targets.c.emit import unit_of
+from protogen.targets.c.options import COptions
+
+MESSAGES = COptions(events="messages")
+LONG_COBS = """
+protocol: long_cobs
+endpoints: {station: Weather station}
+byte_order: big
+frame:
+  id: {type: uint8, id: true}
+  payload: {}
+  check: {type: uint8, algorithm: sum-8, covers: [id, payload]}
+  end: {literal: 0}
+transparency: {encoding: cobs}
+messages:
+  picture: {id: 1, from: station, fields: {data: {type: bytes, size: {fill: true, max: 600}}}}
+  wind: {id: 2, from: station, fields: {speed: uint16}}
+"""
+SHARED_START = """
+protocol: shared_start
+endpoints: {station: Weather station}
+byte_order: big
+frame:
+  opening: {literal: 0x7E}
+  id: {type: uint8, id: true}
+  length: {type: uint8, counts: [length, payload], range: [1, 9]}
+  payload: {}
+  check: {type: uint8, algorithm: sum-8, covers: opening..payload}
+  closing: {literal: 0x7E}
+transparency: hdlc
+messages:
+  wind: {id: 1, from: station, fields: {speed: uint16, direction: uint8}}
+  calm: {id: 2, from: station}
+"""
+DIGITS = """
+protocol: digits_between
+endpoints: {station: Weather station}
+byte_order: big
+frame:
+  start: {literal: 2}
+  kind: {literal: 0x5A}
+  version: {type: uint8, range: [1, 3], default: 2}
+  payload: {}
+  check: {type: uint16, algorithm: CRC-16/KERMIT, covers: kind..payload}
+  end: {literal: 3}
+transparency: {covers: kind..check, encoding: base16-upper}
+messages:
+  text: {from: station, fields: {data: {type: bytes, size: {fill: true, max: 40}}}}
+"""
+SCHEMAS = {
+    "long_cobs": LONG_COBS,
+    "shared_start": SHARED_START,
+    "digits_between": DIGITS,
+}
+
+
+@pytest.fixture(scope="module")
+def paths(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("delimited")
+    found = {name: folder / f"{name}.yaml" for name in SCHEMAS}
+    for name, path in found.items():
+        path.write_text(SCHEMAS[name], encoding="utf-8")
+    return found
+
+
+@pytest.mark.parametrize("name", SCHEMAS)
+def test_streams_have_the_messages_that_python_finds(name: str, paths: dict[str, Path]) -> None:
+    path = paths[name]
+    [decoder] = unit_of(protocol_of(path), MESSAGES).framing.decoders
+    assert decoder.delimited
+    process, material = process_of(path, MESSAGES), material_of(path, "station")
+    marks = marks_of(path, "station")
+    for seed in range(12):
+        dice = Random(f"{name} {seed}")
+        data = stream_of(material, dice, 40).data
+        data += bytes(dice.choice(marks) for _ in range(dice.randrange(200)))
+        steps: list[Step] = [("clear",)] if seed % 2 else []
+        check_events(process, module_at(path), "station", [*steps, *steps_of(data, dice)])
+
+
+def test_groups_of_cobs_may_be_full(paths: dict[str, Path]) -> None:
+    path = paths["long_cobs"]
+    process, module = process_of(path, MESSAGES), module_at(path)
+    steps: list[Step] = []
+    for size in (*range(249, 257), *range(503, 511), 600):
+        for data in (b"\x11" * size, b"\x11" * (size - 1) + b"\0", b"\0" + b"\x11" * (size - 1)):
+            frame = module.encode(module.Picture(data=data))
+            steps += [("push", frame), ("feed", frame), ("feed", needless(frame)), ("feed", frame)]
+    check_events(process, module, "station", [*steps, ("flush",)])
+
+
+def needless(frame: bytes) -> bytes:
+    """The frame with a group behind the last that says nothing more: no encoder makes it."""
+    return frame[:-1] + b"\x01\0"
+
+
+def test_the_buffer_is_as_large_as_the_greatest_message() -> None:
+    """Of README's rover: identity, five bytes, a checksum, and the zero that COBS begins with."""
+    rover = protocol_of(ROOT / "benchmarks" / "c" / "rover.yaml")
+    decoders = unit_of(rover, MESSAGES).framing.decoders
+    [board] = [decoder for decoder in decoders if decoder.name == "board"]
+    assert {member.name: member.size for member in members_of(board)} == {
+        "content": 1,
+        "node": 1,
+        "buffer": 1 + 1 + 5 + 2,
+    }
+    assert memory_of(board) == 11
