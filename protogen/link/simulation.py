@@ -106,13 +106,15 @@ class Simulation:
         tasks = [asyncio.create_task(self._repeat(port, name)) for name in self._rates]
         listening = asyncio.create_task(self._listen(port))
         try:
-            done, _ = await asyncio.wait([listening, *tasks], return_when=asyncio.FIRST_COMPLETED)
-            for task in done:
-                task.result()
+            await asyncio.wait([listening, *tasks], return_when=asyncio.FIRST_COMPLETED)
         finally:
             for task in (listening, *tasks):
                 task.cancel()
-            await asyncio.gather(listening, *tasks, return_exceptions=True)
+            ends = await asyncio.gather(listening, *tasks, return_exceptions=True)
+            # Also where it is cancelled: an error may have come a moment before.
+            for end in ends:
+                if isinstance(end, Exception):
+                    raise end
 
     async def send(self, port: Port, message: Any, **parts: Any) -> None:
         """Send a message now, of this module or of one generated elsewhere. Raises EncodeError."""
