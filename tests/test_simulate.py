@@ -346,7 +346,7 @@ class TestCommand:
         assert speeds == sorted(speeds, reverse=True)
         assert set(speeds) == {7, -7}
         counters = [event.parts.counter for event in found]
-        assert counters == list(range(counters[0], counters[0] + 30))
+        assert counters == list(range(counters[0], counters[0] + len(counters)))
 
     def test_values_of_a_function(self, tmp_path: Path) -> None:
         (tmp_path / "wave.py").write_text("def wave(message, seconds):\n    return {'speed': 12}\n")
