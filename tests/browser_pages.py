@@ -11,7 +11,7 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
-from tooling import require_module, require_tool, unavailable
+from tooling import PATIENCE, require_module, require_tool, unavailable
 
 from protogen.cli.wire.codec import Codec
 from protogen.cli.wire.explain import _rows, _sender, _title, _value
@@ -32,11 +32,20 @@ def chromium() -> Iterator[Any]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        browser = playwright.chromium.launch(
+            executable_path=program, args=["--no-sandbox"], timeout=PATIENCE * 1000
+        )
         try:
             yield browser
         finally:
             browser.close()
+
+
+def context_of(browser: Any, **options: Any) -> Any:
+    """A window of its own, whose pages have the time that a busy machine needs."""
+    context = browser.new_context(**options)
+    context.set_default_timeout(PATIENCE * 1000)
+    return context
 
 
 class _Quiet(SimpleHTTPRequestHandler):
@@ -65,7 +74,7 @@ class Opened:
     """A page that was opened as a file, and what it complained of."""
 
     def __init__(self, browser: Any, path: Path, **context: Any) -> None:
-        self.context = browser.new_context(**context)
+        self.context = context_of(browser, **context)
         self.page = self.context.new_page()
         self.complaints: list[str] = []
         self.requests: list[str] = []

@@ -1,4 +1,4 @@
-"""A protocol with requests, and a small device of it at the other end of a pseudo-terminal."""
+"""A protocol with requests, and a small device of it, at a pseudo-terminal or another port."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any
 
 from protogen.link.ports.port import Port, PortLostError
-from protogen.link.ports.pseudo_terminal import PseudoTerminal, make_pseudo_terminal
+from protogen.link.ports.pseudo_terminal import make_pseudo_terminal
 
 SCHEMA = """\
 protocol: rig
@@ -58,10 +58,16 @@ class Board:
     """A device. It damages what goes in and out, and counts what came before that."""
 
     def __init__(
-        self, module: ModuleType, behaviour: Behaviour, *, lost: float = 0.0, seed: int = 1
+        self,
+        module: ModuleType,
+        behaviour: Behaviour,
+        port: Port | None = None,
+        *,
+        lost: float = 0.0,
+        seed: int = 1,
     ) -> None:
         """Of each byte, either way, `lost` is the chance that it is lost."""
-        self.port: PseudoTerminal = make_pseudo_terminal()
+        self.port = port or make_pseudo_terminal()
         self.arrived = Counter[str]()
         """Messages as they were sent to it."""
         self._whole = module.Decoder(sender="host")

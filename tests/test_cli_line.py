@@ -21,6 +21,7 @@ import pytest
 from cli_support import PATIENCE, ROOT, run
 
 from protogen.cli.line.recorders import AnyRecorder
+from protogen.link.damage import Damage, DamageRates
 from protogen.recording import Record, Recorder, RecordKind, records
 
 sys.path.append(str(ROOT / "benchmarks"))
@@ -138,8 +139,8 @@ class TestRecord:
                 assert line_of(it.stderr) == f"recording {link}; Ctrl-C ends it\n"
                 os.write(own, STOP)
                 until(file, 8 + 16 + 5)
+                link.unlink()  # Soon the port of another test may have the same name.
             assert "is gone" in line_of(it.stderr)
-            link.unlink()
             own, name = stack.enter_context(device())
             link.symlink_to(name)
             assert line_of(it.stderr) == f"{link} is back\n"
@@ -239,9 +240,9 @@ class TestTap:
                     for start in range(0, len(sent), 1000):
                         os.write(board, sent[start : start + 1000])
                         time.sleep(0.02)
-                    received = b""
-                    while select.select([program], [], [], 1)[0]:
-                        received += os.read(program, 4096)
+                    # How many come out does not depend on the pieces that go in.
+                    left = Damage(DamageRates(drop=0.1, flip=0.1), "7 esp").of(sent)
+                    received = read(program, len(left))
                 stopped(it)
         assert 8_700 < len(received) < 9_300
         assert 700 < sum(byte.bit_count() for byte in received) < 1_100
@@ -298,15 +299,22 @@ class TestReplay:
 
     def test_waits_until_a_port_that_it_made_is_opened_and_read(self, recording: str) -> None:
         args = ("replay", recording, "pty:", "--source", "pc", "--speed", "0")
-        with started(*args) as it:
-            made = line_of(it.stderr).split()[-1]
-            assert line_of(it.stderr) == "waiting until it is opened\n"
-            assert not select.select([it.stderr], [], [], 0.3)[0], "it did not wait"
-            with opened(made) as port:
+        began, took = 0.0, 1.0
+        while took > 0.4:  # Where the machine stood still for so long, the command has sent before.
+            with ExitStack() as stack:
+                it = stack.enter_context(started(*args))
+                made = line_of(it.stderr).split()[-1]
+                assert line_of(it.stderr) == "waiting until it is opened\n"
+                assert not select.select([it.stderr], [], [], 0.3)[0], "it did not wait"
+                began = time.monotonic()
+                port = stack.enter_context(opened(made))
                 time.sleep(0.1)
                 termios.tcflush(port, termios.TCIFLUSH)  # As programs do that open a port.
+                took = time.monotonic() - began
+                if took > 0.4:
+                    continue
                 assert not termios.tcgetattr(port)[3] & (termios.ICANON | termios.ECHO)
-                assert select.select([port], [], [], 10)[0]
+                assert select.select([port], [], [], PATIENCE)[0]
                 assert it.poll() is None, "it took the port away from its reader"
                 assert read(port, 11) == STOP + b"?" + STOP
                 assert line_of(it.stderr) == "11 bytes sent\n"

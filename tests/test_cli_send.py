@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from cli_support import ROOT, run
+from cli_support import PATIENCE, ROOT, run
 from link_board import SCHEMA
 
 from protogen.link.device import SimulatedDevice
@@ -18,6 +19,8 @@ pytest.importorskip("serialx")
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals are of POSIX")
 
 MATTY = str(ROOT / "schemas/matty.yaml")
+PATIENT = ("--timeout", str(PATIENCE))
+"""Sent once, however busy the machine is."""
 
 
 @pytest.fixture
@@ -64,7 +67,9 @@ def test_a_refusal_and_another_reply_are_findings(rig: str, board: SimulatedDevi
 
 
 def test_what_is_no_reply_can_be_waited_for_as_well(rig: str, board: SimulatedDevice) -> None:
-    result = run("send", rig, f"board={board.port}", "set", "value=1", "--expect", "state")
+    result = run(
+        *("send", rig, f"board={board.port}", "set", "value=1", "--expect", "state"), *PATIENT
+    )
     assert (result.exit_code, result.stdout.split()[0]) == (0, "state")
     result = run("send", rig, board.port, "set", "value=1", "--expect", "reset")
     assert (result.exit_code, "nobody else sends `reset`" in result.stderr) == (2, True)
@@ -76,6 +81,9 @@ def test_without_a_reply_it_says_what_came_instead(rig: str, board: SimulatedDev
     assert result.exit_code == 1
     assert "no reply to reset, sent 2 times, waited 0.2 s each time: instead came" in result.stderr
     assert "x state" in result.stderr
+    end = time.monotonic() + PATIENCE
+    while board.counts.received["reset"] < 2 and time.monotonic() < end:
+        time.sleep(0.01)
     assert board.counts.received["reset"] == 2
 
 

@@ -403,14 +403,35 @@ def test_a_worker_that_is_killed_loses_and_doubles_nothing(
     assert not (fleets / MARKERS).exists()
 
 
+_WAITING = """
+import time
+from protogen.convert.runs import capture_parts as parts
+
+def write_marker(*arguments, **options):
+    write(*arguments, **options)
+    written.append(arguments)
+    while len(written) >= 3:
+        time.sleep(1)
+
+if not hasattr(parts, "is_waiting"):  # Dask may run it twice.
+    parts.is_waiting = True
+    written, write = [], parts.write_whole
+    parts.write_whole = write_marker
+"""
+"""Code with which a worker gets no further than three parts, however late somebody ends it."""
+
+
 def test_a_fleet_goes_on_where_another_was_ended(
-    captures: Path, whole: Path, tmp_path: Path
+    captures: Path, whole: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     pytest.importorskip("distributed")
     fleet = ["--dask", "--workers", "1", "--part-size", "1"]
+    preload = tmp_path_factory.mktemp("preload") / "waiting.py"
+    preload.write_text(_WAITING)
+    preloaded = {"DASK_DISTRIBUTED__WORKER__PRELOAD": repr([str(preload)])}
     process = subprocess.Popen(
         [sys.executable, "-m", "protogen", *arguments(captures, tmp_path), *fleet],
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        env={**os.environ, "PYTHONPATH": str(ROOT), **preloaded},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         start_new_session=True,

@@ -81,7 +81,6 @@ def browser() -> Iterator[Any]:
 @pytest.fixture
 def opened(browser, page) -> Iterator[Opened]:
     with Opened(browser, page) as found:
-        found.page.set_default_timeout(10_000)
         yield found
         assert found.complaints == []
         assert found.requests == [found.url]

@@ -59,7 +59,7 @@ def to_bench(opened: Opened) -> None:
     opened.run("document.querySelector('.skip').focus()")
     opened.page.keyboard.press("Tab")
     opened.page.keyboard.press("Enter")
-    assert opened.run("document.activeElement.id") == "bench"
+    opened.page.wait_for_function("() => document.activeElement.id === 'bench'")
 
 
 def test_search_by_keys(matty):
@@ -70,7 +70,7 @@ def test_search_by_keys(matty):
     keys.type("speed")
     keys.press("ArrowDown")
     keys.press("Enter")
-    assert matty.run("location.hash").startswith("#message-")
+    matty.page.wait_for_function("() => location.hash.startsWith('#message-')")
     keys.press("/")
     keys.press("Escape")
     assert matty.page.input_value("#query") == ""
@@ -82,6 +82,10 @@ def test_decode_by_keys(matty):
     to_bench(matty)
     go_to(matty, "bytes")
     keys.type(ACK)
+    # Behind that, nothing is shown anew: where keys come slowly, there are events before.
+    page.wait_for_function(
+        "() => document.querySelector('#note').textContent.startsWith('5 bytes')"
+    )
     page.wait_for_selector("#events article")
     go_to(matty, "sender")
     keys.type("esp")

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Callable, Coroutine
+from collections.abc import AsyncIterator, Callable, Coroutine
+from contextlib import asynccontextmanager
 from pathlib import Path
 from threading import Event, Thread
 from types import ModuleType
 from typing import Any
 
 import pytest
-from link_board import SCHEMA, Answers, Board, flooded, obedient, silent
+from cli_support import PATIENCE
+from link_board import SCHEMA, Answers, Behaviour, Board, flooded, obedient, silent
+from link_wire import run_in_virtual_time, wire
 
 import protogen
 from protogen.link import (
@@ -31,7 +34,15 @@ pytestmark = pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals are
 
 
 def run(test: Coroutine[Any, Any, None]) -> None:
-    asyncio.run(asyncio.wait_for(test, 30))
+    asyncio.run(asyncio.wait_for(test, PATIENCE))
+
+
+@asynccontextmanager
+async def wired(rig: ModuleType, behaviour: Behaviour) -> AsyncIterator[tuple[Board, Any]]:
+    """A board, and a link to it, over a wire in memory: for tests in virtual time."""
+    here, there = wire()
+    async with Board(rig, behaviour, there) as board, connect(rig, here, "host") as link:
+        yield board, link
 
 
 @pytest.fixture(scope="module")
@@ -63,13 +74,13 @@ class TestStreams:
                 states = link.messages(rig.State)
                 both = link.messages(rig.State, rig.Pong)
                 board.later(0, rig.encode(rig.State(n=1), counter=3))
-                await link.request(rig.Ping(n=9))
+                await link.request(rig.Ping(n=9), timeout=PATIENCE)
                 board.later(0, rig.encode(rig.State(n=2), counter=4))
-                assert [await states.get(5), await states.get(5)] == [
+                assert [await states.get(PATIENCE), await states.get(PATIENCE)] == [
                     rig.State(n=1),
                     rig.State(n=2),
                 ]
-                assert {(await both.get(5)).NAME for _ in range(3)} == {"state", "pong"}
+                assert {(await both.get(PATIENCE)).NAME for _ in range(3)} == {"state", "pong"}
                 assert link.last(rig.State) == rig.State(n=2)
                 assert link.last(rig.Value) is None
 
@@ -85,7 +96,7 @@ class TestStreams:
                 state = rig.encode(rig.State(n=1), counter=0)
                 unknown = rig.PROTOCOL.encode_unknown("board", {"counter": 1, "kind": 99}, b"")
                 board.later(0, b"noise" + state + unknown + state[:5])
-                heard = [await events.get(5) for _ in range(4)]
+                heard = [await events.get(PATIENCE) for _ in range(4)]
                 kinds = [item.event.kind for item in heard]
                 # The last is given up after the silence that the schema says.
                 assert kinds == ["invalid", "message", "unknown", "invalid"]
@@ -191,15 +202,12 @@ class TestRequests:
         seen = set[int]()
 
         async def order() -> None:
-            async with (
-                Board(rig, behave) as board,
-                rig.connect(board.port.name, "host") as link,
-            ):
+            async with wired(rig, behave) as (_, link):
                 pings = [link.request(rig.Ping(n=n)) for n in range(5)]
                 assert [pong.n for pong in await asyncio.gather(*pings)] == [0, 1, 2, 3, 4]
                 assert (link.counts.retries, link.counts.late) == (2, 2)
 
-        run(order())
+        run_in_virtual_time(order())
 
     def test_more_at_once_than_a_counter_tells_apart(self, rig: ModuleType) -> None:
         async def many() -> None:
@@ -207,7 +215,7 @@ class TestRequests:
                 Board(rig, obedient(rig)) as board,
                 rig.connect(board.port.name, "host") as link,
             ):
-                asked = [link.request(rig.Set(value=n), timeout=5) for n in range(600)]
+                asked = [link.request(rig.Set(value=n), timeout=PATIENCE) for n in range(600)]
                 assert [done.value for done in await asyncio.gather(*asked)] == list(range(600))
                 assert link.counts.retries == 0
 
@@ -215,10 +223,7 @@ class TestRequests:
 
     def test_without_a_reply_it_says_what_came_instead(self, rig: ModuleType) -> None:
         async def unanswered() -> None:
-            async with (
-                Board(rig, silent) as board,
-                rig.connect(board.port.name, "host") as link,
-            ):
+            async with wired(rig, silent) as (board, link):
                 with pytest.raises(NoReplyError, match="nothing came at all") as nothing:
                     await link.request(rig.Set(value=1), timeout=0.02, retries=1)
                 assert (nothing.value.attempts, nothing.value.timeout) == (2, 0.02)
@@ -236,7 +241,7 @@ class TestRequests:
                 )
                 assert link.counts.unanswered == 2
 
-        run(unanswered())
+        run_in_virtual_time(unanswered())
 
     def test_what_the_schema_does_not_say_is_not_waited_for(self, rig: ModuleType) -> None:
         async def ask() -> None:
@@ -254,10 +259,7 @@ class TestRequests:
 
     def test_cancelled_it_leaves_nothing(self, rig: ModuleType) -> None:
         async def cancel() -> None:
-            async with (
-                Board(rig, silent) as board,
-                rig.connect(board.port.name, "host") as link,
-            ):
+            async with wired(rig, silent) as (_, link):
                 before = asyncio.all_tasks()
                 asked = asyncio.create_task(link.request(rig.Ping(n=1), timeout=0.1))
                 waiting = asyncio.create_task(link.request(rig.Ping(n=2), timeout=0.1, retries=0))
@@ -270,7 +272,7 @@ class TestRequests:
                     await waiting
                 assert asyncio.all_tasks() == before
 
-        run(cancel())
+        run_in_virtual_time(cancel())
 
     def test_a_refusal_without_a_counter_is_of_the_request_that_waits(self) -> None:
         matty = kept_module(protogen.load(Path(__file__).parents[1] / "schemas" / "matty.yaml"))
@@ -280,12 +282,12 @@ class TestRequests:
                 await open_port("listen://127.0.0.1:0") as esp,
                 matty.connect(esp.name, "pc") as link,
             ):
-                asked = asyncio.create_task(link.request(matty.Stop()))
+                asked = asyncio.create_task(link.request(matty.Stop(), timeout=PATIENCE))
                 await esp.read()
                 await esp.write(matty.encode(matty.Nack(), counter=200))
                 with pytest.raises(RefusedError):
                     await asked
-                asked = asyncio.create_task(link.request(matty.Stop()))
+                asked = asyncio.create_task(link.request(matty.Stop(), timeout=PATIENCE))
                 await esp.read()
                 await esp.write(matty.encode(matty.Ack(), counter=1))
                 assert await asked == matty.Ack()
@@ -319,7 +321,7 @@ class TestLibrary:
             SimulatedDevice(path, device) as simulated,
             connect(module, simulated.port, "host") as link,
         ):
-            answer = link.request(kind(**fields), timeout=5, **parts)
+            answer = link.request(kind(**fields), timeout=PATIENCE, **parts)
             assert type(answer) is module.MESSAGES[reply]
             assert link.counts.retries == 0
 
@@ -334,14 +336,14 @@ class TestPorts:
             board = Board(rig, silent)
             port.symlink_to(board.port.name)
             async with rig.connect(str(port), "host", tell=news.append) as link:
-                asked = asyncio.create_task(link.request(rig.Set(value=1), timeout=20))
+                asked = asyncio.create_task(link.request(rig.Set(value=1), timeout=PATIENCE))
                 await until(lambda: board.arrived["set"] == 1)
+                port.unlink()  # Soon the port of another test may have the same name.
                 await board.close()
                 with pytest.raises(PortLostError, match="is gone"):
                     await asked
                 with pytest.raises(PortLostError, match="nothing is sent until it is back"):
                     await link.request(rig.Set(value=1))
-                port.unlink()
                 async with Board(rig, obedient(rig)) as board:
                     port.symlink_to(board.port.name)
                     await until(lambda: len(news) == 2)
@@ -358,7 +360,7 @@ class TestPorts:
             async with rig.connect(board.port.name, "host", lasting=False) as link:
                 states = link.messages(rig.State)
                 await board.port.write(rig.encode(rig.State(n=1), counter=0))
-                assert (await states.get(5)).n == 1
+                assert (await states.get(PATIENCE)).n == 1
                 await board.close()
                 with pytest.raises(PortLostError):
                     await anext(states)
@@ -407,11 +409,11 @@ class TestBlocking:
 
         thread = Thread(target=lambda: asyncio.run(serve()))
         thread.start()
-        assert begun.wait(10)
+        assert begun.wait(PATIENCE)
         yield names[0]
         loop, stop = loops[0]
         loop.call_soon_threadsafe(stop.set)
-        thread.join(10)
+        thread.join(PATIENCE)
 
     def test_the_same_without_async(self, rig: ModuleType, board: str) -> None:
         with rig.connect(board, "host") as link:
@@ -425,7 +427,7 @@ class TestBlocking:
                 )
             with pytest.raises(TimeoutError):
                 link.messages(rig.Pong).get(timeout=0.02)
-            assert link.events().get(5).event.kind == "message"
+            assert link.events().get(PATIENCE).event.kind == "message"
             link.send(rig.Note(text="x"))
             last = link.last(rig.State)
             assert last is not None
@@ -495,13 +497,14 @@ class TestMistakes:
         """As with a wrong baud rate: what came may yet be the beginning of a frame."""
 
         async def asked() -> None:
+            here, there = wire()
             async with (
-                Board(rig, silent) as board,
-                rig.connect(board.port.name, "host", silence=None) as link,
+                Board(rig, silent, there) as board,
+                connect(rig, here, "host", silence=None) as link,
             ):
                 board.later(0, rig.encode(rig.State(n=1), counter=0)[:3])
                 with pytest.raises(NoReplyError, match="no frame in 3 bytes") as caught:
                     await link.request(rig.Set(value=1), timeout=0.3, retries=0)
                 assert "baud" in str(caught.value.hint)
 
-        run(asked())
+        run_in_virtual_time(asked())

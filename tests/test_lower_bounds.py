@@ -135,7 +135,7 @@ def test_the_oldest_dask_goes_on_where_a_worker_is_killed(converting):
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         capture_output=True,
         text=True,
-        timeout=300,  # It waited for ever with those that are too old.
+        timeout=500,  # It waited for ever with those that are too old.
         check=False,
     )
     assert result.returncode == 0, result.stdout + result.stderr

@@ -118,7 +118,9 @@ class Client:
 
 @contextmanager
 def client(address: str) -> Iterator[Client]:
-    with connect(address, subprotocols=["foxglove.sdk.v1"]) as socket:
+    with connect(
+        address, subprotocols=["foxglove.sdk.v1"], open_timeout=PATIENCE, close_timeout=PATIENCE
+    ) as socket:
         yield Client(socket)
 
 

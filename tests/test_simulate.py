@@ -2,31 +2,36 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 import os
 import re
+import select
 import signal
 import socket
 import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import pytest
 from cli_support import PATIENCE, ROOT, run
+from link_wire import run_in_virtual_time, wire
 from test_cli_line import line_of, opened, read, started
 
 import protogen
 from generated.python import matty
-from protogen.link import NoReplyError, PortError, RefusedError
+from protogen.link import NoReplyError, PortError, RefusedError, connect
 from protogen.link.answers import AnswerRates
 from protogen.link.damage import DamageRates
 from protogen.link.device import SimulatedDevice
 from protogen.link.simulated_values import ValuesError, example_values
+from protogen.link.simulation import Simulation, rates_of
 from protogen.live.codec import kept_module
 from protogen.model.protocol import Protocol
 from protogen.recording import Recorder
@@ -39,16 +44,24 @@ STOP = bytes.fromhex("55 02 01 53 AA")  # with counter 1
 ACK = bytes.fromhex("55 02 01 41 BC")  # with counter 1
 
 
-def events_of(port: int, seconds: float) -> list[Any]:
-    """What comes within so many seconds."""
-    decoder, found, end = matty.Decoder("esp"), [], time.monotonic() + seconds
-    os.set_blocking(port, False)
-    while time.monotonic() < end:
-        try:
-            found += decoder.feed(os.read(port, 4096))
-        except BlockingIOError:
-            time.sleep(0.002)
+def messages_until(port: int, enough: Callable[[list[Any]], bool]) -> list[Any]:
+    """What comes until there is enough of it, all of which has to be messages."""
+    decoder = matty.Decoder("esp")
+    found: list[Any] = []
+    while not enough(found):
+        assert select.select([port], [], [], PATIENCE)[0], "nothing comes any more"
+        events = decoder.feed(os.read(port, 4096))
+        assert all(event.kind == "message" for event in events)
+        found += [event.message for event in events]
     return found
+
+
+def until(holds: Callable[[], bool]) -> None:
+    """Wait for what another thread does soon."""
+    end = time.monotonic() + PATIENCE
+    while not holds():
+        assert time.monotonic() < end, "it did not come"
+        time.sleep(0.005)
 
 
 @contextmanager
@@ -67,12 +80,38 @@ def simulating(*options: str) -> Iterator[tuple[subprocess.Popen[str], int]]:
 
 class TestDevice:
     def test_sends_at_its_rate_with_values_of_examples(self) -> None:
+        began = time.monotonic()
         with device(MATTY, "esp", rates={"status": 100}) as (it, port):
-            found = events_of(port, 1.0)
-        messages = [event.message for event in found if event.kind == "message"]
-        assert {type(message) for message in messages} == {matty.Status}
-        assert 80 <= len(messages) <= 101
-        assert it.counts.sent["status"] >= len(messages)
+            found = messages_until(port, lambda found: len(found) >= 30)
+        assert time.monotonic() - began >= 0.3
+        assert {type(message) for message in found} == {matty.Status}
+        assert it.counts.sent["status"] >= len(found)
+
+    def test_no_message_is_late(self) -> None:
+        """In virtual time: each is sent when its rate says, counted from the start."""
+
+        async def sent() -> None:
+            here, there = wire()
+            protocol = protogen.load(MATTY)
+            values = example_values(protocol, "esp", 0)
+            simulation = Simulation(
+                protocol, kept_module(protocol), "esp", {"status": 100, "ack": 30}, values
+            )
+            running = asyncio.create_task(simulation.run(there))
+            await asyncio.sleep(1.005)
+            running.cancel()
+            events = [matty.Decoder("esp").feed(data)[0] for _, data in there.written]
+            for name, rate in (("status", 100), ("ack", 30)):
+                times = [
+                    when
+                    for (when, _), event in zip(there.written, events, strict=True)
+                    if name == event.message.NAME
+                ]
+                assert times == pytest.approx([(n + 1) / rate for n in range(rate)])
+            assert simulation.counts.sent == {"status": 100, "ack": 30}
+            assert here.written == []
+
+        run_in_virtual_time(sent())
 
     def test_counts_frames_by_itself(self) -> None:
         with (
@@ -106,24 +145,43 @@ class TestDevice:
     def test_answers_nothing_where_it_should_not(self) -> None:
         with device(MATTY, "esp", answers=None) as (it, port):
             os.write(port, STOP)
-            time.sleep(0.1)
+            until(lambda: bool(it.counts.received))
+            time.sleep(0.05)
             assert (it.counts.received, it.counts.sent) == ({"stop": 1}, {})
 
     def test_refuses_and_ignores_the_shares_that_it_is_told(self) -> None:
-        rates = AnswerRates(refuse=0.3, ignore=0.2)
+        """In virtual time, in which no answer is late."""
+        protocol = protogen.load(MATTY)
+        simulation = Simulation(
+            protocol, kept_module(protocol), "esp", {}, example_values(protocol, "esp", 5)
+        )
+        simulation.answer_requests(AnswerRates(refuse=0.3, ignore=0.2), seed=5)
         outcomes = Counter[str]()
+
+        async def asked() -> None:
+            here, there = wire()
+            running = asyncio.create_task(simulation.run(there))
+            async with connect(matty, here, "pc") as link:
+                for _ in range(400):
+                    try:
+                        await link.request(matty.Stop(), timeout=0.03, retries=0)
+                    except (NoReplyError, RefusedError) as error:
+                        outcomes[type(error).__name__] += 1
+            running.cancel()
+
+        run_in_virtual_time(asked())
+        assert 100 <= outcomes["RefusedError"] <= 140
+        assert 60 <= outcomes["NoReplyError"] <= 100
+        assert simulation.counts.sent["nack"] == outcomes["RefusedError"]
+
+    def test_refuses_all_where_it_is_told(self) -> None:
+        rates = AnswerRates(refuse=1)
         with (
-            SimulatedDevice(MATTY, "esp", answer_rates=rates, seed=5) as it,
+            SimulatedDevice(MATTY, "esp", answer_rates=rates) as it,
             matty.connect(it.port, "pc") as link,
+            pytest.raises(RefusedError),
         ):
-            for _ in range(100):
-                try:
-                    link.request(matty.Stop(), timeout=0.03, retries=0)
-                except (NoReplyError, RefusedError) as error:
-                    outcomes[type(error).__name__] += 1
-        assert 20 <= outcomes["RefusedError"] <= 40
-        assert 10 <= outcomes["NoReplyError"] <= 30
-        assert it.counts.sent["nack"] == outcomes["RefusedError"]
+            link.request(matty.Stop(), timeout=PATIENCE)
 
     def test_sends_when_it_is_told(self) -> None:
         with device(MATTY, "esp") as (it, port):
@@ -136,9 +194,8 @@ class TestDevice:
             return {"voltage": round(7000 + 100 * math.sin(seconds))}
 
         with device(MATTY, "esp", rates={"status": 100}, values=values) as (_, port):
-            found = [event.message for event in events_of(port, 0.5)]
-        assert len({message.voltage for message in found}) > 3
-        assert all(7000 <= message.voltage <= 7100 for message in found)
+            found = messages_until(port, lambda found: len({it.voltage for it in found}) > 3)
+        assert all(6900 <= message.voltage <= 7100 for message in found)
 
     def test_the_same_seed_sends_the_same(self) -> None:
         def sent(seed: int) -> bytes:
@@ -206,12 +263,15 @@ def test_sends_at_the_rates_of_the_schema_unless_others_are_given(tmp_path: Path
         "  never: {id: 2, from: board, rate: 100 Hz}\n"
         "  other: {id: 3, from: board, rate: 0.01}\n"
     )
+    protocol = protogen.load(path)
+    assert rates_of(protocol, "board", {}) == {"often": 200, "never": 100, "other": 0.01}
+    assert rates_of(protocol, "board", {"never": 0, "other": 9}) == {"often": 200, "other": 9}
     with SimulatedDevice(path, "board", rates={"never": 0, "other": 200}) as it:
         with opened(it.port) as port:
             assert set(read(port, 20)) == {1, 3, 0xC0}
         assert it.counts.sent.keys() == {"often", "other"}
     done = run("simulate", str(path), "--rate", "never=0", "--for", "0.2")
-    assert re.search(r"sent \d\d often", done.stderr), done.stderr
+    assert re.search(r"sent \d+ often", done.stderr), done.stderr
     assert "never" not in done.stderr
 
 
@@ -234,8 +294,9 @@ class TestExchanges:
     def test_the_reply_whose_identity_was_asked_for(self, rig: Protocol) -> None:
         module: Any = kept_module(rig)
         with SimulatedDevice(rig, "board") as it, module.connect(it.port, "host") as link:
-            assert link.request(module.Get(wanted=34)).NAME == "green"
-            assert link.request(module.Get(wanted=33)).NAME == "red"
+            for wanted, name in ((34, "green"), (33, "red")):
+                reply = link.request(module.Get(wanted=wanted), timeout=PATIENCE)
+                assert name == reply.NAME
             with pytest.raises(NoReplyError):
                 link.request(module.Get(wanted=35), timeout=0.05)
         assert it.counts.sent == {"green": 1, "red": 1}
@@ -257,7 +318,7 @@ class TestExchanges:
             ):
                 for request in exchange.requests:
                     fields, parts = values(request.NAME, 0.0)
-                    link.request(request.from_dict(fields), timeout=2, **{**parts, **one})
+                    link.request(request.from_dict(fields), timeout=PATIENCE, **{**parts, **one})
 
 
 class TestCommand:
@@ -265,13 +326,11 @@ class TestCommand:
         run("check", MATTY)  # What is compiled is kept.
         options = ("--endpoint", "esp", "--rate", "status=100", "--values", "random", "--seed", "3")
         with simulating(*options) as (it, port):
-            found = events_of(port, 0.5)
+            messages_until(port, lambda found: len({it.voltage for it in found}) > 10)
             it.send_signal(signal.SIGINT)
             _, error = it.communicate(timeout=PATIENCE)
         assert it.returncode == 0
         assert re.search(r"sent \d+ status", error)
-        voltages = {event.message.voltage for event in found}
-        assert len(voltages) > 10
 
     def test_values_of_a_recording(self, tmp_path: Path) -> None:
         with Recorder(tmp_path / "run.pgrec") as recorder:
@@ -287,7 +346,7 @@ class TestCommand:
         assert speeds == sorted(speeds, reverse=True)
         assert set(speeds) == {7, -7}
         counters = [event.parts.counter for event in found]
-        assert counters == list(range(counters[0], counters[0] + 30))
+        assert counters == list(range(counters[0], counters[0] + len(counters)))
 
     def test_values_of_a_function(self, tmp_path: Path) -> None:
         (tmp_path / "wave.py").write_text("def wave(message, seconds):\n    return {'speed': 12}\n")
@@ -375,17 +434,24 @@ class TestMistakesOfAProgram:
         it.on("stop", answered)
         with opened(it.port) as port:
             os.write(port, STOP)
-            time.sleep(0.2)
-        with pytest.raises(ZeroDivisionError, match="author"):
-            it.send(it.messages["ack"]())
+            with pytest.raises(ZeroDivisionError, match="author"):
+                while True:  # Until the thread of the device has come so far.
+                    it.send(it.messages["ack"]())
+                    time.sleep(0.005)
         with pytest.raises(ZeroDivisionError, match="author"):
             it.stop()
 
     @pytest.mark.parametrize("given", [None, [("battery", 1)], 5])
     def test_values_that_are_no_dict_are_a_mistake_of_the_function(self, given: Any) -> None:
-        it = SimulatedDevice(MATTY, "esp", rates={"status": 200}, values=lambda name, when: given)
+        asked = Event()
+
+        def values(name: str, when: float) -> Any:
+            asked.set()
+            return given
+
+        it = SimulatedDevice(MATTY, "esp", rates={"status": 200}, values=values)
         it.start()
-        time.sleep(0.2)
+        assert asked.wait(PATIENCE)
         with pytest.raises(ValuesError, match=f"gives {type(given).__name__} for `status`"):
             it.stop()
 
@@ -407,13 +473,13 @@ class TestMistakesOfAProgram:
         with SimulatedDevice(MATTY, "esp") as it, matty.connect(it.port, "pc") as link:
             it.on("stop", lambda event: [(matty.Nack(), {"counter": event.parts.counter})])
             with pytest.raises(RefusedError):
-                link.request(matty.Stop())
+                link.request(matty.Stop(), timeout=PATIENCE)
 
     def test_begins_once_more_after_its_end(self) -> None:
         it = SimulatedDevice(MATTY, "esp")
         for _ in range(2):
             with it, matty.connect(it.port, "pc") as link:
-                assert link.request(matty.Stop()) == matty.Ack()
+                assert link.request(matty.Stop(), timeout=PATIENCE) == matty.Ack()
         it.stop()
         with pytest.raises(PortError, match="has not begun"):
             it.send(it.messages["ack"]())

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 import typescript_engine as engine
-from browser_pages import chromium, served
+from browser_pages import chromium, context_of, served
 from compiled import DOCUMENTS, ROOT, module_at, name_of, protocol_of
 from corpus import material_of, portions, stream_of
 
@@ -34,7 +34,7 @@ def page() -> Iterator[Any]:
     shutil.copy(engine.DRIVER.with_name("requests.mjs"), folder)
     (folder / "index.html").write_text("<!doctype html><title>modules</title>", encoding="utf-8")
     with served(folder) as address, chromium() as browser:
-        found = browser.new_page()
+        found = context_of(browser).new_page()
         found.goto(f"{address}/index.html")
         yield found
 

@@ -14,10 +14,10 @@ from typing import Any
 
 import pytest
 import typescript_engine as engine
-from browser_pages import AXE, SCHEMES, address_of, chromium, served
+from browser_pages import AXE, SCHEMES, address_of, chromium, context_of, served
 from compiled import ROOT, module_at, protocol_of
 from corpus import material_of, portions, stream_of
-from tooling import unavailable
+from tooling import PATIENCE, unavailable
 
 from protogen.link.device import SimulatedDevice
 from protogen.targets.web_serial.emit import example
@@ -40,7 +40,7 @@ class Live:
     """The page with a port, and what it complained of."""
 
     def __init__(self, browser: Any, url: str, fake: str, **context: Any) -> None:
-        self.context = browser.new_context(**context)
+        self.context = context_of(browser, **context)
         self.page = self.context.new_page()
         self.complaints: list[str] = []
         self.page.on("console", lambda message: self.complaints.append(message.text))
@@ -59,7 +59,8 @@ class Live:
 
     def stop_time(self) -> None:
         """Time passes only as a test says, once the clock has run up to here."""
-        self.page.clock.pause_at(self.page.evaluate("() => Date.now() / 1000 + 1"))
+        # A minute ahead: until it stands still it goes on, and it never goes back.
+        self.page.clock.pause_at(self.page.evaluate("() => Date.now() / 1000 + 60"))
 
     def connect(self) -> None:
         self.page.click("#connect")
@@ -72,7 +73,12 @@ class Live:
 
     def send(self, key: str = "") -> bytes:
         """What is written when the button is clicked, or a key pressed."""
-        self.run("() => fake.port.written.length = 0")
+        self.run(
+            """() => {
+                fake.port.written.length = 0;
+                document.getElementById("sent-note").textContent = "";
+            }"""
+        )
         self.page.press("#fields input", key) if key else self.page.click("#send")
         self.page.wait_for_selector("text=/^Sent /")
         return bytes(self.run("() => fake.port.written"))
@@ -291,7 +297,7 @@ class TestSimulator:
         robot.on("go", lambda event: [(robot.messages["ack"](), {"counter": event.parts.counter})])
         with robot:
             host, number = robot.port.rpartition("//")[2].split(":")
-            with socket.create_connection((host, int(number)), timeout=10) as line:
+            with socket.create_connection((host, int(number)), timeout=PATIENCE) as line:
                 values = module_at(PATHS["matty"]).decode(STATUS, sender="esp").to_dict()
                 status = robot.messages["status"].from_dict(values)
                 page.page.select_option("#message", "go")

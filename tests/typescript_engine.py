@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from compiled import ROOT, protocol_of
-from tooling import require_tool, unavailable
+from tooling import PATIENCE, require_tool, unavailable
 
 from protogen.model.payload_plan import (
     AnyStep,
@@ -66,7 +66,7 @@ def programs() -> list[str | Path]:
 def run_node(program: str | Path, *arguments: str | Path) -> str:
     """What a program in node prints."""
     command = [program, *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE)
     assert done.returncode == 0, done.stderr
     return done.stdout
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
@@ -104,15 +104,16 @@ class Simulation:
         """Send and answer until it is cancelled, or the port has no more bytes."""
         self._began = asyncio.get_running_loop().time()
         tasks = [asyncio.create_task(self._repeat(port, name)) for name in self._rates]
-        listening = asyncio.create_task(self._listen(port))
+        tasks.append(asyncio.create_task(self._listen(port)))
         try:
-            done, _ = await asyncio.wait([listening, *tasks], return_when=asyncio.FIRST_COMPLETED)
-            for task in done:
-                task.result()
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:
-            for task in (listening, *tasks):
+            for task in tasks:
                 task.cancel()
-            await asyncio.gather(listening, *tasks, return_exceptions=True)
+            try:
+                await asyncio.gather(*tasks, return_exceptions=True)
+            finally:
+                _raise_first(tasks)
 
     async def send(self, port: Port, message: Any, **parts: Any) -> None:
         """Send a message now, of this module or of one generated elsewhere. Raises EncodeError."""
@@ -229,3 +230,10 @@ class Simulation:
             for item in answer(event):
                 message, parts = item if isinstance(item, tuple) else (item, {})
                 await self.send(port, message, **parts)
+
+
+def _raise_first(tasks: Sequence[asyncio.Task[None]]) -> None:
+    """Raise what one of them ended with, also where all are cancelled a moment later."""
+    for task in tasks:
+        if task.done() and not task.cancelled():
+            task.result()
