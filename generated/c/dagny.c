@@ -898,7 +898,7 @@ static uint8_t *dagny_host_payload(uint8_t *frame, size_t payload) {
 
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t dagny_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
-    uint8_t *const content = dagny_host_payload(frame, payload) - 1;
+    uint8_t *const content = frame;
     uint8_t *const tail = &content[1U + payload];
     size_t size = 1U + payload + (payload == 0U ? 0U : 1U);
     content[0U] = (uint8_t)id;

@@ -28,6 +28,13 @@ extern "C" {
 #define DAGNY_API
 #endif
 
+/* Enums take one byte also where the compiler gives them two, as for AVR. */
+#if defined(__AVR__) && defined(__GNUC__)
+#define DAGNY_PACKED __attribute__((packed))
+#else
+#define DAGNY_PACKED
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define DAGNY_SPEC_HASH "1d5a69e6f0daa3cc6de17b9b7bdfa067dee73b6a3f07294530412990adc6f795"
 /** Version of the protogen that made this file. */
@@ -48,7 +55,7 @@ enum dagny_result {
     DAGNY_ERROR_RANGE,
     /** The buffer to encode into is too short. */
     DAGNY_ERROR_SPACE
-};
+} DAGNY_PACKED;
 
 /** Every message, in the schema's order. */
 enum dagny_message {
@@ -69,7 +76,7 @@ enum dagny_message {
     DAGNY_MESSAGE_LASER = 14,
     DAGNY_MESSAGE_COMMAND = 15,
     DAGNY_NO_MESSAGE = 16
-};
+} DAGNY_PACKED;
 
 /* --- named values ----------------------------------------------------------------------------- */
 
@@ -620,7 +627,7 @@ enum dagny_event_kind {
     DAGNY_MESSAGE, /**< A valid frame of a message. */
     DAGNY_UNKNOWN, /**< A valid frame whose identity no message has. */
     DAGNY_INVALID  /**< No frame. */
-};
+} DAGNY_PACKED;
 
 /** Why bytes are no frame. */
 enum dagny_reason {
@@ -633,7 +640,7 @@ enum dagny_reason {
     DAGNY_LENGTH,    /**< The length is impossible, or not that of the frame. */
     DAGNY_STUFFING,  /**< An escape or substitution is none. */
     DAGNY_TRUNCATED  /**< The frame is cut off. */
-};
+} DAGNY_PACKED;
 
 #ifdef __cplusplus
 #define DAGNY_ZEROS \

@@ -20,6 +20,18 @@
 #endif
 #endif
 
+/*
+ * Where numbers lie in memory as on the wire, a message of many is copied as a whole, which takes
+ * less flash than one by one. Define DAGNY_LIBRARY_AS_IN_MEMORY as 1 or 0 to choose.
+ */
+#ifndef DAGNY_LIBRARY_AS_IN_MEMORY
+#if defined(__BYTE_ORDER__) && UINTPTR_MAX <= 0xFFFFFFFF
+#define DAGNY_LIBRARY_AS_IN_MEMORY (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__)
+#else
+#define DAGNY_LIBRARY_AS_IN_MEMORY 0
+#endif
+#endif
+
 static void dagny_library_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
     const uint8_t *source = (const uint8_t *)from;
@@ -63,7 +75,14 @@ static uint32_t dagny_library_load_u32le(const uint8_t *at) {
 
 DAGNY_LIBRARY_INLINE void dagny_library_sonar_store(const struct dagny_library_sonar *message,
                                                     uint8_t *payload) {
+#if DAGNY_LIBRARY_AS_IN_MEMORY
+    const uint8_t *const from = (const uint8_t *)message;
+    for (size_t i = 0; i < 5U; i++) {
+        payload[i] = from[i];
+    }
+#else
     dagny_library_copy(payload, message->distances, 5U);
+#endif
 }
 
 enum dagny_library_result dagny_library_sonar_encode(const struct dagny_library_sonar *message,
@@ -78,7 +97,14 @@ enum dagny_library_result dagny_library_sonar_encode(const struct dagny_library_
 }
 
 void dagny_library_sonar_load(struct dagny_library_sonar *message, const uint8_t *payload) {
+#if DAGNY_LIBRARY_AS_IN_MEMORY
+    uint8_t *const to = (uint8_t *)message;
+    for (size_t i = 0; i < 5U; i++) {
+        to[i] = payload[i];
+    }
+#else
     dagny_library_copy(message->distances, payload, 5U);
+#endif
 }
 
 enum dagny_library_result dagny_library_sonar_decode(struct dagny_library_sonar *message,
@@ -160,6 +186,12 @@ enum dagny_library_result dagny_library_gps_decode(struct dagny_library_gps *mes
 
 DAGNY_LIBRARY_INLINE void dagny_library_odometry_store(const struct dagny_library_odometry *message,
                                                        uint8_t *payload) {
+#if DAGNY_LIBRARY_AS_IN_MEMORY
+    const uint8_t *const from = (const uint8_t *)message;
+    for (size_t i = 0; i < 13U; i++) {
+        payload[i] = from[i];
+    }
+#else
     dagny_library_store_u16le(payload, message->right_count);
     dagny_library_store_u16le(payload + 2, message->left_count);
     dagny_library_store_u16le(payload + 4, message->quad_count);
@@ -167,6 +199,7 @@ DAGNY_LIBRARY_INLINE void dagny_library_odometry_store(const struct dagny_librar
     dagny_library_store_u16le(payload + 8, (uint16_t)message->left_speed);
     dagny_library_store_u16le(payload + 10, (uint16_t)message->quad_speed);
     payload[12] = (uint8_t)message->steer;
+#endif
 }
 
 enum dagny_library_result dagny_library_odometry_encode(
@@ -180,6 +213,12 @@ enum dagny_library_result dagny_library_odometry_encode(
 }
 
 void dagny_library_odometry_load(struct dagny_library_odometry *message, const uint8_t *payload) {
+#if DAGNY_LIBRARY_AS_IN_MEMORY
+    uint8_t *const to = (uint8_t *)message;
+    for (size_t i = 0; i < 13U; i++) {
+        to[i] = payload[i];
+    }
+#else
     message->right_count = dagny_library_load_u16le(payload);
     message->left_count = dagny_library_load_u16le(payload + 2);
     message->quad_count = dagny_library_load_u16le(payload + 4);
@@ -187,6 +226,7 @@ void dagny_library_odometry_load(struct dagny_library_odometry *message, const u
     message->left_speed = (int16_t)dagny_library_load_u16le(payload + 8);
     message->quad_speed = (int16_t)dagny_library_load_u16le(payload + 10);
     message->steer = (int8_t)payload[12];
+#endif
 }
 
 enum dagny_library_result dagny_library_odometry_decode(struct dagny_library_odometry *message,
@@ -395,8 +435,15 @@ enum dagny_library_result dagny_library_power_decode(struct dagny_library_power 
 
 DAGNY_LIBRARY_INLINE void dagny_library_gps_position_store(
     const struct dagny_library_gps_position *message, uint8_t *payload) {
+#if DAGNY_LIBRARY_AS_IN_MEMORY
+    const uint8_t *const from = (const uint8_t *)message;
+    for (size_t i = 0; i < 8U; i++) {
+        payload[i] = from[i];
+    }
+#else
     dagny_library_store_u32le(payload, (uint32_t)message->latitude);
     dagny_library_store_u32le(payload + 4, (uint32_t)message->longitude);
+#endif
 }
 
 enum dagny_library_result dagny_library_gps_position_encode(
@@ -412,8 +459,15 @@ enum dagny_library_result dagny_library_gps_position_encode(
 
 void dagny_library_gps_position_load(struct dagny_library_gps_position *message,
                                      const uint8_t *payload) {
+#if DAGNY_LIBRARY_AS_IN_MEMORY
+    uint8_t *const to = (uint8_t *)message;
+    for (size_t i = 0; i < 8U; i++) {
+        to[i] = payload[i];
+    }
+#else
     message->latitude = (int32_t)dagny_library_load_u32le(payload);
     message->longitude = (int32_t)dagny_library_load_u32le(payload + 4);
+#endif
 }
 
 enum dagny_library_result dagny_library_gps_position_decode(
@@ -596,9 +650,14 @@ static size_t dagny_library_host_room(size_t payload) {
     return 2U * content + 1U;
 }
 
+/* Where the content is put, before it is stuffed: at the end of the room. */
+static uint8_t *dagny_library_host_content(uint8_t *frame, size_t payload) {
+    return &frame[dagny_library_host_room(payload) - (1U + payload)];
+}
+
 /* Where the payload is put, before the rest of the frame is put around it. */
 static uint8_t *dagny_library_host_payload(uint8_t *frame, size_t payload) {
-    return &frame[dagny_library_host_room(payload) - 0U - payload];
+    return &dagny_library_host_content(frame, payload)[1];
 }
 
 /* What a byte of the region is on the wire. */
@@ -614,7 +673,7 @@ static size_t dagny_library_host_stuff(uint8_t *wire, uint8_t byte) {
 
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t dagny_library_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
-    uint8_t *const content = dagny_library_host_payload(frame, payload) - 1;
+    uint8_t *const content = dagny_library_host_content(frame, payload);
     const uint16_t stuffed = (uint16_t)(1U + payload);
     uint16_t from = 0;
     uint8_t *to = frame;

@@ -28,6 +28,13 @@ extern "C" {
 #define DAGNY_LIBRARY_API
 #endif
 
+/* Enums take one byte also where the compiler gives them two, as for AVR. */
+#if defined(__AVR__) && defined(__GNUC__)
+#define DAGNY_LIBRARY_PACKED __attribute__((packed))
+#else
+#define DAGNY_LIBRARY_PACKED
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define DAGNY_LIBRARY_SPEC_HASH "a7092ead0b8db66d126ced8180d3166654ee1bcf3b0a0c7a4a08e8970ec47ae4"
 /** Version of the protogen that made this file. */
@@ -48,7 +55,7 @@ enum dagny_library_result {
     DAGNY_LIBRARY_ERROR_RANGE,
     /** The buffer to encode into is too short. */
     DAGNY_LIBRARY_ERROR_SPACE
-};
+} DAGNY_LIBRARY_PACKED;
 
 /** Every message, in the schema's order. */
 enum dagny_library_message {
@@ -65,7 +72,7 @@ enum dagny_library_message {
     DAGNY_LIBRARY_MESSAGE_LASER = 10,
     DAGNY_LIBRARY_MESSAGE_SHUTDOWN = 11,
     DAGNY_LIBRARY_NO_MESSAGE = 12
-};
+} DAGNY_LIBRARY_PACKED;
 
 /* --- named values ----------------------------------------------------------------------------- */
 
@@ -617,7 +624,7 @@ enum dagny_library_event_kind {
     DAGNY_LIBRARY_MESSAGE, /**< A valid frame of a message. */
     DAGNY_LIBRARY_UNKNOWN, /**< A valid frame whose identity no message has. */
     DAGNY_LIBRARY_INVALID  /**< No frame. */
-};
+} DAGNY_LIBRARY_PACKED;
 
 /** Why bytes are no frame. */
 enum dagny_library_reason {
@@ -630,7 +637,7 @@ enum dagny_library_reason {
     DAGNY_LIBRARY_LENGTH,    /**< The length is impossible, or not that of the frame. */
     DAGNY_LIBRARY_STUFFING,  /**< An escape or substitution is none. */
     DAGNY_LIBRARY_TRUNCATED  /**< The frame is cut off. */
-};
+} DAGNY_LIBRARY_PACKED;
 
 #ifdef __cplusplus
 #define DAGNY_LIBRARY_ZEROS \

@@ -27,6 +27,13 @@ extern "C" {
 #define MATTY_API
 #endif
 
+/* Enums take one byte also where the compiler gives them two, as for AVR. */
+#if defined(__AVR__) && defined(__GNUC__)
+#define MATTY_PACKED __attribute__((packed))
+#else
+#define MATTY_PACKED
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define MATTY_SPEC_HASH "cdb67c5317565b9738a484dc5d94d77752d0a1f43af67ee7e89c512ed9794d13"
 /** Version of the protogen that made this file. */
@@ -49,7 +56,7 @@ enum matty_result {
     MATTY_ERROR_RANGE,
     /** The buffer to encode into is too short. */
     MATTY_ERROR_SPACE
-};
+} MATTY_PACKED;
 
 /** Every message, in the schema's order. */
 enum matty_message {
@@ -65,7 +72,7 @@ enum matty_message {
     MATTY_MESSAGE_STATUS = 9,
     MATTY_MESSAGE_GPS = 10,
     MATTY_NO_MESSAGE = 11
-};
+} MATTY_PACKED;
 
 /* --- named values ----------------------------------------------------------------------------- */
 
@@ -495,7 +502,7 @@ enum matty_event_kind {
     MATTY_MESSAGE, /**< A valid frame of a message. */
     MATTY_UNKNOWN, /**< A valid frame whose identity no message has. */
     MATTY_INVALID  /**< No frame. */
-};
+} MATTY_PACKED;
 
 /** Why bytes are no frame. */
 enum matty_reason {
@@ -508,7 +515,7 @@ enum matty_reason {
     MATTY_LENGTH,    /**< The length is impossible, or not that of the frame. */
     MATTY_STUFFING,  /**< An escape or substitution is none. */
     MATTY_TRUNCATED  /**< The frame is cut off. */
-};
+} MATTY_PACKED;
 
 #ifdef __cplusplus
 #define MATTY_ZEROS \

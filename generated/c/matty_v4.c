@@ -39,6 +39,18 @@
 #include <emmintrin.h>
 #endif
 
+/*
+ * Where numbers lie in memory as on the wire, a message of many is copied as a whole, which takes
+ * less flash than one by one. Define MATTY_V4_AS_IN_MEMORY as 1 or 0 to choose.
+ */
+#ifndef MATTY_V4_AS_IN_MEMORY
+#if defined(__BYTE_ORDER__) && UINTPTR_MAX <= 0xFFFFFFFF
+#define MATTY_V4_AS_IN_MEMORY (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__)
+#else
+#define MATTY_V4_AS_IN_MEMORY 0
+#endif
+#endif
+
 MATTY_V4_INLINE void matty_v4_store_u16le(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)value;
     at[1] = (uint8_t)(value >> 8);
@@ -423,6 +435,12 @@ enum matty_v4_result matty_v4_nack_decode(struct matty_v4_nack *message, const u
 
 MATTY_V4_INLINE void matty_v4_status_store(const struct matty_v4_status *message,
                                            uint8_t *payload) {
+#if MATTY_V4_AS_IN_MEMORY
+    const uint8_t *const from = (const uint8_t *)message;
+    for (size_t i = 0; i < 24U; i++) {
+        payload[i] = from[i];
+    }
+#else
     payload[0] = message->status;
     payload[1] = message->mode;
     matty_v4_store_u16le(payload + 2, message->voltage);
@@ -436,6 +454,7 @@ MATTY_V4_INLINE void matty_v4_status_store(const struct matty_v4_status *message
     matty_v4_store_u16le(payload + 18, (uint16_t)message->roll);
     matty_v4_store_u16le(payload + 20, (uint16_t)message->pitch);
     matty_v4_store_u16le(payload + 22, (uint16_t)message->yaw);
+#endif
 }
 
 enum matty_v4_result matty_v4_status_encode(const struct matty_v4_status *message, uint8_t *payload,
@@ -449,6 +468,12 @@ enum matty_v4_result matty_v4_status_encode(const struct matty_v4_status *messag
 }
 
 void matty_v4_status_load(struct matty_v4_status *message, const uint8_t *payload) {
+#if MATTY_V4_AS_IN_MEMORY
+    uint8_t *const to = (uint8_t *)message;
+    for (size_t i = 0; i < 24U; i++) {
+        to[i] = payload[i];
+    }
+#else
     message->status = payload[0];
     message->mode = payload[1];
     message->voltage = matty_v4_load_u16le(payload + 2);
@@ -462,6 +487,7 @@ void matty_v4_status_load(struct matty_v4_status *message, const uint8_t *payloa
     message->roll = (int16_t)matty_v4_load_u16le(payload + 18);
     message->pitch = (int16_t)matty_v4_load_u16le(payload + 20);
     message->yaw = (int16_t)matty_v4_load_u16le(payload + 22);
+#endif
 }
 
 enum matty_v4_result matty_v4_status_decode(struct matty_v4_status *message, const uint8_t *payload,
@@ -703,9 +729,14 @@ static size_t matty_v4_pc_room(size_t payload) {
     return 2U * content;
 }
 
+/* Where the content is put, before it is stuffed: at the end of the room. */
+static uint8_t *matty_v4_pc_content(uint8_t *frame, size_t payload) {
+    return &frame[matty_v4_pc_room(payload) - (4U + payload + 1U)];
+}
+
 /* Where the payload is put, before the rest of the frame is put around it. */
 static uint8_t *matty_v4_pc_payload(uint8_t *frame, size_t payload) {
-    return &frame[matty_v4_pc_room(payload) - 1U - payload];
+    return &matty_v4_pc_content(frame, payload)[4];
 }
 
 /* What a byte of the region is on the wire. */
@@ -721,7 +752,7 @@ static size_t matty_v4_pc_stuff(uint8_t *wire, uint8_t byte) {
 
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t matty_v4_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, uint8_t counter) {
-    uint8_t *const content = matty_v4_pc_payload(frame, payload) - 4;
+    uint8_t *const content = matty_v4_pc_content(frame, payload);
     uint8_t *const tail = &content[4U + payload];
     const uint16_t length = (uint16_t)(2U + payload);
     const uint16_t stuffed = (uint16_t)(4U + payload + 1U);
@@ -730,12 +761,11 @@ static size_t matty_v4_pc_wrap(uint8_t *frame, size_t payload, uint8_t command, 
     uint16_t from = 1;
     uint8_t *to = frame;
     uint8_t sum = 0x00U;
-    content[0U] = 0x55U;
     content[1U] = (uint8_t)length;
     content[2U] = (uint8_t)counter;
     content[3U] = (uint8_t)command;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
-    *to = content[0];
+    *to = 0x55U;
     to++;
     for (; from < stuffed; from++) {
         uint8_t byte = from == sum_at ? (uint8_t)matty_v4_sum_8_negated_final(sum) : content[from];

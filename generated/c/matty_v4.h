@@ -26,6 +26,13 @@ extern "C" {
 #define MATTY_V4_API
 #endif
 
+/* Enums take one byte also where the compiler gives them two, as for AVR. */
+#if defined(__AVR__) && defined(__GNUC__)
+#define MATTY_V4_PACKED __attribute__((packed))
+#else
+#define MATTY_V4_PACKED
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define MATTY_V4_SPEC_HASH "dceb8649d3dbb04ae2ad9f286946464ed2f6905f4664ab2a8cf2b210b638d828"
 /** Version of the protogen that made this file. */
@@ -48,7 +55,7 @@ enum matty_v4_result {
     MATTY_V4_ERROR_RANGE,
     /** The buffer to encode into is too short. */
     MATTY_V4_ERROR_SPACE
-};
+} MATTY_V4_PACKED;
 
 /** Every message, in the schema's order. */
 enum matty_v4_message {
@@ -67,7 +74,7 @@ enum matty_v4_message {
     MATTY_V4_MESSAGE_GPS = 12,
     MATTY_V4_MESSAGE_VERSION = 13,
     MATTY_V4_NO_MESSAGE = 14
-};
+} MATTY_V4_PACKED;
 
 /* --- named values ----------------------------------------------------------------------------- */
 
@@ -654,7 +661,7 @@ enum matty_v4_event_kind {
     MATTY_V4_MESSAGE, /**< A valid frame of a message. */
     MATTY_V4_UNKNOWN, /**< A valid frame whose identity no message has. */
     MATTY_V4_INVALID  /**< No frame. */
-};
+} MATTY_V4_PACKED;
 
 /** Why bytes are no frame. */
 enum matty_v4_reason {
@@ -667,7 +674,7 @@ enum matty_v4_reason {
     MATTY_V4_LENGTH,    /**< The length is impossible, or not that of the frame. */
     MATTY_V4_STUFFING,  /**< An escape or substitution is none. */
     MATTY_V4_TRUNCATED  /**< The frame is cut off. */
-};
+} MATTY_V4_PACKED;
 
 #ifdef __cplusplus
 #define MATTY_V4_ZEROS \

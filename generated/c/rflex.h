@@ -28,6 +28,13 @@ extern "C" {
 #define RFLEX_API
 #endif
 
+/* Enums take one byte also where the compiler gives them two, as for AVR. */
+#if defined(__AVR__) && defined(__GNUC__)
+#define RFLEX_PACKED __attribute__((packed))
+#else
+#define RFLEX_PACKED
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define RFLEX_SPEC_HASH "bdc0dbf75479fc3117451c2780def69871f73fedb48120ce349c7ab8d25414f4"
 /** Version of the protogen that made this file. */
@@ -48,7 +55,7 @@ enum rflex_result {
     RFLEX_ERROR_RANGE,
     /** The buffer to encode into is too short. */
     RFLEX_ERROR_SPACE
-};
+} RFLEX_PACKED;
 
 /** Every message, in the schema's order. */
 enum rflex_message {
@@ -75,7 +82,7 @@ enum rflex_message {
     RFLEX_MESSAGE_CHECK_IO_CHANGED_ANSWER = 20,
     RFLEX_MESSAGE_CHANGED_BYTE = 21,
     RFLEX_NO_MESSAGE = 22
-};
+} RFLEX_PACKED;
 
 /* --- named values ----------------------------------------------------------------------------- */
 
@@ -979,7 +986,7 @@ enum rflex_event_kind {
     RFLEX_MESSAGE, /**< A valid frame of a message. */
     RFLEX_UNKNOWN, /**< A valid frame whose identity no message has. */
     RFLEX_INVALID  /**< No frame. */
-};
+} RFLEX_PACKED;
 
 /** Why bytes are no frame. */
 enum rflex_reason {
@@ -992,7 +999,7 @@ enum rflex_reason {
     RFLEX_LENGTH,    /**< The length is impossible, or not that of the frame. */
     RFLEX_STUFFING,  /**< An escape or substitution is none. */
     RFLEX_TRUNCATED  /**< The frame is cut off. */
-};
+} RFLEX_PACKED;
 
 #ifdef __cplusplus
 #define RFLEX_ZEROS \

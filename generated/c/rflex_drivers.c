@@ -1246,9 +1246,14 @@ static size_t rflex_drivers_linux_room(size_t payload) {
     return 3U * content + 2U;
 }
 
+/* Where the content is put, before it is stuffed: at the end of the room. */
+static uint8_t *rflex_drivers_linux_content(uint8_t *frame, size_t payload) {
+    return &frame[rflex_drivers_linux_room(payload) - (6U + payload + 1U)];
+}
+
 /* Where the payload is put, before the rest of the frame is put around it. */
 static uint8_t *rflex_drivers_linux_payload(uint8_t *frame, size_t payload) {
-    return &frame[rflex_drivers_linux_room(payload) - 1U - payload];
+    return &rflex_drivers_linux_content(frame, payload)[6];
 }
 
 /* What a byte of the region is on the wire. */
@@ -1272,7 +1277,7 @@ static size_t rflex_drivers_linux_stuff(uint8_t *wire, uint8_t byte) {
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t class_,
                                        uint8_t subclass, uint8_t number) {
-    uint8_t *const content = rflex_drivers_linux_payload(frame, payload) - 6;
+    uint8_t *const content = rflex_drivers_linux_content(frame, payload);
     uint8_t *const tail = &content[6U + payload];
     const uint16_t length = (uint16_t)(payload);
     const uint16_t stuffed = (uint16_t)(6U + payload + 1U);
@@ -1281,16 +1286,14 @@ static size_t rflex_drivers_linux_wrap(uint8_t *frame, size_t payload, uint8_t c
     uint16_t from = 2;
     uint8_t *to = frame;
     uint8_t sum = 0x00U;
-    content[0U] = 0x1BU;
-    content[1U] = 0x02U;
     content[2U] = (uint8_t)class_;
     content[3U] = (uint8_t)number;
     content[4U] = (uint8_t)subclass;
     content[5U] = (uint8_t)length;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
-    *to = content[0];
+    *to = 0x1BU;
     to++;
-    *to = content[1];
+    *to = 0x02U;
     to++;
     for (; from < stuffed; from++) {
         uint8_t byte = from == sum_at ? (uint8_t)rflex_drivers_xor_8_final(sum) : content[from];

@@ -28,6 +28,13 @@ extern "C" {
 #define RFLEX_DRIVERS_API
 #endif
 
+/* Enums take one byte also where the compiler gives them two, as for AVR. */
+#if defined(__AVR__) && defined(__GNUC__)
+#define RFLEX_DRIVERS_PACKED __attribute__((packed))
+#else
+#define RFLEX_DRIVERS_PACKED
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define RFLEX_DRIVERS_SPEC_HASH "6b293ff835f71a294248ac2f82f2aaa6e6ca9f1f9520933d977de3ead1d21d2d"
 /** Version of the protogen that made this file. */
@@ -48,7 +55,7 @@ enum rflex_drivers_result {
     RFLEX_DRIVERS_ERROR_RANGE,
     /** The buffer to encode into is too short. */
     RFLEX_DRIVERS_ERROR_SPACE
-};
+} RFLEX_DRIVERS_PACKED;
 
 /** Every message, in the schema's order. */
 enum rflex_drivers_message {
@@ -79,7 +86,7 @@ enum rflex_drivers_message {
     RFLEX_DRIVERS_MESSAGE_IR_RUN = 24,
     RFLEX_DRIVERS_MESSAGE_IR_REPORT = 25,
     RFLEX_DRIVERS_NO_MESSAGE = 26
-};
+} RFLEX_DRIVERS_PACKED;
 
 /* --- named values ----------------------------------------------------------------------------- */
 
@@ -1210,7 +1217,7 @@ enum rflex_drivers_event_kind {
     RFLEX_DRIVERS_MESSAGE, /**< A valid frame of a message. */
     RFLEX_DRIVERS_UNKNOWN, /**< A valid frame whose identity no message has. */
     RFLEX_DRIVERS_INVALID  /**< No frame. */
-};
+} RFLEX_DRIVERS_PACKED;
 
 /** Why bytes are no frame. */
 enum rflex_drivers_reason {
@@ -1223,7 +1230,7 @@ enum rflex_drivers_reason {
     RFLEX_DRIVERS_LENGTH,    /**< The length is impossible, or not that of the frame. */
     RFLEX_DRIVERS_STUFFING,  /**< An escape or substitution is none. */
     RFLEX_DRIVERS_TRUNCATED  /**< The frame is cut off. */
-};
+} RFLEX_DRIVERS_PACKED;
 
 #ifdef __cplusplus
 #define RFLEX_DRIVERS_ZEROS \

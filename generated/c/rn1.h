@@ -29,6 +29,13 @@ extern "C" {
 #define RN1_API
 #endif
 
+/* Enums take one byte also where the compiler gives them two, as for AVR. */
+#if defined(__AVR__) && defined(__GNUC__)
+#define RN1_PACKED __attribute__((packed))
+#else
+#define RN1_PACKED
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define RN1_SPEC_HASH "52b96749db6c04ab62c29308f0a6a960c2ec0a24307e498c3bbbfb5cc9f6c2bc"
 /** Version of the protogen that made this file. */
@@ -49,7 +56,7 @@ enum rn1_result {
     RN1_ERROR_RANGE,
     /** The buffer to encode into is too short. */
     RN1_ERROR_SPACE
-};
+} RN1_PACKED;
 
 /** Every message, in the schema's order. */
 enum rn1_message {
@@ -65,7 +72,7 @@ enum rn1_message {
     RN1_MESSAGE_SONAR = 9,
     RN1_MESSAGE_FACING = 10,
     RN1_NO_MESSAGE = 11
-};
+} RN1_PACKED;
 
 /* --- named values ----------------------------------------------------------------------------- */
 
@@ -553,7 +560,7 @@ enum rn1_event_kind {
     RN1_MESSAGE, /**< A valid frame of a message. */
     RN1_UNKNOWN, /**< A valid frame whose identity no message has. */
     RN1_INVALID  /**< No frame. */
-};
+} RN1_PACKED;
 
 /** Why bytes are no frame. */
 enum rn1_reason {
@@ -566,7 +573,7 @@ enum rn1_reason {
     RN1_LENGTH,    /**< The length is impossible, or not that of the frame. */
     RN1_STUFFING,  /**< An escape or substitution is none. */
     RN1_TRUNCATED  /**< The frame is cut off. */
-};
+} RN1_PACKED;
 
 #ifdef __cplusplus
 #define RN1_ZEROS \

@@ -1245,7 +1245,7 @@ static uint8_t *rn1_firmware_host_payload(uint8_t *frame, size_t payload) {
 
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t rn1_firmware_host_wrap(uint8_t *frame, size_t payload, uint8_t start) {
-    uint8_t *const content = rn1_firmware_host_payload(frame, payload) - 1;
+    uint8_t *const content = frame;
     size_t size = 1U + payload;
     content[0U] = (uint8_t)start;
     frame[size] = 0xFFU;
@@ -1268,7 +1268,7 @@ static uint8_t *rn1_firmware_brain_payload(uint8_t *frame, size_t payload) {
 
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t rn1_firmware_brain_wrap(uint8_t *frame, size_t payload, uint8_t start) {
-    uint8_t *const content = rn1_firmware_brain_payload(frame, payload) - 1;
+    uint8_t *const content = frame;
     size_t size = 1U + payload;
     content[0U] = (uint8_t)start;
     return size;

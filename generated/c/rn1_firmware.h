@@ -29,6 +29,13 @@ extern "C" {
 #define RN1_FIRMWARE_API
 #endif
 
+/* Enums take one byte also where the compiler gives them two, as for AVR. */
+#if defined(__AVR__) && defined(__GNUC__)
+#define RN1_FIRMWARE_PACKED __attribute__((packed))
+#else
+#define RN1_FIRMWARE_PACKED
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define RN1_FIRMWARE_SPEC_HASH "4c7afc95c9fa156c5677328201c53396e1fd4021ec0f97509bbf1a949aefe311"
 /** Version of the protogen that made this file. */
@@ -49,7 +56,7 @@ enum rn1_firmware_result {
     RN1_FIRMWARE_ERROR_RANGE,
     /** The buffer to encode into is too short. */
     RN1_FIRMWARE_ERROR_SPACE
-};
+} RN1_FIRMWARE_PACKED;
 
 /** Every message, in the schema's order. */
 enum rn1_firmware_message {
@@ -68,7 +75,7 @@ enum rn1_firmware_message {
     RN1_FIRMWARE_MESSAGE_MOTOR_CONTROLLER_MESSAGE = 12,
     RN1_FIRMWARE_MESSAGE_DEBUG_NUMBERS = 13,
     RN1_FIRMWARE_NO_MESSAGE = 14
-};
+} RN1_FIRMWARE_PACKED;
 
 /* --- named values ----------------------------------------------------------------------------- */
 
@@ -738,7 +745,7 @@ enum rn1_firmware_event_kind {
     RN1_FIRMWARE_MESSAGE, /**< A valid frame of a message. */
     RN1_FIRMWARE_UNKNOWN, /**< A valid frame whose identity no message has. */
     RN1_FIRMWARE_INVALID  /**< No frame. */
-};
+} RN1_FIRMWARE_PACKED;
 
 /** Why bytes are no frame. */
 enum rn1_firmware_reason {
@@ -751,7 +758,7 @@ enum rn1_firmware_reason {
     RN1_FIRMWARE_LENGTH,    /**< The length is impossible, or not that of the frame. */
     RN1_FIRMWARE_STUFFING,  /**< An escape or substitution is none. */
     RN1_FIRMWARE_TRUNCATED  /**< The frame is cut off. */
-};
+} RN1_FIRMWARE_PACKED;
 
 #ifdef __cplusplus
 #define RN1_FIRMWARE_ZEROS \

@@ -215,9 +215,14 @@ static size_t uherobot_daemon_room(size_t payload) {
     return 2U * content + 1U;
 }
 
+/* Where the content is put, before it is stuffed: at the end of the room. */
+static uint8_t *uherobot_daemon_content(uint8_t *frame, size_t payload) {
+    return &frame[uherobot_daemon_room(payload) - (3U + payload)];
+}
+
 /* Where the payload is put, before the rest of the frame is put around it. */
 static uint8_t *uherobot_daemon_payload(uint8_t *frame, size_t payload) {
-    return &frame[uherobot_daemon_room(payload) - 0U - payload];
+    return &uherobot_daemon_content(frame, payload)[3];
 }
 
 /* What a byte of the region is on the wire. */
@@ -231,24 +236,29 @@ static size_t uherobot_daemon_stuff(uint8_t *wire, uint8_t byte) {
 
 /* Put the rest of the frame around a payload that stands in its place; returns the frame's size. */
 static size_t uherobot_daemon_wrap(uint8_t *frame, size_t payload, uint8_t type) {
-    uint8_t *const content = uherobot_daemon_payload(frame, payload) - 3;
+    uint8_t *const content = uherobot_daemon_content(frame, payload);
     const uint16_t length = (uint16_t)(2U + payload);
     const uint16_t stuffed = (uint16_t)(3U + payload);
     uint16_t from = 1;
     uint8_t *to = frame;
-    content[0U] = 0x62U;
     content[1U] = (uint8_t)length;
     content[2U] = (uint8_t)type;
     /* Stuff from left to right; what is written never reaches what is still to be read. */
-    *to = content[0];
+    *to = 0x62U;
     to++;
     for (; from < stuffed; from++) {
         const uint8_t byte = content[from];
-        const uint8_t high = (uint8_t)(byte >> 4);
-        const uint8_t low = (uint8_t)(byte & 0x0FU);
-        *to = (uint8_t)(high < 10U ? 0x30U + high : 0x37U + high);
+        uint8_t high = (uint8_t)(byte >> 4);
+        uint8_t low = (uint8_t)(byte & 0x0FU);
+        if (high > 9U) {
+            high = (uint8_t)(high + 7U); /* A letter. */
+        }
+        if (low > 9U) {
+            low = (uint8_t)(low + 7U);
+        }
+        *to = (uint8_t)(0x30U + high);
         to++;
-        *to = (uint8_t)(low < 10U ? 0x30U + low : 0x37U + low);
+        *to = (uint8_t)(0x30U + low);
         to++;
     }
     *to = 0x65U;

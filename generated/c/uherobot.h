@@ -27,6 +27,13 @@ extern "C" {
 #define UHEROBOT_API
 #endif
 
+/* Enums take one byte also where the compiler gives them two, as for AVR. */
+#if defined(__AVR__) && defined(__GNUC__)
+#define UHEROBOT_PACKED __attribute__((packed))
+#else
+#define UHEROBOT_PACKED
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define UHEROBOT_SPEC_HASH "319850d58c204d8cbc2e7dde9a0ec863cee3d1caa80d06326176835ab5e5a4b4"
 /** Version of the protogen that made this file. */
@@ -45,7 +52,7 @@ enum uherobot_result {
     UHEROBOT_ERROR_RANGE,
     /** The buffer to encode into is too short. */
     UHEROBOT_ERROR_SPACE
-};
+} UHEROBOT_PACKED;
 
 /** Every message, in the schema's order. */
 enum uherobot_message {
@@ -54,7 +61,7 @@ enum uherobot_message {
     UHEROBOT_MESSAGE_MOTOR_TEST = 2,
     UHEROBOT_MESSAGE_STATUS = 3,
     UHEROBOT_NO_MESSAGE = 4
-};
+} UHEROBOT_PACKED;
 
 /* --- named values ----------------------------------------------------------------------------- */
 
@@ -256,7 +263,7 @@ enum uherobot_event_kind {
     UHEROBOT_MESSAGE, /**< A valid frame of a message. */
     UHEROBOT_UNKNOWN, /**< A valid frame whose identity no message has. */
     UHEROBOT_INVALID  /**< No frame. */
-};
+} UHEROBOT_PACKED;
 
 /** Why bytes are no frame. */
 enum uherobot_reason {
@@ -269,7 +276,7 @@ enum uherobot_reason {
     UHEROBOT_LENGTH,    /**< The length is impossible, or not that of the frame. */
     UHEROBOT_STUFFING,  /**< An escape or substitution is none. */
     UHEROBOT_TRUNCATED  /**< The frame is cut off. */
-};
+} UHEROBOT_PACKED;
 
 #ifdef __cplusplus
 #define UHEROBOT_ZEROS \

@@ -29,6 +29,13 @@ extern "C" {
 #define UHEROBOT_DAEMON_API
 #endif
 
+/* Enums take one byte also where the compiler gives them two, as for AVR. */
+#if defined(__AVR__) && defined(__GNUC__)
+#define UHEROBOT_DAEMON_PACKED __attribute__((packed))
+#else
+#define UHEROBOT_DAEMON_PACKED
+#endif
+
 /** SHA-256 of layout, framing and meaning of values; both ends of the wire can compare it. */
 #define UHEROBOT_DAEMON_SPEC_HASH "8b7e96f33f6c769cdeb33f021dbf58a2505572a20e487dd7673d7bc09041d4a8"
 /** Version of the protogen that made this file. */
@@ -49,14 +56,14 @@ enum uherobot_daemon_result {
     UHEROBOT_DAEMON_ERROR_RANGE,
     /** The buffer to encode into is too short. */
     UHEROBOT_DAEMON_ERROR_SPACE
-};
+} UHEROBOT_DAEMON_PACKED;
 
 /** Every message, in the schema's order. */
 enum uherobot_daemon_message {
     UHEROBOT_DAEMON_MESSAGE_MOTORS_SERVOS_LEDS = 0,
     UHEROBOT_DAEMON_MESSAGE_STATUS = 1,
     UHEROBOT_DAEMON_NO_MESSAGE = 2
-};
+} UHEROBOT_DAEMON_PACKED;
 
 /* --- named values ----------------------------------------------------------------------------- */
 
@@ -220,7 +227,7 @@ enum uherobot_daemon_event_kind {
     UHEROBOT_DAEMON_MESSAGE, /**< A valid frame of a message. */
     UHEROBOT_DAEMON_UNKNOWN, /**< A valid frame whose identity no message has. */
     UHEROBOT_DAEMON_INVALID  /**< No frame. */
-};
+} UHEROBOT_DAEMON_PACKED;
 
 /** Why bytes are no frame. */
 enum uherobot_daemon_reason {
@@ -233,7 +240,7 @@ enum uherobot_daemon_reason {
     UHEROBOT_DAEMON_LENGTH,    /**< The length is impossible, or not that of the frame. */
     UHEROBOT_DAEMON_STUFFING,  /**< An escape or substitution is none. */
     UHEROBOT_DAEMON_TRUNCATED  /**< The frame is cut off. */
-};
+} UHEROBOT_DAEMON_PACKED;
 
 #ifdef __cplusplus
 #define UHEROBOT_DAEMON_ZEROS \

@@ -18,7 +18,7 @@ static void take(void *user, const struct atrv_flex_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size = 0;
+    size_t size;
     enum atrv_result result;
     if (which == 0) {
         result = atrv_read_motor_frame(BENCH_MESSAGE, 0xFF, frame, capacity, &size);

@@ -31,7 +31,7 @@ static void take(void *user, const struct dagny_host_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size = 0;
+    size_t size;
     enum dagny_result result;
     switch (which) {
     case 0:

@@ -18,7 +18,7 @@ static void take(void *user, const struct rn1_brain_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size = 0;
+    size_t size;
     if (which == 0) {
         return rn1_gyro_frame(BENCH_MESSAGE, frame, capacity, &size) == RN1_OK ? size : 0;
     }

@@ -15,7 +15,7 @@ static void take(void *user, const struct rover_board_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size = 0;
+    size_t size;
     (void)which;
     return rover_state_frame(BENCH_MESSAGE, frame, capacity, &size) == ROVER_OK ? size : 0;
 }

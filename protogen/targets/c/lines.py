@@ -37,7 +37,10 @@ class Lines(BracedLines):
 
     def put_at(self, place: int, *lines: str) -> None:
         """Put lines of the current depth in front of those from a place on."""
-        self._lines[place:place] = [self.margin + line for line in lines]
+        margin = self.margin
+        self._lines[place:place] = [
+            line if line.startswith("#") else margin + line for line in lines
+        ]
 
     @contextmanager
     def switch(self, selector: str) -> Iterator[None]:

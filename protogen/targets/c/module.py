@@ -49,6 +49,8 @@ class Module(msgspec.Struct, frozen=True):
     """Those of them that inline functions of the header call."""
     has_vectors: bool
     """True if some of these have a way for SSE2."""
+    has_images: bool
+    """True if some message can be copied as a whole."""
     sinks: tuple[str, ...]
     """Functions that what writes into a writer shares."""
     floats: frozenset[int]
@@ -101,6 +103,7 @@ def view(protocol: Protocol, options: COptions, names: Names, helpers: Helpers) 
         helpers=helpers.texts,
         public_helpers=helpers.public_texts,
         has_vectors=helpers.has_vectors,
+        has_images=any(message.is_image for message in messages),
         sinks=sinks.texts,
         floats=frozenset(helpers.floats | sinks.floats),
     )

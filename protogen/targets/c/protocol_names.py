@@ -27,7 +27,7 @@ implemented message unknown invalid no_message no_reason size value encoding noi
 stuffing truncated seeking taking failed lost known open searching measuring empty needless before
 inside after frame stuffed fast_feed sse2 expect each has no_handlers no_weak api inline apart
 baud idle_timeout_ms protogen_version zeros names fine small_crc flash flash_8
-flash_16 flash_32 flash_64
+flash_16 flash_32 flash_64 packed as_in_memory
 """
 _TAGS = "result message event_kind reason writer"
 _TYPES = "put float64"
@@ -35,7 +35,7 @@ _FUNCTIONS = "write first is_high mask sum_of xor_of message_name result_name re
 _TAGS_OF_A_SENDER = "parts event decoder"
 _TYPES_OF_A_SENDER = "handler"
 _FUNCTIONS_OF_A_SENDER = """
-accept add_noise added begins close close_at_flush close_open compare complete cross decide
+accept add_noise added begins close close_at_flush close_open compare complete content cross decide
 decoder_event decoder_feed decoder_flush decoder_idle decoder_init decoder_push dispatch drop
 end_noise ends_early enter_payload find_size finish_region fitted follow_end follow_start give_up
 hand_over has_special head_fits identify invalid is_idle is_plain judge looks_idle measure

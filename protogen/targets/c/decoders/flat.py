@@ -61,6 +61,12 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         return 0 if is_nothing else self.buffer_size + 1
 
     @property
+    def skip_start(self) -> str:
+        """What passes by a start that nobody asked for; empty where that is giving it up."""
+        sets_limit = self.idle_member == "limit" and self.only_size is None
+        return "limit = 0U;\n    break;" if sets_limit else ""
+
+    @property
     def size_member(self) -> str:
         """The counter that still has the size of content when a frame is complete."""
         return "content" if self.idle_member == "limit" else "limit"
@@ -151,6 +157,16 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         """True if the identity has to be looked at again."""
         return self.identified and not (self.known_by_identity and len(self.groups) == 1)
 
+    @property
+    def is_told_at_once(self) -> bool:
+        """True if a frame that is complete needs no more than a look at its identity.
+
+        What needs more stands apart: inside of `push` its registers would be saved at each byte.
+        """
+        messages = [message for group in self.groups for message in group.messages]
+        looks = self.checksums or self.fits_payloads or any(message.checks for message in messages)
+        return not looks
+
     def size_is_certain(self, group: GroupView) -> bool:
         """True if a payload of that identity has a size that its message can have."""
         if self.only_size is not None:
@@ -178,6 +194,22 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         assert self.stuffing is not None
         refused = self.stuffing.nodes[0].refused
         return tuple(b for b in refused if self.escape_starts or b not in self.never_passed)
+
+    @property
+    def escape_xor(self) -> int | None:
+        """What is changed of each escaped byte, where there is one escape and that is the same."""
+        assert self.stuffing is not None
+        if self.escape_starts or len(self.stuffing.nodes) != 2:
+            return None
+        branches = self.branches(self.stuffing.nodes[1])
+        changes = {None if b.value is None else b.value ^ b.byte for b in branches}
+        return changes.pop() if len(changes) == 1 else None
+
+    @property
+    def escaped(self) -> tuple[int, ...]:
+        """The bytes that stand behind the escape, changed back."""
+        assert self.stuffing is not None
+        return tuple(b.value for b in self.branches(self.stuffing.nodes[1]) if b.value is not None)
 
     @property
     def further_branches(self) -> Iterator[tuple[str, Branch]]:

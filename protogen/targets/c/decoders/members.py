@@ -54,7 +54,7 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
     fails = view.keeps_wire or push.decides_later
     holds = is_push and push.searches and push.holds_delimiter
     begins_next = is_push and push.keeps_behind
-    has_code = kind in (StuffingKind.BASE16, StuffingKind.COBS)
+    has_code = is_push and kind in (StuffingKind.BASE16, StuffingKind.COBS)
     extra = "Bytes behind a failed candidate that may belong to a start."
     open_from = "Bytes on the wire in front of the first that may be a start."
     counters = (

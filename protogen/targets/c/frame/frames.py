@@ -75,6 +75,7 @@ class Step(msgspec.Struct, frozen=True):
 
     in_head: bool
     stores: tuple[ByteStore, ...]
+    name: str = ""
     checksum: ChecksumView | None = None
     flags: int | None = None
     """Flags of the writer for its bytes, where they differ from those before."""
@@ -222,6 +223,27 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
             return None
         return region.first.offset
 
+    @cached_property
+    def _written_ahead(self) -> dict[str, str]:
+        """The bytes that no content needs, by their index.
+
+        They stand in front of the stuffed region, and are known without a look at other bytes.
+        """
+        if not self.begins_at:
+            return {}
+        read = {name for c in self.plan.checksums for name in (c.placed.name, *_covered(c))}
+        plain = [s for s in self.steps if s.in_head and s.name not in read and not s.counts]
+        stores = {store.index: store.value for step in plain for store in step.stores}
+        front = [f"{index}U" for index in range(self.begins_at)]
+        return {index: stores[index] for index in front if index in stores}
+
+    @property
+    def ahead(self) -> list[str]:
+        """Each byte in front of the stuffed region."""
+        assert self.begins_at is not None
+        front = [f"{index}U" for index in range(self.begins_at)]
+        return [self._written_ahead.get(index, f"content[{index}]") for index in front]
+
     @property
     def escaped_byte(self) -> str:
         """A byte as it stands behind the escape."""
@@ -296,7 +318,14 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
     def steps_ahead(self) -> tuple[Step, ...]:
         """Those of them that are filled before anything is stuffed."""
         summed = self.summed
-        return tuple(s for s in self.steps if summed is None or s.checksum is not summed)
+        steps = (s for s in self.steps if summed is None or s.checksum is not summed)
+        return tuple(s for s in steps if not self._is_written_ahead(s))
+
+    def _is_written_ahead(self, step: Step) -> bool:
+        """True if all bytes of a part are."""
+        written = self._written_ahead
+        is_plain = bool(step.stores) and step.in_head and step.checksum is None
+        return is_plain and all(store.index in written for store in step.stores)
 
     def _step(self, item: PlacedPart) -> Step:
         part = item.part
@@ -318,7 +347,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         )
         checksum = next((c for c in self.decoder.checksums if c.name == part.name), None)
         counts = isinstance(part, LengthPart) and self.decoder.length_over_wire
-        return Step(item.in_head, stores, checksum, counts=counts)
+        return Step(item.in_head, stores, part.name, checksum, counts=counts)
 
     def _put_bits(self, item: ChecksumPlan) -> Step:
         """The step that puts a checksum in bits of a part whose other bits stand there."""
@@ -329,7 +358,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
             index = f"{item.placed.offset + place}U{less}"
             stores.append(ByteStore(index, f"(uint8_t)({target}[{index}] | {value})"))
         checksum = next(c for c in self.decoder.checksums if c.name == item.part.name)
-        return Step(item.placed.in_head, tuple(stores), checksum)
+        return Step(item.placed.in_head, tuple(stores), item.part.name, checksum)
 
     def _value(self, part: NumberPart) -> str:
         """The value of a number that is not worked out of other bytes."""

@@ -20,6 +20,7 @@ from protogen.targets.c.payload.accessors import accessor
 from protogen.targets.c.payload.checking import Checker
 from protogen.targets.c.payload.held import HeldNumber, from_parts, held_numbers
 from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.images import copied, is_image
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.measuring import Measure
 from protogen.targets.c.payload.message_names import claim_message, constants_of
@@ -56,6 +57,8 @@ class MessageView(msgspec.Struct, frozen=True):
     """True if there is a function `validate`; without it, every struct can be sent."""
     held: tuple[HeldNumber, ...]
     """The numbers of the frame among its members, arguments of the functions that read it."""
+    is_image: bool
+    """True if a little-endian machine can copy its struct as a whole."""
     check: str
     """(const uint8_t *payload, size_t size, size_t *need[, held]): enum rn1_result; `need` may be
     NULL."""
@@ -119,6 +122,7 @@ class MessagePrinter(msgspec.Struct, frozen=True):
             needs=codec.needs,
             validates=codec.validates,
             held=codec.held,
+            is_image=codec.is_image,
             record=record,
             prototypes=codec.prototypes(),
             accessors=accessors,
@@ -152,6 +156,8 @@ class _Codec:
         self.leaves = is_cut and item.tells_its_end
         """True if a check may leave what is behind the fields, and tells where they end."""
         self.validates = can_be_refused(item.plan, item.sizes)
+        self.is_image = is_image(item.plan)
+        """True if a struct can be copied as a whole; see `NAME_AS_IN_MEMORY`."""
         self.held = held_numbers(item, printer.names)
         held = tuple(f"{number.type} {number.name}" for number in self.held)
         result = f"enum {self._prefix}_result"
@@ -230,7 +236,19 @@ class _Codec:
     def _store(self) -> str:
         lines = Lines()
         Store(self._printer.helpers, lines).message(self._item.plan)
+        self._or_copy(lines, "payload", "message")
         return self._function("store", lines)
+
+    def _or_copy(self, lines: Lines, to: str, source: str) -> None:
+        """Print in front of statements what does the same where a struct is as on the wire."""
+        if self.is_image:
+            assert self.fixed is not None
+            lines.put_first(
+                f"#if {self._upper}_AS_IN_MEMORY",
+                *copied(to, source, self.fixed),
+                "#else",
+            )
+            lines.add("#endif")
 
     def put(self) -> str:
         """The function that hands the payload to a writer."""
@@ -278,6 +296,7 @@ class _Codec:
             lines.put_first(f"{kind} size = {self.fixed}U;")
         if not self._item.plan.holds_values:
             lines.add("message->unused = 0U;")
+        self._or_copy(lines, "message", "payload")
         return self._function("load", lines)
 
     def _decode(self) -> str:
