@@ -32,7 +32,7 @@ _DEFINITIONS = re.compile(r"# (definitions/\w+\.yaml)\n")
 _FRAGMENT = re.compile(r"# frame: (.+)\n")
 _MODELINE = re.compile(r"# yaml-language-server: \$schema=(\S+)\n")
 _WORKFLOW = re.compile(r"# (?:\.github/workflows/\w+\.yaml|\.pre-commit-config\.yaml|hooks: .*)\n")
-_NAMED = re.compile(r"(?:# |// |/\* |<!-- )(\w+\.(?:toml|md|xml|c|ino|mjs|ts))(?: \*/| -->)?\n")
+_NAMED = re.compile(r"(?:# |// |/\* |<!-- )(\w+\.(?:toml|md|xml|c|cpp|ino|mjs|ts))(?: \*/| -->)?\n")
 
 
 @dataclass(frozen=True)

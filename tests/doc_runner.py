@@ -9,7 +9,8 @@
               the headers that it includes. A program exits with 0. A source without `main` is
               linked with `doc_programs/NAME.c`, which stands in for the rest of the firmware.
               A source that a command of the page compiles is only written.
-    cpp       `// NAME.ino` in the first line: an Arduino sketch, linked in the same way
+    cpp       `// NAME.ino` in the first line: an Arduino sketch, linked in the same way;
+              `// NAME.cpp`: a program over the generated C of the `.hpp` that it includes
     toml      `# NAME.toml` in the first line: a file
     markdown  `<!-- NAME.md -->` in the first line: a file
     xml       `<!-- NAME.xml -->` in the first line: a file
@@ -146,6 +147,19 @@ class Runner:
         self.succeed("./program")
 
     def _run_cpp(self, block: Block) -> None:
+        if block.file.endswith(".ino"):
+            self._run_sketch(block)
+            return
+        (self._workspace / block.file).write_text(block.text, encoding="utf-8")
+        names = re.findall(r'#include "(\w+)\.hpp"', block.text)
+        objects = [f"{name}.o" for name in names]
+        for name, made in zip(names, objects, strict=True):
+            self.succeed(require_tool("cc"), "-c", f"generated/c/{name}.c", "-o", made)
+        flags = ["-std=c++17", *_WARNINGS, "-Igenerated/c"]
+        self.succeed(require_tool("g++"), *flags, block.file, *objects, "-o", "program")
+        self.succeed("./program")
+
+    def _run_sketch(self, block: Block) -> None:
         name = Path(block.file).stem
         (self._workspace / "sketch.cpp").write_text(
             f'#include "Arduino.h"\n{block.text}\n#include "{name}.cpp"\n', encoding="utf-8"

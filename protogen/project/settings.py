@@ -27,6 +27,7 @@ class CSettings(_Table):
     only: Words = Field((), description="The messages to print. Empty: all.")
     sender: Words = Field((), description="The endpoints whose messages are printed. Empty: all.")
     stubs: StrictBool = Field(False, description="A source with empty handlers, made once.")
+    hpp: StrictBool = Field(False, description="A header for C++ over that of C.")
 
 
 class BreakingSettings(_Table):

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 
 from protogen.model.protocol import Protocol
 from protogen.runtime.attributes import argument, attribute
+from protogen.targets.c.cpp.names import cpp_names
 from protogen.targets.c.protocol_names import names_of as names_of_c
 from protogen.targets.kept import Kept
 from protogen.targets.naming import NameTable, Thing
@@ -27,6 +28,7 @@ class EmittedNames:
         python = names_of_python(protocol)
         found: dict[Thing, dict[str, tuple[str, ...]]] = {}
         _add(found, "C", (self._c.files, self._c.tags, self._c.others, self._c.members))
+        _add(found, "C++", cpp_names(protocol).tables)
         _add(found, "Python", python.tables)
         _add(found, "TypeScript", names_of_typescript(protocol).tables)
         self.escapes: Mapping[Thing, ByLanguage] = found

@@ -50,6 +50,15 @@ Stubs = Annotated[
     ),
 ]
 
+Hpp = Annotated[
+    bool | None,
+    typer.Option(
+        "--c-hpp/--no-c-hpp",
+        help="NAME.hpp, the same for C++, over the header of C.",
+        show_default=False,
+    ),
+]
+
 
 class Choice(msgspec.Struct, frozen=True):
     """Options of the command line about C; None where it said nothing."""
@@ -59,11 +68,13 @@ class Choice(msgspec.Struct, frozen=True):
     only: Sequence[str] | None
     senders: Sequence[str] | None
     stubs: bool | None
+    hpp: bool | None
 
     @property
     def is_default(self) -> bool:
         """True if nothing was said."""
-        return not any((self.style, self.events, self.only, self.senders, self.stubs))
+        flags = (self.stubs, self.hpp)
+        return not any((self.style, self.events, self.only, self.senders, *flags))
 
 
 class ChosenC(msgspec.Struct, frozen=True):
@@ -91,6 +102,7 @@ class ChosenC(msgspec.Struct, frozen=True):
             only=tuple(choice.only) if choice.only else None,
             senders=tuple(choice.senders) if choice.senders else None,
             stubs=bool(choice.stubs),
+            hpp=bool(choice.hpp),
         )
         return emit(protocols, options)
 

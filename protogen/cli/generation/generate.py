@@ -65,6 +65,7 @@ def generate(  # noqa: PLR0913 - each option is one argument
     only: c_options.Only = None,
     sender: c_options.Senders = None,
     c_stubs: c_options.Stubs = None,
+    c_hpp: c_options.Hpp = None,
     depfile: Annotated[
         Path | None,
         typer.Option(
@@ -85,7 +86,7 @@ def generate(  # noqa: PLR0913 - each option is one argument
     What is not given comes from the nearest protogen.toml, or [tool.protogen] in pyproject.toml.
     There, only a run without schemas removes files; one without targets, too, fills marked blocks.
     """
-    choice = c_options.Choice(c_style, events, only, sender, c_stubs)
+    choice = c_options.Choice(c_style, events, only, sender, c_stubs, c_hpp)
     given = Given(schemas, output, target, standalone, choice)
     mode = Mode(check, diff, quiet, depfile, use_project=not no_project)
     if not watch:

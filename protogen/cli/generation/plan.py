@@ -111,7 +111,7 @@ def _targets(given: Given, configured: Sequence[str] | None) -> tuple[str, ...]:
     if given.standalone and _PYTHON not in names:
         raise UsageError(f"--standalone is for the target {_PYTHON}")
     if not given.c.is_default and c_options.NAME not in names:
-        raise UsageError("--c-style, --events, --only, --sender and --c-stubs are for C")
+        raise UsageError("--c-style, --events, --only, --sender, --c-stubs and --c-hpp are for C")
     return names
 
 
@@ -122,6 +122,7 @@ def _c(given: c_options.Choice, settings: CSettings) -> c_options.Choice:
         only=given.only or settings.only or None,
         senders=given.senders or settings.sender or None,
         stubs=settings.stubs if given.stubs is None else given.stubs,
+        hpp=settings.hpp if given.hpp is None else given.hpp,
     )
 
 

@@ -13,6 +13,7 @@ from protogen.model.frame_plan import StartRule
 from protogen.model.protocol import Protocol
 from protogen.passes.selection import select
 from protogen.targets.banner import C, banner
+from protogen.targets.c.cpp.view import cpp_module
 from protogen.targets.c.decoders.members import candidate_members, members_of, memory_of
 from protogen.targets.c.frame import expressions
 from protogen.targets.c.frame.fill import EVENTS, Fill
@@ -38,6 +39,8 @@ class Unit(msgspec.Struct, frozen=True):
     """A protocol with everything that is printed of it."""
 
     protocol: Protocol
+    whole: Protocol
+    """With what was not chosen."""
     names: Names
     module: Module
     framing: FramingView
@@ -62,10 +65,15 @@ def unit_of(protocol: Protocol, options: COptions) -> Unit:
     helpers = Helpers(names)
     module = view(chosen, options, names, helpers)
     framing = framing_view(chosen, module.messages, module.sinks, options, names, helpers)
-    return Unit(chosen, names, module, framing)
+    return Unit(chosen, protocol, names, module, framing)
 
 
 def _files(unit: Unit, options: COptions) -> tuple[File, ...]:
+    files = _c_files(unit, options)
+    return (*files, _cpp_header(unit)) if options.hpp else files
+
+
+def _c_files(unit: Unit, options: COptions) -> tuple[File, ...]:
     name = unit.names.file
     header, source = _print(unit.module, unit.framing, options)
     first = banner(C, [unit.protocol])
@@ -105,6 +113,14 @@ def _stubs(unit: Unit) -> str:
     """A source with an empty body for each handler."""
     template = c_environment().get_template("frame/stubs.c.j2")
     return template.render(module=unit.module, framing=unit.framing)
+
+
+def _cpp_header(unit: Unit) -> File:
+    """The header for C++ over that of C."""
+    cpp = cpp_module(unit.whole, unit.protocol, unit.names, unit.module, unit.framing)
+    template = c_environment().get_template("cpp/header.hpp.j2")
+    text = wrapped(template.render(module=unit.module, cpp=cpp))
+    return File(PurePosixPath(f"{unit.names.file}.hpp"), text, banner(C, [unit.protocol]))
 
 
 def _sketch(unit: Unit) -> File:

@@ -28,6 +28,8 @@ class COptions(msgspec.Struct, frozen=True, kw_only=True):
     """The endpoints, or single forms of them, whose messages are printed."""
     stubs: bool = False
     """True to make a source with an empty body for each handler, where there is none."""
+    hpp: bool = False
+    """True to make a header for C++, too."""
 
     def chosen(self, protocol: Protocol) -> tuple[Message, ...]:
         """The messages to print, in the schema's order."""

@@ -27,7 +27,11 @@ implemented message unknown invalid no_message no_reason size value encoding noi
 stuffing truncated seeking taking failed lost known open searching measuring empty needless before
 inside after frame stuffed fast_feed sse2 expect each has no_handlers no_weak api inline apart
 baud idle_timeout_ms protogen_version zeros names fine small_crc flash flash_8
+<<<<<<< HEAD
 flash_16 flash_32 flash_64 packed as_in_memory
+=======
+flash_16 flash_32 flash_64 hpp always_inline nodiscard
+>>>>>>> cpp
 """
 _TAGS = "result message event_kind reason writer"
 _TYPES = "put float64"

@@ -38,6 +38,8 @@ class FrameNames(msgspec.Struct, frozen=True):
     """The macro for the greatest frame."""
     room: str
     """The macro for the bytes of a buffer that suffice for every frame."""
+    suffix: str
+    """What tells them from those of other senders."""
 
 
 def claim_frame(names: Names, message: str, suffix: str) -> FrameNames:
@@ -48,6 +50,7 @@ def claim_frame(names: Names, message: str, suffix: str) -> FrameNames:
         send=names.claim(thing, message, f"send{suffix}"),
         max=names.claim_macro(thing, words, "frame_max"),
         room=names.claim_macro(thing, words, "frame_room"),
+        suffix=suffix,
     )
 
 

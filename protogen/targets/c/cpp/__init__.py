@@ -1,0 +1,1 @@
+"""The header for C++ over the generated C."""

@@ -1,0 +1,102 @@
+// What the header for C++ takes and gives, with and without the library of C++. Exits with 0.
+#include "rover.hpp"
+
+#include <array>
+#include <vector>
+#if __cplusplus >= 202002L
+#include <span>
+#endif
+
+static_assert(rover::state_mode(1) == rover::state_mode::driving, "");
+static_assert(rover::raw(rover::state_mode::blocked) == 2, "");
+static_assert(rover::message_of<rover::drive>() == rover::message::drive, "");
+// By hand: 16 / 16 deg; -1.03 * 16 = -16.48, and 3.2814 / 0.001 = 3281.4; what is too great stays below.
+static_assert(rover::state_heading_physical(16) == 1.0F, "");
+static_assert(rover::state_heading_raw(-1.03) == -16, "");
+static_assert(rover::state_battery_raw(3.2814) == 3281, "");
+static_assert(rover::state_battery_raw(1e9) == 65535, "");
+static_assert(rover::state_battery_raw(-1.0F) == 0, "");
+
+static int turns, others;
+
+static void on_drive(const rover::drive &drive) {
+    turns += drive.left;
+}
+
+static void on_event(const rover::host_event &event) {
+    if (event.kind == rover::event_kind::invalid && event.reason != rover::reason::no_reason) {
+        others++;
+    }
+}
+
+struct board {
+    int left;
+    void operator()(const rover::drive &drive, const rover::host_parts &parts) {
+        left = parts.type == ROVER_DRIVE_ID ? drive.left : 0;
+    }
+};
+
+static bool takes_whatever_holds_bytes() {
+    rover::drive drive{};
+    drive.left = 500;
+    std::vector<uint8_t> vector(rover::frame_room<rover::drive>());
+    std::array<uint8_t, 20> array{};
+    uint8_t plain[20];
+    rover::host_decoder decoder;
+    turns = 0;
+    decoder.feed(rover::frame(drive, vector), on_drive);
+    decoder.feed(rover::frame(drive, array), on_drive);
+    decoder.feed(rover::frame(drive, plain), on_drive);
+    decoder.feed(rover::frame(drive, {plain + 2, 18}), on_drive);
+#if __cplusplus >= 202002L
+    const rover::encoded made = rover::frame(drive, std::span(plain));
+    const std::span<const uint8_t> bytes = made;
+    decoder.feed(bytes, on_drive);
+    const rover::state state{.mode = 1, .battery = 12, .heading = 3};
+    return turns == 2500 && state.mode == rover::state_mode::driving;
+#else
+    return turns == 2000;
+#endif
+}
+
+static bool the_first_handler_that_takes_an_event_gets_it() {
+    rover::drive drive{};
+    drive.left = 7;
+    uint8_t buffer[rover::frame_room<rover::drive>()];
+    const rover::encoded made = rover::frame(drive, buffer);
+    const uint8_t noise[] = {1, 2, 3, 0};
+    rover::host_decoder decoder;
+    board left = {0};
+    turns = others = 0;
+    decoder.feed(made, left, on_drive, on_event);
+    decoder.feed(noise, left, on_event);
+    for (uint8_t byte : made) {
+        decoder.push(byte, on_event, on_drive);  // Events go in front of messages here.
+    }
+    decoder.push(1, on_event);
+    decoder.flush(on_event);
+    return left.left == 7 && turns == 0 && others == 2;
+}
+
+static bool refuses_what_c_refuses() {
+    rover::drive drive{};
+    drive.left = 2001;
+    uint8_t buffer[rover::frame_room<rover::drive>()];
+    const rover::encoded far = rover::frame(drive, buffer);
+    drive.left = 2000;
+    const rover::encoded small = rover::frame(drive, {buffer, 3});
+    rover::drive read{};
+    const uint8_t payload[] = {0xD0, 0x07, 0x18, 0xFC};
+    return !far && far.why() == rover::result::error_range && far.size() == 0 && !small &&
+           small.why() == rover::result::error_space &&
+           rover::decode(read, payload) == rover::result::ok && read.left == 2000 &&
+           read.right == -1000 &&
+           rover::decode(read, {payload, 3}) == rover::result::error_size;
+}
+
+int main() {
+    return takes_whatever_holds_bytes() && the_first_handler_that_takes_an_event_gets_it() &&
+                   refuses_what_c_refuses()
+               ? 0
+               : 1;
+}
