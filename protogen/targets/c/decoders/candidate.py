@@ -55,6 +55,8 @@ class Candidate(PushDecoder, frozen=True, dict=True):
     def flat(self) -> None:
         """None: it has states."""
 
+    polled = flat
+
     @cached_property
     def virtual(self) -> tuple[VirtualView, ...]:
         """The parts that are not sent; the functions are those of the form's own decoder."""
