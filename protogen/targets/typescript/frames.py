@@ -45,7 +45,7 @@ from protogen.targets.typescript.literals import (
     told,
 )
 from protogen.targets.typescript.names import Names
-from protogen.targets.typescript.put_together import PutTogether, is_put_together
+from protogen.targets.typescript.stuffing import stuffing
 
 _STARTS = {
     StartRule.LITERAL: "word",
@@ -91,7 +91,7 @@ class FramePrinter:
             "parts": _lines(map(self._part, content)),
             "payloadIndex": content.index(frame.payload),
             "whole": self._whole(),
-            "put": PutTogether(plan).text() if is_put_together(plan) else None,
+            "stuff": stuffing(plan),
             "slots": len(self._slots),
             "identity": [self._slots[item.name] for item in frame.identity],
             "lastIdentity": self._slots[sent[-1].name] if sent else -1,

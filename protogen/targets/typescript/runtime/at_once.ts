@@ -7,7 +7,7 @@
 
 import { hasHighBit, NO_BYTES } from "./bytes.js";
 import { Fault } from "./errors.js";
-import { Framed, type PartValues } from "./events.js";
+import { Framed, Source, type PartValues } from "./events.js";
 import { holds } from "./plan.js";
 import type { Frame, Group, Runs, TakeWhole } from "./plan.js";
 import { Reader } from "./reader.js";
@@ -24,7 +24,7 @@ export class AtOnce {
   /** The same, for numbers of several bytes. */
   view: DataView;
   private at = 0;
-  private offset = 0;
+  private source: Source;
   private readonly isStuffed: boolean;
   private readonly reader = new Reader(NO_BYTES);
   private readonly frame: Frame;
@@ -33,11 +33,12 @@ export class AtOnce {
   private readonly marks: Uint8Array;
 
   constructor(
-    private readonly sender: Sender,
+    readonly sender: Sender,
     private readonly whole: TakeWhole,
   ) {
     const { frame } = sender;
     this.frame = frame;
+    this.source = new Source(sender, NO_BYTES, 0);
     this.isStuffed = frame.transparency !== null;
     this.content = new Uint8Array(frame.greatest + 1);
     this.content.set(frame.startBytes);
@@ -47,8 +48,10 @@ export class AtOnce {
   }
 
   /** Take frames from a start on, one behind another; the place behind the last one. */
-  take(data: Uint8Array, size: number, start: number, offset: number, events: unknown[]): number {
-    if (this.data !== data) {
+  take(source: Source, size: number, start: number, events: unknown[]): number {
+    if (this.source !== source) {
+      const { data } = source;
+      this.source = source;
       this.data = data;
       if (!this.isStuffed) {
         this.content = data;
@@ -56,7 +59,6 @@ export class AtOnce {
       }
     }
     this.size = size;
-    this.offset = offset;
     this.at = start;
     try {
       for (let event; this.at < size && (event = this.whole(this, this.at)); ) {
@@ -101,13 +103,12 @@ export class AtOnce {
     to: number,
     behind: number,
   ): Framed | null {
-    const { at, reader } = this;
+    const { at, reader, source } = this;
     const size = behind - at;
     if (!group || size > this.frame.givenUpAt || !holds(group.carried[0]!, to - from)) return null;
-    const plan = group.messages[0]!;
-    const message = plan.read(reader.restart(this.content, from, to));
+    const message = group.messages[0]!.read(reader.restart(this.content, from, to));
     reader.finish();
-    return new Framed(this.offset + at, size, this.data, at, this.sender, parts, message, plan);
+    return new Framed(source.offset + at, size, source, parts, message);
   }
 }
 
