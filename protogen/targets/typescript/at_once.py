@@ -108,17 +108,16 @@ class AtOnce:
             add(f"while (filled < {region.before}) content[filled++] = data[place++] ?? 0;")
         if folding:
             add(f"let sum = {folding.first};")
-        with self._lines.block("for (let isHead = true; ; isHead = false)"):
-            with self._lines.block("while (filled < due)"):
-                add("let byte = data[place++] ?? 0;")
-                self._replace(region.codes)
-                add("content[filled++] = byte;")
-                if folding:
-                    add(folding.step)
-            add("if (!isHead) break;")
-            if folding and folding.skips_head:
-                add(f"sum = {folding.first};")
-            self._measure()
+        with self._lines.block("while (filled < due)"):
+            add("let byte = data[place++] ?? 0;")
+            self._replace(region.codes)
+            add("content[filled++] = byte;")
+            if folding:
+                add(folding.step)
+            with self._lines.block(f"if (filled === {head})"):
+                if folding and folding.skips_head:
+                    add(f"sum = {folding.first};")
+                self._measure()
         add(f"const end = {_behind('due', -plan.tail_size)};")
         sum_ = [folding.wrong] if folding else []
         stop = _behind("place", len(plan.end_bytes))

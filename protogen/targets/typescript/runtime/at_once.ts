@@ -28,7 +28,9 @@ export class AtOnce {
   private readonly isStuffed: boolean;
   private readonly reader = new Reader(NO_BYTES);
   private readonly frame: Frame;
-  private readonly groups: ReadonlyMap<number, Group>;
+  /** Groups by the numbers of identities: those of small ones, and those of others. */
+  private readonly near: (Group | undefined)[] = [];
+  private readonly far = new Map<number, Group>();
   /** Bytes that may end a start or an end inside the frame. */
   private readonly marks: Uint8Array;
 
@@ -43,7 +45,13 @@ export class AtOnce {
     this.content = new Uint8Array(frame.greatest + 1);
     this.content.set(frame.startBytes);
     this.view = new DataView(this.content.buffer);
-    this.groups = plainGroups(sender);
+    for (const [identity, group] of plainGroups(sender)) {
+      if (identity >= NEAR) this.far.set(identity, group);
+      else {
+        while (this.near.length < identity) this.near.push(undefined);
+        this.near[identity] = group;
+      }
+    }
     this.marks = marksOf(sender);
   }
 
@@ -92,7 +100,7 @@ export class AtOnce {
 
   /** The messages of an identity, which is the number of all its parts; undefined: look further. */
   group(identity: number): Group | undefined {
-    return this.groups.get(identity);
+    return identity < this.near.length ? this.near[identity] : this.far.get(identity);
   }
 
   /** The event of the frame up to a place, with such a payload. Throws a Fault. */
@@ -111,6 +119,9 @@ export class AtOnce {
     return new Framed(source.offset + at, size, source, parts, message);
   }
 }
+
+/** Identities below it are looked up in an array, which is faster. */
+const NEAR = 4096;
 
 /** As many identities of a message are listed at most. */
 const LISTED = 256;

@@ -24,7 +24,9 @@ export declare class AtOnce {
     private readonly isStuffed;
     private readonly reader;
     private readonly frame;
-    private readonly groups;
+    /** Groups by the numbers of identities: those of small ones, and those of others. */
+    private readonly near;
+    private readonly far;
     /** Bytes that may end a start or an end inside the frame. */
     private readonly marks;
     constructor(sender: Sender, whole: TakeWhole);
