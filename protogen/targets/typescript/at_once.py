@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
-from typing import NamedTuple
 
 from protogen.model.frame_places import Place, PlacedPart, Run
 from protogen.model.frame_plan import FramePlan
@@ -29,6 +28,7 @@ from protogen.targets.typescript.literals import (
     call,
 )
 from protogen.targets.typescript.names import locals_table
+from protogen.targets.typescript.stuffing import adding
 
 
 def is_taken_at_once(plan: FramePlan) -> bool:
@@ -45,7 +45,7 @@ class AtOnce:
         self._shown = shown
         self._lines = BracedLines(2, 2)
         self._locals = locals_table()
-        self._folding = _folding(self._plan)
+        self._folded = _folded(self._plan)
         self._values: dict[str, Code] = {}
         """Variables, by the parts whose values they have."""
 
@@ -71,7 +71,7 @@ class AtOnce:
         if plan.region:
             yield "content"
         has_numbers = any(isinstance(item.part, NumberPart) for item in plan.head)
-        if has_numbers or (plan.checksums and not self._folding):
+        if has_numbers or (plan.checksums and not self._folded):
             yield "view"
 
     # --- content that is not stuffed --------------------------------------------------------------
@@ -101,27 +101,28 @@ class AtOnce:
 
     def _unstuff(self, region: StuffedRegion) -> None:
         """Print the loop that takes the stuffing off, and sums up on the way if it can."""
-        plan, add, folding = self._plan, self._lines.add, self._folding
+        plan, add, run = self._plan, self._lines.add, self._folded
+        spec = plan.checksums[0].part.algorithm if run else None
         taken, head = len(plan.start_bytes), plan.head_size
         add(f"let place = {_behind('at', taken)};", f"let filled = {taken};", f"let due = {head};")
         if region.before > taken:
             add(f"while (filled < {region.before}) content[filled++] = data[place++] ?? 0;")
-        if folding:
-            add(f"let sum = {folding.first};")
+        if spec:
+            add(f"let sum = {spec.init};")
         with self._lines.block("while (filled < due)"):
             add("let byte = data[place++] ?? 0;")
             self._replace(region.codes)
             add("content[filled++] = byte;")
-            if folding:
-                add(folding.step)
+            if spec:
+                add(adding(spec))
             with self._lines.block(f"if (filled === {head})"):
-                if folding and folding.skips_head:
-                    add(f"sum = {folding.first};")
+                if spec and run and run.first.offset == head:
+                    add(f"sum = {spec.init};")
                 self._measure()
         add(f"const end = {_behind('due', -plan.tail_size)};")
-        sum_ = [folding.wrong] if folding else []
         stop = _behind("place", len(plan.end_bytes))
-        self._refuse(f"{stop} > size", *_differ("data", "place", plan.end_bytes), *sum_)
+        is_wrong = ["sum & 255"] if spec else []
+        self._refuse(f"{stop} > size", *_differ("data", "place", plan.end_bytes), *is_wrong)
 
     def _measure(self) -> None:
         """Print what the head says of the bytes of content that are due."""
@@ -184,7 +185,7 @@ class AtOnce:
         """Print what holds the payload and the checksums against what they have to be."""
         plan = self._plan
         tests = [f"!f.isSevenBit({self._place(plan.head_size)}, end)"] if plan.seven_bit else []
-        for index, item in enumerate(() if self._folding else plan.checksums):
+        for index, item in enumerate(() if self._folded else plan.checksums):
             (run,) = item.covers
             assert isinstance(run, Run)
             found = _plain(item.part.type, self._at(item.placed.place))
@@ -223,28 +224,13 @@ class AtOnce:
             self._lines.add(f"if ({' || '.join(tests)}) return null;")
 
 
-class _Folding(NamedTuple):
-    """A checksum that is taken in the loop that takes stuffing off, itself included."""
-
-    first: int
-    """What it begins with."""
-    skips_head: bool
-    """True if it begins with the payload; else with the region."""
-    step: str
-    wrong: str
-
-
-def _folding(plan: FramePlan) -> _Folding | None:
-    """How the checksum is taken together with the bytes; None where that is too much."""
+def _folded(plan: FramePlan) -> Run | None:
+    """What is summed up together with its checksum while stuffing is taken off, which gives 0."""
     region, run = plan.region, folded_run(plan)
     if region is None or run is None or run.first.offset not in (region.before, plan.head_size):
         return None
-    spec, skips_head = plan.checksums[0].part.algorithm, run.first.offset == plan.head_size
-    if spec.kind == "xor" and not spec.negated:
-        return _Folding(spec.init, skips_head, "sum ^= byte;", "sum")
-    if spec.kind == "sum" and spec.negated:
-        return _Folding(spec.init, skips_head, "sum += byte;", "sum & 255")
-    return None
+    spec = plan.checksums[0].part.algorithm
+    return run if spec.negated == (spec.kind == "sum") else None
 
 
 def _plain(type_: Integer, place: str) -> Code:

@@ -90,7 +90,7 @@ class FramePrinter:
             "end": plan.end_bytes,
             "parts": _lines(map(self._part, content)),
             "payloadIndex": content.index(frame.payload),
-            "whole": self._whole(),
+            "whole": AtOnce(self._sender, self._keys).text() if is_taken_at_once(plan) else None,
             "stuff": stuffing(plan),
             "slots": len(self._slots),
             "identity": [self._slots[item.name] for item in frame.identity],
@@ -111,11 +111,6 @@ class FramePrinter:
             "encodeOnly": _lines(map(self._plan_name, self._sender.encode_only)),
         }
         return call("rt.frame", lines({k: it for k, it in facts.items() if not _is_usual(it)}))
-
-    def _whole(self) -> Code | None:
-        if not is_taken_at_once(self._plan):
-            return None
-        return AtOnce(self._sender, self._keys).text()
 
     def _plan_name(self, message: Message) -> Code:
         return Code(self._names.functions[message.name][2])

@@ -6,6 +6,7 @@ frame is put together by the runtime.
 
 from __future__ import annotations
 
+from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame_plan import FramePlan
 from protogen.model.part_plans import StuffedRegion
 from protogen.model.plain_frames import folded_run
@@ -24,11 +25,16 @@ def stuffing(plan: FramePlan) -> Code | None:
     if first > region.before:
         _stuff(lines, region, str(first))
     lines.add(f"let sum = {spec.init};")
-    _stuff(lines, region, "end", f"sum {'^' if spec.kind == 'xor' else '+'}= byte;")
+    _stuff(lines, region, "end", adding(spec))
     lines.add(f"bytes[end] = {'-' * spec.negated}sum;")
     _stuff(lines, region, "end + 1")
     lines.add("return at;")
     return Code("\n".join(["(w, end) => {", *lines.lines, "  }"]))
+
+
+def adding(spec: ChecksumSpec) -> str:
+    """The statement that takes a byte into a sum or an exclusive or."""
+    return f"sum {'^' if spec.kind == 'xor' else '+'}= byte;"
 
 
 def _stuff(lines: BracedLines, region: StuffedRegion, stop: str, *summing: str) -> None:
