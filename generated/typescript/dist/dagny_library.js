@@ -280,10 +280,8 @@ function hostFrame() {
       let filled = 0;
       let due = 1;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 27) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 22) byte = 13;
           else if (byte === 0) byte = 27;
@@ -302,26 +300,6 @@ function hostFrame() {
       if (place + 1 > size || data[place] !== 13) return null;
       const id = view.getUint8(0);
       return f.event({ id }, f.group(id), 1, end, place + 1);
-    },
-    put: (f, w, given, counts) => {
-      for (const _ in given) return null;
-      const id = f.identity(0);
-      const end = w.size;
-      w.room(1);
-      const { bytes } = w;
-      bytes[0] = id;
-      bytes[end] = 13;
-      const wire = w.wire(2 * w.size);
-      let at = 0;
-      let i = 0;
-      for (; i < end; i++) {
-        const byte = bytes[i] ?? 0;
-        if (byte === 13) { wire[at++] = 27; wire[at++] = 22; }
-        else if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
-        else wire[at++] = byte;
-      }
-      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
-      return wire.slice(0, at);
     },
     slots: 1,
     identity: [0],
@@ -375,10 +353,8 @@ function robotFrame() {
       let filled = 0;
       let due = 1;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 27) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 22) byte = 13;
           else if (byte === 0) byte = 27;
@@ -397,26 +373,6 @@ function robotFrame() {
       if (place + 1 > size || data[place] !== 13) return null;
       const id = view.getUint8(0);
       return f.event({ id }, f.group(id), 1, end, place + 1);
-    },
-    put: (f, w, given, counts) => {
-      for (const _ in given) return null;
-      const id = f.identity(0);
-      const end = w.size;
-      w.room(1);
-      const { bytes } = w;
-      bytes[0] = id;
-      bytes[end] = 13;
-      const wire = w.wire(2 * w.size);
-      let at = 0;
-      let i = 0;
-      for (; i < end; i++) {
-        const byte = bytes[i] ?? 0;
-        if (byte === 13) { wire[at++] = 27; wire[at++] = 22; }
-        else if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
-        else wire[at++] = byte;
-      }
-      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
-      return wire.slice(0, at);
     },
     slots: 1,
     identity: [0],

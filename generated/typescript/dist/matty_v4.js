@@ -348,10 +348,8 @@ function pcFrame() {
       let due = 4;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 86) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 170) byte = 85;
           else if (byte === 169) byte = 86;
@@ -367,44 +365,26 @@ function pcFrame() {
         }
       }
       const end = due - 1;
-      if (sum & 255) return null;
+      if (place > size || sum & 255) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
       return f.event({ counter, command }, f.group(command), 4, end, place);
     },
-    put: (f, w, given, counts) => {
-      for (const name in given) if (name !== "counter") return null;
-      const length = f.length(w.size);
-      const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
-      const command = f.identity(0);
-      if (length < 0 || counter < 0) return null;
-      const end = w.size;
-      w.room(1);
+    stuff: (w, end) => {
       const { bytes } = w;
-      bytes[0] = 85;
-      bytes[1] = length;
-      bytes[2] = counter;
-      bytes[3] = command;
       const wire = w.wire(2 * w.size);
-      let at = 0;
-      let i = 0;
-      for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
+      let at = 1;
+      let i = 1;
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = -sum;
         const byte = bytes[i] ?? 0;
         sum += byte;
         if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
         else wire[at++] = byte;
       }
-      bytes[end] = -sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
-        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
-        else wire[at++] = byte;
-      }
-      return wire.slice(0, at);
+      return at;
     },
     slots: 3,
     identity: [1],
@@ -470,10 +450,8 @@ function espFrame() {
       let due = 4;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 86) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 170) byte = 85;
           else if (byte === 169) byte = 86;
@@ -489,44 +467,26 @@ function espFrame() {
         }
       }
       const end = due - 1;
-      if (sum & 255) return null;
+      if (place > size || sum & 255) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
       return f.event({ counter, command }, f.group(command), 4, end, place);
     },
-    put: (f, w, given, counts) => {
-      for (const name in given) if (name !== "counter") return null;
-      const length = f.length(w.size);
-      const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
-      const command = f.identity(0);
-      if (length < 0 || counter < 0) return null;
-      const end = w.size;
-      w.room(1);
+    stuff: (w, end) => {
       const { bytes } = w;
-      bytes[0] = 85;
-      bytes[1] = length;
-      bytes[2] = counter;
-      bytes[3] = command;
       const wire = w.wire(2 * w.size);
-      let at = 0;
-      let i = 0;
-      for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
+      let at = 1;
+      let i = 1;
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = -sum;
         const byte = bytes[i] ?? 0;
         sum += byte;
         if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
         else wire[at++] = byte;
       }
-      bytes[end] = -sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
-        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
-        else wire[at++] = byte;
-      }
-      return wire.slice(0, at);
+      return at;
     },
     slots: 3,
     identity: [1],

@@ -811,19 +811,15 @@ function linuxFrame(): rt.Frame {
       let due = 6;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 27) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 0) byte = 27;
           else return null;
         }
         else if (byte === 124) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 27) {
-            if (place === size) return null;
             byte = data[place++] ?? 0;
             if (byte === 1) byte = 124;
             else return null;
@@ -831,41 +827,25 @@ function linuxFrame(): rt.Frame {
           else return null;
         }
         content[filled++] = byte;
-        if (filled > 6) sum ^= byte;
+        sum ^= byte;
         if (filled === 6) {
+          sum = 0;
           const length = view.getUint8(5);
           due = length + 7;
         }
       }
       const end = due - 1;
-      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum) return null;
+      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum & 255) return null;
       const class_ = view.getUint8(2);
       const number_ = view.getUint8(3);
       const subclass = view.getUint8(4);
       return f.event({ class: class_, number: number_, subclass }, f.group(256 * (class_) + subclass), 6, end, place + 2);
     },
-    put: (f, w, given, counts) => {
-      for (const name in given) if (name !== "number") return null;
-      const class_ = f.identity(0);
-      const number_ = f.number(given["number"] ?? f.usual(0, counts), 0, 255);
-      const subclass = f.identity(1);
-      const length = f.length(w.size);
-      if (number_ < 0 || length < 0) return null;
-      const end = w.size;
-      w.room(3);
+    stuff: (w, end) => {
       const { bytes } = w;
-      bytes[0] = 27;
-      bytes[1] = 2;
-      bytes[2] = class_;
-      bytes[3] = number_;
-      bytes[4] = subclass;
-      bytes[5] = length;
-      bytes[end + 1] = 27;
-      bytes[end + 2] = 3;
       const wire = w.wire(3 * w.size);
-      let at = 0;
-      let i = 0;
-      for (; i < 2; i++) wire[at++] = bytes[i] ?? 0;
+      let at = 2;
+      let i = 2;
       for (; i < 6; i++) {
         const byte = bytes[i] ?? 0;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
@@ -873,22 +853,15 @@ function linuxFrame(): rt.Frame {
         else wire[at++] = byte;
       }
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = sum;
         const byte = bytes[i] ?? 0;
         sum ^= byte;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
         else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
         else wire[at++] = byte;
       }
-      bytes[end] = sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
-        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
-        else wire[at++] = byte;
-      }
-      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
-      return wire.slice(0, at);
+      return at;
     },
     slots: 4,
     identity: [0, 2],
@@ -958,19 +931,15 @@ function flexFrame(): rt.Frame {
       let due = 6;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 27) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 0) byte = 27;
           else return null;
         }
         else if (byte === 124) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 27) {
-            if (place === size) return null;
             byte = data[place++] ?? 0;
             if (byte === 1) byte = 124;
             else return null;
@@ -978,41 +947,25 @@ function flexFrame(): rt.Frame {
           else return null;
         }
         content[filled++] = byte;
-        if (filled > 6) sum ^= byte;
+        sum ^= byte;
         if (filled === 6) {
+          sum = 0;
           const length = view.getUint8(5);
           due = length + 7;
         }
       }
       const end = due - 1;
-      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum) return null;
+      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum & 255) return null;
       const class_ = view.getUint8(2);
       const number_ = view.getUint8(3);
       const subclass = view.getUint8(4);
       return f.event({ class: class_, number: number_, subclass }, f.group(256 * (class_) + subclass), 6, end, place + 2);
     },
-    put: (f, w, given, counts) => {
-      for (const name in given) if (name !== "number") return null;
-      const class_ = f.identity(0);
-      const number_ = f.number(given["number"] ?? f.usual(0, counts), 0, 255);
-      const subclass = f.identity(1);
-      const length = f.length(w.size);
-      if (number_ < 0 || length < 0) return null;
-      const end = w.size;
-      w.room(3);
+    stuff: (w, end) => {
       const { bytes } = w;
-      bytes[0] = 27;
-      bytes[1] = 2;
-      bytes[2] = class_;
-      bytes[3] = number_;
-      bytes[4] = subclass;
-      bytes[5] = length;
-      bytes[end + 1] = 27;
-      bytes[end + 2] = 3;
       const wire = w.wire(3 * w.size);
-      let at = 0;
-      let i = 0;
-      for (; i < 2; i++) wire[at++] = bytes[i] ?? 0;
+      let at = 2;
+      let i = 2;
       for (; i < 6; i++) {
         const byte = bytes[i] ?? 0;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
@@ -1020,22 +973,15 @@ function flexFrame(): rt.Frame {
         else wire[at++] = byte;
       }
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = sum;
         const byte = bytes[i] ?? 0;
         sum ^= byte;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
         else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
         else wire[at++] = byte;
       }
-      bytes[end] = sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
-        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
-        else wire[at++] = byte;
-      }
-      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
-      return wire.slice(0, at);
+      return at;
     },
     slots: 4,
     identity: [0, 2],

@@ -25,9 +25,8 @@ def stuffing(plan: FramePlan) -> Code | None:
     if first > region.before:
         _stuff(lines, region, str(first))
     lines.add(f"let sum = {spec.init};")
-    _stuff(lines, region, "end", adding(spec))
-    lines.add(f"bytes[end] = {'-' * spec.negated}sum;")
-    _stuff(lines, region, "end + 1")
+    done = f"if (i === end) bytes[end] = {'-' * spec.negated}sum;"
+    _stuff(lines, region, "end + 1", done, adding(spec))
     lines.add("return at;")
     return Code("\n".join(["(w, end) => {", *lines.lines, "  }"]))
 
@@ -41,7 +40,7 @@ def _stuff(lines: BracedLines, region: StuffedRegion, stop: str, *summing: str) 
     """Print the loop that stuffs the bytes up to a place."""
     with lines.block(f"for (; i < {stop}; i++)"):
         # No byte is missing, but types don't know that.
-        lines.add("const byte = bytes[i] ?? 0;", *summing)
+        lines.add(*summing[:1], "const byte = bytes[i] ?? 0;", *summing[1:])
         word = ""
         for byte, sequence in region.codes:
             put = " ".join(f"wire[at++] = {item};" for item in sequence)

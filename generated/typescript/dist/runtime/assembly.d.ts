@@ -1,36 +1,10 @@
 /** Frames from their parts: what is always the same, and what each frame has anew. */
-import { EncodeError } from "./errors.js";
+import { GivenPart, type Counts, type GivenParts } from "./given.js";
 import { Layout, type Values } from "./layout.js";
 import type { Value } from "./numbers.js";
-import type { MessagePlan, ValueNumber } from "./plan.js";
+import type { MessagePlan } from "./plan.js";
 import { type Sender } from "./sender.js";
 import type { Writer } from "./writer.js";
-/** Values of parts by their names, as callers give them. */
-export type GivenParts = Readonly<Record<string, unknown>>;
-/** The next values of counters, by their names. */
-export type Counts = Map<string, Value>;
-/** A part whose value callers may give, or have to. */
-declare class GivenPart {
-    private readonly part;
-    readonly name: string;
-    readonly slot: number;
-    /** True if every object has something by its name. */
-    private readonly isInherited;
-    /** Bounds of the numbers that need no other check; there are none where it is no number. */
-    private readonly least;
-    private readonly greatest;
-    constructor(part: ValueNumber);
-    /** What a caller gives for it. */
-    own(given: GivenParts): unknown;
-    /** The value of what a caller gives. Throws an EncodeError. */
-    given(own: unknown, strict: boolean): Value;
-    /** The value where a caller gives none; null where there has to be one. */
-    usual(counts: Counts | null): Value | null;
-    /** The error where there is no value. */
-    error(): EncodeError;
-    /** Go on counting, where the callers gave no value. */
-    count(given: GivenParts, counts: Counts): void;
-}
 /** What makes the frames of a sender, one after another. */
 declare class Assembly {
     readonly sender: Sender;
@@ -65,13 +39,9 @@ export declare class FrameMaker {
     private readonly isDoubtful;
     /** Bytes of every frame, where all have as many and none are stuffed; else 0. */
     private readonly size;
-    /** What makes a frame in one go, if all that has to be known is in it. */
-    private readonly put;
+    /** What puts a frame together that nothing rare is in; null where there always is. */
+    private readonly plain;
     private readonly headSize;
-    /** What the length is without a payload, and its bounds in frames of one. */
-    private readonly base;
-    private readonly least;
-    private readonly greatest;
     constructor(assembly: Assembly, message: MessagePlan);
     get sender(): Sender;
     /**
@@ -82,16 +52,6 @@ export declare class FrameMaker {
     make(value: unknown, given: GivenParts, strict: boolean, counts?: Counts | null): Uint8Array;
     /** The frame around a payload, by the description of the frame. Throws an EncodeError. */
     private described;
-    /** An identity. */
-    identity(index: number): number;
-    /** The length of a frame whose payload ends there; -1 where it can't be. */
-    length(end: number): number;
-    /** The value of a part where callers give none. */
-    usual(index: number, counts: Counts | null): Value | null;
-    /** A value that is a number in these bounds; -1 of another one. */
-    number(value: unknown, least: number, greatest: number): number;
-    /** The checksum of some bytes. */
-    sum(bytes: Uint8Array, from: number, to: number): number;
     /** True if a decoder could take a frame of a given identity for another one. */
     private checkIdentity;
 }

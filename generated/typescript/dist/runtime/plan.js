@@ -39,7 +39,7 @@ const USUAL = {
     rescans: false,
     takesWhole: false,
     whole: null,
-    put: null,
+    stuff: null,
     cutAmbiguous: false,
     isBounded: false,
     isCut: false,

@@ -2,99 +2,15 @@
 
 import { equal, hasHighBit } from "./bytes.js";
 import { Cut, verdictOn } from "./candidate.js";
-import { mayBe } from "./content.js";
 import { EncodeError } from "./errors.js";
-import { inside, Layout, put, type Values } from "./layout.js";
-import type { PartNumber, Value } from "./numbers.js";
+import { GivenPart, givenTo, type Counts, type GivenParts } from "./given.js";
+import { Layout, type Values } from "./layout.js";
+import type { Value } from "./numbers.js";
+import { PlainFrame } from "./plain_frame.js";
 import { areAmong, ownOf } from "./plan.js";
-import type { HeldParts, MessagePlan, PutTogether, ValueNumber } from "./plan.js";
+import type { HeldParts, MessagePlan } from "./plan.js";
 import { writeMessage, writerOf, type Sender } from "./sender.js";
 import type { Writer } from "./writer.js";
-
-/** Values of parts by their names, as callers give them. */
-export type GivenParts = Readonly<Record<string, unknown>>;
-
-/** The next values of counters, by their names. */
-export type Counts = Map<string, Value>;
-
-function givenTo(number: PartNumber | null, value: unknown, name: string): Value {
-  if (!number) {
-    if (typeof value === "number" && Number.isInteger(value)) return value;
-    throw new EncodeError(name, `must be an integer, not ${String(value)}`);
-  }
-  try {
-    return number.given(value);
-  } catch (error) {
-    throw inside(error, name);
-  }
-}
-
-/** A part whose value callers may give, or have to. */
-class GivenPart {
-  readonly name: string;
-  readonly slot: number;
-  /** True if every object has something by its name. */
-  private readonly isInherited: boolean;
-  /** Bounds of the numbers that need no other check; there are none where it is no number. */
-  private readonly least: number = Infinity;
-  private readonly greatest: number = -Infinity;
-
-  constructor(private readonly part: ValueNumber) {
-    const { least, greatest, values, between } = part;
-    this.name = part.name;
-    this.slot = part.slot;
-    this.isInherited = this.name in Object.prototype;
-    if (typeof least !== "number" || typeof greatest !== "number") return;
-    if (values === undefined && between === undefined) {
-      this.least = least;
-      this.greatest = greatest;
-    }
-  }
-
-  /** What a caller gives for it. */
-  own(given: GivenParts): unknown {
-    return this.isInherited ? ownOf(given, this.name) : given[this.name];
-  }
-
-  /** The value of what a caller gives. Throws an EncodeError. */
-  given(own: unknown, strict: boolean): Value {
-    if (typeof own === "number" && own >= this.least && own <= this.greatest) {
-      if (Number.isInteger(own)) return own;
-    }
-    const { part } = this;
-    const value = givenTo(part.number, own, part.name);
-    if (!strict && !part.isHeld) {
-      // A layout takes bytes as they are, so what does not fit them is refused here.
-      put(part.number, value, new Uint8Array(part.number.size), 0, part.name);
-      return value;
-    }
-    if (strict && typeof own === "string" && /[^\0-\x7f]/.test(own)) {
-      throw new EncodeError(part.name, `"${own}" has a character that is not ASCII`);
-    }
-    if (!mayBe(part, value)) throw new EncodeError(part.name, `it can't be ${value}`);
-    return value;
-  }
-
-  /** The value where a caller gives none; null where there has to be one. */
-  usual(counts: Counts | null): Value | null {
-    const { name, isCounter, default: usual } = this.part;
-    return (isCounter ? counts?.get(name) : null) ?? usual;
-  }
-
-  /** The error where there is no value. */
-  error(): EncodeError {
-    const advice = this.part.isCounter ? ", or use an Encoder, which counts" : "";
-    return new EncodeError(this.name, `the value is missing; give it as a part${advice}`);
-  }
-
-  /** Go on counting, where the callers gave no value. */
-  count(given: GivenParts, counts: Counts): void {
-    const { name, isCounter, least, greatest } = this.part;
-    if (!isCounter || (this.own(given) ?? null) !== null) return;
-    const value = counts.get(name)!;
-    counts.set(name, value >= greatest ? least : Number(value) + 1);
-  }
-}
 
 /** What makes the frames of a sender, one after another. */
 class Assembly {
@@ -203,13 +119,9 @@ export class FrameMaker {
   private readonly isDoubtful: boolean;
   /** Bytes of every frame, where all have as many and none are stuffed; else 0. */
   private readonly size: number;
-  /** What makes a frame in one go, if all that has to be known is in it. */
-  private readonly put: PutTogether | null;
+  /** What puts a frame together that nothing rare is in; null where there always is. */
+  private readonly plain: PlainFrame | null;
   private readonly headSize: number;
-  /** What the length is without a payload, and its bounds in frames of one. */
-  private readonly base: number;
-  private readonly least: number;
-  private readonly greatest: number;
 
   constructor(
     private readonly assembly: Assembly,
@@ -223,12 +135,9 @@ export class FrameMaker {
     this.isDoubtful = cutAmbiguous || !sender.group(values);
     const isFixed = least === greatest && !transparency && kept === null;
     this.size = isFixed ? least + (least ? assembly.full : assembly.empty).size : 0;
-    this.put = this.isDoubtful || message.held.length ? null : sender.frame.put;
     this.headSize = sender.frame.headSize;
-    const { length } = sender;
-    this.base = length ? length.base : 0;
-    this.least = length ? length.least : 0;
-    this.greatest = length ? Math.min(length.greatest, this.base + sender.frame.greatestPayload) : 0;
+    const isPlain = !this.isDoubtful && !message.held.length;
+    this.plain = isPlain ? PlainFrame.of(sender, assembly.parts, this.values) : null;
   }
 
   get sender(): Sender {
@@ -246,12 +155,12 @@ export class FrameMaker {
     strict: boolean,
     counts: Counts | null = null,
   ): Uint8Array {
-    const { assembly, headSize, put } = this;
+    const { assembly, headSize, plain } = this;
     const writer = writerOf(strict, headSize, this.size);
     writeMessage(this.message, writer, value);
     const size = assembly.sender.trimmed(writer.bytes, headSize, writer.size - headSize);
     writer.size = headSize + size;
-    const found = put && put(this, writer, given, counts);
+    const found = plain && plain.around(writer, given, counts);
     const wire = found ?? this.described(writer, size, given, strict, counts);
     if (counts) for (const part of assembly.parts) part.count(given, counts);
     return wire;
@@ -272,35 +181,6 @@ export class FrameMaker {
     const wire = assembly.wire(writer, size);
     if (isDoubtful) assembly.check(wire, writer.bytes.slice(headSize, headSize + size));
     return wire;
-  }
-
-  // --- what printed functions ask -----------------------------------------------------------------
-
-  /** An identity. */
-  identity(index: number): number {
-    return this.values[index] as number;
-  }
-
-  /** The length of a frame whose payload ends there; -1 where it can't be. */
-  length(end: number): number {
-    const value = this.base + end - this.headSize;
-    return value >= this.least && value <= this.greatest ? value : -1;
-  }
-
-  /** The value of a part where callers give none. */
-  usual(index: number, counts: Counts | null): Value | null {
-    return this.assembly.parts[index]!.usual(counts);
-  }
-
-  /** A value that is a number in these bounds; -1 of another one. */
-  number(value: unknown, least: number, greatest: number): number {
-    const isIn = typeof value === "number" && value >= least && value <= greatest;
-    return isIn && Number.isInteger(value) ? value : -1;
-  }
-
-  /** The checksum of some bytes. */
-  sum(bytes: Uint8Array, from: number, to: number): number {
-    return this.assembly.sender.frame.sums[0]!.algorithm.compute(bytes, from, to) as number;
   }
 
   /** True if a decoder could take a frame of a given identity for another one. */

@@ -1,6 +1,5 @@
 /** What a generated module says of a sender: its frame, as the compiler worked it out. */
 
-import type { Counts, FrameMaker, GivenParts } from "./assembly.js";
 import type { AtOnce } from "./at_once.js";
 import type { Checksum } from "./checksums.js";
 import type { Framed, PartValues } from "./events.js";
@@ -191,8 +190,13 @@ export function ownOf<T>(given: Readonly<Record<string, T>>, name: string): T | 
 /** None of them. */
 export const NO_PARTS: HeldParts = {};
 
+/** A message: an object with its name. */
+export interface NamedMessage {
+  readonly message: string;
+}
+
 /** A message: how its payload is read and written. */
-export interface MessagePlan<M = unknown> {
+export interface MessagePlan<M = NamedMessage> {
   readonly name: string;
   readonly identities: Runs;
   readonly sizes: Sizes;
@@ -251,13 +255,12 @@ export function group(
 /** Takes the frame that stands at a place; null where it is not plainly one. Throws a Fault. */
 export type TakeWhole = (frames: AtOnce, at: number) => Framed | null;
 
-/** Puts a frame around the payload that was written; null where it is not plainly one. */
-export type PutTogether = (
-  maker: FrameMaker,
-  writer: Writer,
-  given: GivenParts,
-  counts: Counts | null,
-) => Uint8Array | null;
+/**
+ * Stuffs the region of a frame whose payload ends there, with its checksum; the place behind it.
+ *
+ * It sums up on the way. On the wire the region begins where it does in the content.
+ */
+export type Stuff = (writer: Writer, end: number) => number;
 
 /** A sender's frame. Sizes are in bytes; content is what is there before any stuffing. */
 export interface Frame {
@@ -313,8 +316,8 @@ export interface Frame {
   readonly takesWhole: boolean;
   /** What takes a frame that is there as a whole; null where nothing is generated for that. */
   readonly whole: TakeWhole | null;
-  /** What makes a frame in one go; null where nothing is generated for that. */
-  readonly put: PutTogether | null;
+  /** What stuffs its region in one go; null where nothing is generated for that. */
+  readonly stuff: Stuff | null;
   readonly cutAmbiguous: boolean;
   readonly isBounded: boolean;
   /** Bytes that stay, at least, where zeros at the payload's end are left out; else null. */
@@ -337,7 +340,7 @@ const USUAL = {
   rescans: false,
   takesWhole: false,
   whole: null,
-  put: null,
+  stuff: null,
   cutAmbiguous: false,
   isBounded: false,
   isCut: false,

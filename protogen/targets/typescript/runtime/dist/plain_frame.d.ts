@@ -6,7 +6,7 @@
  */
 import { type Counts, type GivenPart, type GivenParts } from "./given.js";
 import type { Value } from "./numbers.js";
-import { type Sender } from "./sender.js";
+import type { Sender } from "./sender.js";
 import type { Writer } from "./writer.js";
 /** Puts the frames of a message together. */
 export declare class PlainFrame {

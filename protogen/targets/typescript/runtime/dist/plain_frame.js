@@ -6,7 +6,6 @@
  */
 import { NONE_GIVEN } from "./given.js";
 import { at as placeAt } from "./plan.js";
-import { numbersOf } from "./sender.js";
 /** A number, and its place in front of the payload. */
 class Spot {
     constructor(number, at) {
@@ -63,21 +62,12 @@ export class PlainFrame {
     }
     /** What puts the frames of a message with that identity together; null: there are rare things. */
     static of(sender, parts, identity) {
-        const { frame } = sender;
-        const { payloadIndex, told, virtual, isBounded, kept, isCut, sums } = frame;
-        const { transparency, firstStuffed, lastStuffed } = frame;
-        const isOdd = frame.parts.some((part, index) => {
-            const isNumber = part.kind === "number";
-            if (part.isOptional || part.kind === "bits")
-                return true;
-            return isNumber && (index > payloadIndex || !part.part.number.isPlain);
-        });
-        const lengths = numbersOf(frame.parts).filter((part) => part.kind === "length");
-        const countsMore = lengths.length > 1 || lengths.some((part) => part.overWire);
-        const isAround = firstStuffed <= payloadIndex && payloadIndex <= lastStuffed;
-        const sumsMore = sums.length > 1 || sums.some((sum) => sum.isOptional || !runSum(sum));
-        const needsMore = told.length || virtual.length || isBounded || kept !== null || isCut;
-        if (isOdd || countsMore || sumsMore || needsMore || (transparency && !isAround))
+        const { whole, told, isBounded, sums, payloadIndex, parts: all } = sender.frame;
+        // What is taken at once is plain, but for these.
+        const isBehind = all.some((part, index) => part.kind === "number" && index > payloadIndex);
+        const sumsMore = sums.length > 1 || sums.some((sum) => !runSum(sum));
+        const isOdd = isBehind || sumsMore || isBounded || told.length > 0;
+        if (!whole || isOdd || sender.length?.overWire)
             return null;
         return new PlainFrame(sender, parts, identity);
     }
