@@ -105,6 +105,8 @@ LOADS_UNSEEN = ("dagny", "rflex", "rn1")
 """Documents whose `dispatch` copies arrays of any number of elements: EVA does not see that this is
 what the size of the payload says."""
 
+FEED_UNSEEN = ("rn1", "messages")
+"""A document whose `feed` EVA takes all ways through together."""
 UHEROBOT = ROOT / "schemas" / "uherobot.yaml"
 SENT = [path for path in DOCUMENTS if path.stem != "rn1"]
 """Documents whose messages are sent. In rn1 one has cases of any size, which EVA takes together."""
@@ -166,6 +168,9 @@ def test_annotations_are_comments(path: Path, tmp_path: Path) -> None:
     assert re.sub(r" +//@ (split .*;\n +;|slevel merge;)\n", "", with_comments) == plain
 
 
+_TAKES = re.compile(r"\b\w+_take_byte\b")
+
+
 def prove_sending(made: Generated) -> Report:
     """Analyse what encodes and sends messages of up to `GREATEST` bytes."""
     assert made.source is not None
@@ -186,14 +191,22 @@ def whole_driver(made: Generated, *, loads: bool = True) -> Driver:
     header = made.header.read_text(encoding="utf-8")
     plain = made.source.read_text(encoding="utf-8")
     made.source.write_text(fed(plain, header), encoding="utf-8")
-    return push_driver(made.protocol, header, feeds=True, loads=loads)
+    driver = push_driver(made.protocol, header, feeds=True, loads=loads)
+    depths = {
+        f"{name}:64": f"{name}(" in plain for name in _TAKES.findall(" ".join(driver.options))
+    }
+    options = driver.options
+    for depth, is_there in depths.items():  # Not each `feed` has a function of its own for a byte.
+        options = options if is_there else tuple(o.replace(f",{depth}", "") for o in options)
+    return replace(driver, options=options)
 
 
 @pytest.mark.parametrize(("path", "events", "machine"), PUSHES, ids=name_of)
 def test_no_input_harms_a_decoder(path: Path, events: Events, machine: str, tmp_path: Path) -> None:
     protocol = protocol_of(path)
     made = generate(protocol, tmp_path, COptions(events=events))
-    if path in DOCUMENTS and (ALL or path.stem not in SLOW_ALL):
+    is_fed = path in DOCUMENTS and (path.stem, events) != FEED_UNSEEN
+    if is_fed and path.stem not in SLOW_ALL:
         driver = whole_driver(made, loads=path.stem not in LOADS_UNSEEN)
     else:
         driver = plain_driver(made, path)
