@@ -274,7 +274,10 @@ def test_a_load_that_writes_a_byte_too_many_is_found(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("pattern", "fault"),
     [
-        (r"return 2U \* content \+ 1U;", "return 2U * content - 1U;"),  # A byte is to spare.
+        (
+            r"return 2U \* content \+ 1U;",
+            "return 2U * content - 1U;",
+        ),  # Of these two bytes, one was to spare.
         (r"capacity < 21U", "capacity < 20U"),
     ],
 )
