@@ -936,6 +936,24 @@ DAGNY_API const char *dagny_reason_name(enum dagny_reason reason);
 DAGNY_API const char *dagny_reflex_reflex_command_name(uint8_t value);
 DAGNY_API const char *dagny_power_code_name(uint8_t value);
 
+/*
+ * Where a function returned DAGNY_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+DAGNY_API const char *dagny_sonar_refused(const struct dagny_sonar *message);
+DAGNY_API const char *dagny_gps_refused(const struct dagny_gps *message);
+DAGNY_API const char *dagny_bump_refused(const struct dagny_bump *message);
+DAGNY_API const char *dagny_odometry_refused(const struct dagny_odometry *message);
+DAGNY_API const char *dagny_speed_refused(const struct dagny_speed *message);
+DAGNY_API const char *dagny_wheel_slip_refused(const struct dagny_wheel_slip *message);
+DAGNY_API const char *dagny_battery_refused(const struct dagny_battery *message);
+DAGNY_API const char *dagny_reflex_settings_refused(const struct dagny_reflex_settings *message);
+DAGNY_API const char *dagny_hardware_status_refused(const struct dagny_hardware_status *message);
+DAGNY_API const char *dagny_laser_refused(const struct dagny_laser *message);
+DAGNY_API const char *dagny_command_refused(const struct dagny_command *message);
+
 #endif
 
 #ifdef __cplusplus

@@ -917,6 +917,16 @@ DAGNY_LIBRARY_API const char *dagny_library_result_name(enum dagny_library_resul
 DAGNY_LIBRARY_API const char *dagny_library_reason_name(enum dagny_library_reason reason);
 DAGNY_LIBRARY_API const char *dagny_library_power_code_name(uint8_t value);
 
+/*
+ * Where a function returned DAGNY_LIBRARY_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+DAGNY_LIBRARY_API const char *dagny_library_gps_refused(const struct dagny_library_gps *message);
+DAGNY_LIBRARY_API const char *dagny_library_laser_refused(
+    const struct dagny_library_laser *message);
+
 #endif
 
 #ifdef __cplusplus

@@ -762,6 +762,14 @@ MATTY_API const char *matty_reason_name(enum matty_reason reason);
 MATTY_API const char *matty_robot_mode_name(uint8_t value);
 MATTY_API const char *matty_gps_mode_mode_name(uint8_t value);
 
+/*
+ * Where a function returned MATTY_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+MATTY_API const char *matty_gps_refused(const struct matty_gps *message);
+
 #endif
 
 #ifdef __cplusplus

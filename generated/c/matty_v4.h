@@ -937,6 +937,15 @@ MATTY_V4_API const char *matty_v4_stop_mode_name(uint8_t value);
 MATTY_V4_API const char *matty_v4_robot_mode_name(uint8_t value);
 MATTY_V4_API const char *matty_v4_gps_mode_mode_name(uint8_t value);
 
+/*
+ * Where a function returned MATTY_V4_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+MATTY_V4_API const char *matty_v4_led_refused(const struct matty_v4_led *message);
+MATTY_V4_API const char *matty_v4_gps_refused(const struct matty_v4_gps *message);
+
 #endif
 
 #ifdef __cplusplus

@@ -1324,6 +1324,14 @@ RFLEX_API const char *rflex_motor_command_direction_name(uint8_t value);
 RFLEX_API const char *rflex_start_stop_motor_packets_start_stop_name(uint8_t value);
 RFLEX_API const char *rflex_start_stop_sonar_packets_start_stop_name(uint8_t value);
 
+/*
+ * Where a function returned RFLEX_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+RFLEX_API const char *rflex_sonar_data_refused(const struct rflex_sonar_data *message);
+
 #endif
 
 #ifdef __cplusplus

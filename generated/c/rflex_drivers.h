@@ -1588,6 +1588,19 @@ RFLEX_DRIVERS_API const char *rflex_drivers_motor_command_direction_name(uint8_t
 RFLEX_DRIVERS_API const char *rflex_drivers_start_stop_sonar_packets_mode_name(uint8_t value);
 RFLEX_DRIVERS_API const char *rflex_drivers_ir_run_mode_name(uint8_t value);
 
+/*
+ * Where a function returned RFLEX_DRIVERS_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+RFLEX_DRIVERS_API const char *rflex_drivers_lcd_dump_refused(
+    const struct rflex_drivers_lcd_dump *message);
+RFLEX_DRIVERS_API const char *rflex_drivers_sonar_data_refused(
+    const struct rflex_drivers_sonar_data *message);
+RFLEX_DRIVERS_API const char *rflex_drivers_ir_report_refused(
+    const struct rflex_drivers_ir_report *message);
+
 #endif
 
 #ifdef __cplusplus

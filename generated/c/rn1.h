@@ -825,6 +825,25 @@ RN1_API const char *rn1_gyro_status_name(uint8_t value);
 RN1_API const char *rn1_xcel_status_name(uint8_t value);
 RN1_API const char *rn1_compass_status_name(uint8_t value);
 
+/*
+ * Where a function returned RN1_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+RN1_API const char *rn1_move_manual_refused(const struct rn1_move_manual *message);
+RN1_API const char *rn1_move_relative_twostep_refused(
+    const struct rn1_move_relative_twostep *message);
+RN1_API const char *rn1_move_relative_arc_refused(const struct rn1_move_relative_arc *message);
+RN1_API const char *rn1_maintenance_refused(const struct rn1_maintenance *message);
+RN1_API const char *rn1_gyro_refused(const struct rn1_gyro *message);
+RN1_API const char *rn1_xcel_refused(const struct rn1_xcel *message);
+RN1_API const char *rn1_compass_refused(const struct rn1_compass *message);
+RN1_API const char *rn1_optflow_refused(const struct rn1_optflow *message);
+RN1_API const char *rn1_lidar_refused(const struct rn1_lidar *message);
+RN1_API const char *rn1_sonar_refused(const struct rn1_sonar *message);
+RN1_API const char *rn1_facing_refused(const struct rn1_facing *message);
+
 #endif
 
 #ifdef __cplusplus

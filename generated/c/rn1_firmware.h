@@ -1037,6 +1037,36 @@ RN1_FIRMWARE_API const char *rn1_firmware_gyro_status_name(uint8_t value);
 RN1_FIRMWARE_API const char *rn1_firmware_xcel_status_name(uint8_t value);
 RN1_FIRMWARE_API const char *rn1_firmware_compass_status_name(uint8_t value);
 
+/*
+ * Where a function returned RN1_FIRMWARE_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+RN1_FIRMWARE_API const char *rn1_firmware_move_manual_refused(
+    const struct rn1_firmware_move_manual *message);
+RN1_FIRMWARE_API const char *rn1_firmware_move_relative_twostep_refused(
+    const struct rn1_firmware_move_relative_twostep *message);
+RN1_FIRMWARE_API const char *rn1_firmware_decrease_phase_angle_refused(
+    const struct rn1_firmware_decrease_phase_angle *message);
+RN1_FIRMWARE_API const char *rn1_firmware_increase_phase_angle_refused(
+    const struct rn1_firmware_increase_phase_angle *message);
+RN1_FIRMWARE_API const char *rn1_firmware_maintenance_refused(
+    const struct rn1_firmware_maintenance *message);
+RN1_FIRMWARE_API const char *rn1_firmware_gyro_refused(const struct rn1_firmware_gyro *message);
+RN1_FIRMWARE_API const char *rn1_firmware_xcel_refused(const struct rn1_firmware_xcel *message);
+RN1_FIRMWARE_API const char *rn1_firmware_compass_refused(
+    const struct rn1_firmware_compass *message);
+RN1_FIRMWARE_API const char *rn1_firmware_lidar_refused(const struct rn1_firmware_lidar *message);
+RN1_FIRMWARE_API const char *rn1_firmware_sonar_refused(const struct rn1_firmware_sonar *message);
+RN1_FIRMWARE_API const char *rn1_firmware_facing_refused(const struct rn1_firmware_facing *message);
+RN1_FIRMWARE_API const char *rn1_firmware_optflow_integral_refused(
+    const struct rn1_firmware_optflow_integral *message);
+RN1_FIRMWARE_API const char *rn1_firmware_motor_controller_message_refused(
+    const struct rn1_firmware_motor_controller_message *message);
+RN1_FIRMWARE_API const char *rn1_firmware_debug_numbers_refused(
+    const struct rn1_firmware_debug_numbers *message);
+
 #endif
 
 #ifdef __cplusplus

@@ -467,6 +467,15 @@ UHEROBOT_DAEMON_API const char *uherobot_daemon_message_name(enum uherobot_daemo
 UHEROBOT_DAEMON_API const char *uherobot_daemon_result_name(enum uherobot_daemon_result result);
 UHEROBOT_DAEMON_API const char *uherobot_daemon_reason_name(enum uherobot_daemon_reason reason);
 
+/*
+ * Where a function returned UHEROBOT_DAEMON_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+UHEROBOT_DAEMON_API const char *uherobot_daemon_motors_servos_leds_refused(
+    const struct uherobot_daemon_motors_servos_leds *message);
+
 #endif
 
 #ifdef __cplusplus

@@ -15,13 +15,13 @@ from protogen.targets.c.named import Macro, claim_fields
 from protogen.targets.c.payload.accessors import claim_accessor, is_readable
 from protogen.targets.c.spelling import Names, from_sender
 
-_FUNCTIONS = ("check", "load", "validate", "measure", "store", "put", "encode", "decode")
+_FUNCTIONS = "check load validate refused measure store put encode decode"
 
 
 def claim_message(names: Names, item: Message) -> dict[str, str]:
     """The names of its struct, of its value among the messages, and of its payload's functions."""
     thing = naming.message(item.name)
-    called = {word: names.claim(thing, item.name, word) for word in _FUNCTIONS}
+    called = {word: names.claim(thing, item.name, word) for word in _FUNCTIONS.split()}
     called["tag"] = names.claim_tag(thing, item.name)
     called["constant"] = names.claim_macro(thing, "message", item.name)
     return called
