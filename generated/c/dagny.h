@@ -514,6 +514,43 @@ DAGNY_API void dagny_command_load(struct dagny_command *message, const uint8_t *
 /** Takes the next byte of a frame. */
 typedef void (*dagny_put)(void *user, uint8_t byte);
 
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*dagny_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * dagny_transmit to a `send`, then ask dagny_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct dagny_transmission {
+    dagny_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct dagny_transmission. */
+static inline void dagny_transmit(void *user, uint8_t byte) {
+    struct dagny_transmission *const frame = (struct dagny_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool dagny_transmitted(struct dagny_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
+
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_SONAR_FRAME_MAX 131U
 #define DAGNY_SONAR_FRAME_ROOM 131U

@@ -520,6 +520,43 @@ DAGNY_LIBRARY_API void dagny_library_shutdown_load(struct dagny_library_shutdown
 /** Takes the next byte of a frame. */
 typedef void (*dagny_library_put)(void *user, uint8_t byte);
 
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*dagny_library_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * dagny_library_transmit to a `send`, then ask dagny_library_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct dagny_library_transmission {
+    dagny_library_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct dagny_library_transmission. */
+static inline void dagny_library_transmit(void *user, uint8_t byte) {
+    struct dagny_library_transmission *const frame = (struct dagny_library_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool dagny_library_transmitted(struct dagny_library_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
+
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_SONAR_FRAME_MAX 12U
 #define DAGNY_LIBRARY_SONAR_FRAME_ROOM 13U

@@ -522,6 +522,43 @@ MATTY_V4_API void matty_v4_version_load(struct matty_v4_version *message, const 
 /** Takes the next byte of a frame. */
 typedef void (*matty_v4_put)(void *user, uint8_t byte);
 
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*matty_v4_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * matty_v4_transmit to a `send`, then ask matty_v4_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct matty_v4_transmission {
+    matty_v4_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct matty_v4_transmission. */
+static inline void matty_v4_transmit(void *user, uint8_t byte) {
+    struct matty_v4_transmission *const frame = (struct matty_v4_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool matty_v4_transmitted(struct matty_v4_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
+
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_STOP_FRAME_MAX 8U
 #define MATTY_V4_STOP_FRAME_ROOM 12U

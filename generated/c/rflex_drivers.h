@@ -951,6 +951,43 @@ RFLEX_DRIVERS_API void rflex_drivers_ir_report_load(struct rflex_drivers_ir_repo
 /** Takes the next byte of a frame. */
 typedef void (*rflex_drivers_put)(void *user, uint8_t byte);
 
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*rflex_drivers_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * rflex_drivers_transmit to a `send`, then ask rflex_drivers_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct rflex_drivers_transmission {
+    rflex_drivers_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct rflex_drivers_transmission. */
+static inline void rflex_drivers_transmit(void *user, uint8_t byte) {
+    struct rflex_drivers_transmission *const frame = (struct rflex_drivers_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool rflex_drivers_transmitted(struct rflex_drivers_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
+
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_MAX 13U
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23U

@@ -620,6 +620,43 @@ RN1_FIRMWARE_API void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_
 /** Takes the next byte of a frame. */
 typedef void (*rn1_firmware_put)(void *user, uint8_t byte);
 
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*rn1_firmware_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * rn1_firmware_transmit to a `send`, then ask rn1_firmware_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct rn1_firmware_transmission {
+    rn1_firmware_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct rn1_firmware_transmission. */
+static inline void rn1_firmware_transmit(void *user, uint8_t byte) {
+    struct rn1_firmware_transmission *const frame = (struct rn1_firmware_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool rn1_firmware_transmitted(struct rn1_firmware_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
+
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_MOVE_MANUAL_FRAME_MAX 4U
 #define RN1_FIRMWARE_MOVE_MANUAL_FRAME_ROOM 4U

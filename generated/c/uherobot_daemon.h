@@ -203,6 +203,43 @@ UHEROBOT_DAEMON_API void uherobot_daemon_status_load(struct uherobot_daemon_stat
 /** Takes the next byte of a frame. */
 typedef void (*uherobot_daemon_put)(void *user, uint8_t byte);
 
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*uherobot_daemon_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * uherobot_daemon_transmit to a `send`, then ask uherobot_daemon_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct uherobot_daemon_transmission {
+    uherobot_daemon_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct uherobot_daemon_transmission. */
+static inline void uherobot_daemon_transmit(void *user, uint8_t byte) {
+    struct uherobot_daemon_transmission *const frame = (struct uherobot_daemon_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool uherobot_daemon_transmitted(struct uherobot_daemon_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
+
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_MAX 48U
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_ROOM 49U

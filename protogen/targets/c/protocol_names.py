@@ -29,9 +29,11 @@ inside after frame stuffed fast_feed sse2 expect each has no_handlers no_weak ap
 baud idle_timeout_ms protogen_version zeros names fine small_crc flash flash_8
 flash_16 flash_32 flash_64 packed as_in_memory
 """
-_TAGS = "result message event_kind reason writer"
-_TYPES = "put float64"
-_FUNCTIONS = "write first is_high mask sum_of xor_of message_name result_name reason_name"
+_TAGS = "result message event_kind reason writer transmission"
+_TYPES = "put offer float64"
+_FUNCTIONS = """
+write first is_high mask sum_of xor_of message_name result_name reason_name transmit transmitted
+"""
 _TAGS_OF_A_SENDER = "parts event decoder"
 _TYPES_OF_A_SENDER = "handler"
 _FUNCTIONS_OF_A_SENDER = """
