@@ -6,8 +6,12 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from compiled import ROOT
+from c_library import write_sources
+from compiled import DOCUMENTS, ROOT, protocol_of
 from tooling import require_tool
+
+from protogen.targets.c.emit import unit_of
+from protogen.targets.c.options import COptions
 
 GENERATED = ROOT / "generated" / "c"
 STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror")
@@ -109,3 +113,83 @@ int main(void) {{
 @EACH_COMPILER
 def test_a_frame_goes_on_with_the_byte_that_was_refused(compiler: str, tmp_path: Path) -> None:
     run(compiler, PIECES, ["rn1", "matty"], tmp_path)
+
+
+DEFAULTS = """\
+protocol: defaults
+endpoints: {host: Host}
+byte_order: little
+types:
+  point: {fields: {x: sint8, y: {type: sint8, default: -3}}}
+frame: {id: {type: uint8, id: true}, payload: {}, end: {literal: 0xC0}}
+transparency: slip
+messages:
+  all:
+    id: 1
+    from: host
+    fields:
+      on: {type: bool, default: true}
+      small: {type: sint16, default: -32768}
+      wide: {type: uint64, default: 0xFFFFFFFFFFFFFFFF}
+      real: {type: float32, default: 1.5}
+      at: point
+      far: {type: point, count: 2}
+      padded: {type: ascii, size: 4, default: "a'"}
+      key: {type: bytes, size: 2, default: {hex: 00 FF}}
+      three: {type: uint8, count: 3, default: [1, 2, 3]}
+      none: {type: uint8, count: 3}
+      name: {type: ascii, size: {fill: true, max: 9}, default: gain}
+  empty: {id: 2, from: host, fields: {}}
+  large: {id: 3, from: host, fields: {x: {type: float64}}}
+  unwritable: {id: 4, from: host, fields: {x: {type: float64, default: 0.5}}}
+"""
+
+BEGINS = f"""{EXPECT}
+#include "defaults.h"
+
+int main(void) {{
+    static const struct defaults_all all = DEFAULTS_ALL_INIT;
+    static const struct defaults_empty empty = DEFAULTS_EMPTY_INIT;
+    const struct defaults_large large = DEFAULTS_LARGE_INIT;
+    EXPECT(all.on && all.small == -32767 - 1 && all.wide == 0xFFFFFFFFFFFFFFFFULL);
+    EXPECT(all.real > 1.4f && all.real < 1.6f && all.at.x == 0 && all.at.y == -3);
+    EXPECT(all.far[0].x == 0 && all.far[0].y == -3 && all.far[1].y == -3);
+    EXPECT(memcmp(all.padded, "a'\\0\\0", 4) == 0 && all.key[0] == 0 && all.key[1] == 0xFF);
+    EXPECT(all.three[0] == 1 && all.three[2] == 3 && all.none[0] == 0 && all.none[2] == 0);
+    EXPECT(all.name_size == 4 && memcmp(all.name, "gain", 4) == 0);
+    EXPECT(empty.unused == 0);
+    EXPECT(!(large.x > 0) && !(large.x < 0));
+#ifdef DEFAULTS_UNWRITABLE_INIT
+    EXPECT(0);
+#endif
+    return 0;
+}}
+"""
+
+
+@EACH_COMPILER
+def test_a_message_begins_with_its_defaults(compiler: str, tmp_path: Path) -> None:
+    schema = tmp_path / "defaults.yaml"
+    schema.write_text(DEFAULTS, encoding="utf-8")
+    write_sources(protocol_of(schema), tmp_path)
+    run(compiler, BEGINS, [], tmp_path)
+
+
+def test_every_message_has_an_initialiser_that_no_compiler_warns_of(tmp_path: Path) -> None:
+    text = ""
+    paths = (*DOCUMENTS, *(ROOT / "tests" / "c_schemas").glob("*.yaml"))
+    for path in paths:
+        unit = unit_of(protocol_of(path), COptions())
+        write_sources(unit.protocol, tmp_path)
+        text += f'#include "{unit.names.file}.h"\n'
+        for view in (view for view in unit.module.messages if view.initialiser):
+            macro = "\n".join(view.initialiser).partition("#define ")[2].split()[0]
+            text += f"extern const {view.struct} {macro.lower()};\n"
+            text += f"const {view.struct} {macro.lower()} = {macro};\n"
+    (tmp_path / "all.c").write_text(text, encoding="utf-8")
+    assert text.count("_INIT") > 100
+    avr = ["avr-gcc", "-std=c99", "-mmcu=atmega328p", *STRICT]
+    for command in (*(command for command, _ in COMPILERS.values()), avr):
+        call = [require_tool(command[0]), *command[1:], "-c", "all.c", "-o", "all.o"]
+        done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stderr) == (0, "")

@@ -57,6 +57,14 @@ enum dagny_library_result {
     DAGNY_LIBRARY_ERROR_SPACE
 } DAGNY_LIBRARY_PACKED;
 
+#ifdef __cplusplus
+#define DAGNY_LIBRARY_ZEROS \
+    {}
+#else
+#define DAGNY_LIBRARY_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum dagny_library_message {
     DAGNY_LIBRARY_MESSAGE_SONAR = 0,
@@ -92,7 +100,8 @@ enum dagny_library_power_code {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- sonar ------------------------------------------------------------------------------------ */
@@ -115,6 +124,8 @@ struct dagny_library_sonar {
      */
     uint8_t distances[5];
 };
+#define DAGNY_LIBRARY_SONAR_INIT \
+    { DAGNY_LIBRARY_ZEROS }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_sonar_encode(
     const struct dagny_library_sonar *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -151,6 +162,8 @@ struct dagny_library_gps {
      */
     char nmea[126];
 };
+#define DAGNY_LIBRARY_GPS_INIT \
+    { 0U, DAGNY_LIBRARY_ZEROS }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_encode(
     const struct dagny_library_gps *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -208,6 +221,8 @@ struct dagny_library_odometry {
      */
     int8_t steer;
 };
+#define DAGNY_LIBRARY_ODOMETRY_INIT \
+    { 0U, 0U, 0U, 0, 0, 0, 0 }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_odometry_encode(
     const struct dagny_library_odometry *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -247,6 +262,8 @@ struct dagny_library_battery {
      */
     int32_t idle;
 };
+#define DAGNY_LIBRARY_BATTERY_INIT \
+    { 0U, 0U, 0 }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_battery_encode(
     const struct dagny_library_battery *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -279,6 +296,8 @@ struct dagny_library_compass {
      */
     int16_t y;
 };
+#define DAGNY_LIBRARY_COMPASS_INIT \
+    { 0, 0 }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_compass_encode(
     const struct dagny_library_compass *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -308,6 +327,8 @@ struct dagny_library_motor {
      */
     int8_t speed;
 };
+#define DAGNY_LIBRARY_MOTOR_INIT \
+    { 0 }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_motor_encode(
     const struct dagny_library_motor *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -342,6 +363,8 @@ struct dagny_library_drive {
      */
     uint8_t steer;
 };
+#define DAGNY_LIBRARY_DRIVE_INIT \
+    { 0, 0U }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_drive_encode(
     const struct dagny_library_drive *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -369,6 +392,8 @@ struct dagny_library_steering {
      */
     uint8_t position;
 };
+#define DAGNY_LIBRARY_STEERING_INIT \
+    { 0U }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_encode(
     const struct dagny_library_steering *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -395,6 +420,8 @@ struct dagny_library_power {
     /** Power control code, an ASCII digit (002_5af75f454b134d02.txt, lines 77-82). */
     uint8_t code;
 };
+#define DAGNY_LIBRARY_POWER_INIT \
+    { 0U }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_encode(
     const struct dagny_library_power *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -433,6 +460,8 @@ struct dagny_library_gps_position {
      */
     int32_t longitude;
 };
+#define DAGNY_LIBRARY_GPS_POSITION_INIT \
+    { 0, 0 }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_position_encode(
     const struct dagny_library_gps_position *message, uint8_t *payload, size_t capacity,
@@ -467,6 +496,8 @@ struct dagny_library_laser {
      */
     uint8_t readings[512];
 };
+#define DAGNY_LIBRARY_LASER_INIT \
+    { 0U, DAGNY_LIBRARY_ZEROS }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_laser_encode(
     const struct dagny_library_laser *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -499,6 +530,8 @@ struct dagny_library_shutdown {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define DAGNY_LIBRARY_SHUTDOWN_INIT \
+    { 0 }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_encode(
     const struct dagny_library_shutdown *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -675,14 +708,6 @@ enum dagny_library_reason {
     DAGNY_LIBRARY_STUFFING,  /**< An escape or substitution is none. */
     DAGNY_LIBRARY_TRUNCATED  /**< The frame is cut off. */
 } DAGNY_LIBRARY_PACKED;
-
-#ifdef __cplusplus
-#define DAGNY_LIBRARY_ZEROS \
-    {}
-#else
-#define DAGNY_LIBRARY_ZEROS \
-    { 0 }
-#endif
 
 /* --- what host sends -------------------------------------------------------------------------- */
 

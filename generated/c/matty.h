@@ -58,6 +58,14 @@ enum matty_result {
     MATTY_ERROR_SPACE
 } MATTY_PACKED;
 
+#ifdef __cplusplus
+#define MATTY_ZEROS \
+    {}
+#else
+#define MATTY_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum matty_message {
     MATTY_MESSAGE_STOP = 0,
@@ -105,7 +113,8 @@ enum matty_gps_mode_mode {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- stop ------------------------------------------------------------------------------------- */
@@ -125,6 +134,8 @@ struct matty_stop {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_STOP_INIT \
+    { 0 }
 
 MATTY_API enum matty_result matty_stop_encode(const struct matty_stop *message, uint8_t *payload,
                                               size_t capacity, size_t *size);
@@ -145,6 +156,8 @@ struct matty_reset {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_RESET_INIT \
+    { 0 }
 
 MATTY_API enum matty_result matty_reset_encode(const struct matty_reset *message, uint8_t *payload,
                                                size_t capacity, size_t *size);
@@ -165,6 +178,8 @@ struct matty_mode {
     /** The mode to take (line 18). */
     uint8_t mode;
 };
+#define MATTY_MODE_INIT \
+    { 0U }
 
 MATTY_API enum matty_result matty_mode_encode(const struct matty_mode *message, uint8_t *payload,
                                               size_t capacity, size_t *size);
@@ -191,6 +206,8 @@ struct matty_go {
     /** Wanted angle of the joint, 1/100 deg, -32768..32767 (line 19). */
     int16_t steer;
 };
+#define MATTY_GO_INIT \
+    { 0, 0 }
 
 MATTY_API enum matty_result matty_go_encode(const struct matty_go *message, uint8_t *payload,
                                             size_t capacity, size_t *size);
@@ -217,6 +234,8 @@ struct matty_limits {
     /** Fastest change of the angle, 1/100 deg/s, -32768..32767 (line 20). */
     int16_t max_steer;
 };
+#define MATTY_LIMITS_INIT \
+    { 0, 0 }
 
 MATTY_API enum matty_result matty_limits_encode(const struct matty_limits *message,
                                                 uint8_t *payload, size_t capacity, size_t *size);
@@ -241,6 +260,8 @@ struct matty_timing {
     /** Longest time without a command, ms, 0..65535 (line 21). */
     uint16_t timeout;
 };
+#define MATTY_TIMING_INIT \
+    { 0U, 0U }
 
 MATTY_API enum matty_result matty_timing_encode(const struct matty_timing *message,
                                                 uint8_t *payload, size_t capacity, size_t *size);
@@ -261,6 +282,8 @@ struct matty_gps_mode {
     /** What is sent (line 22). */
     uint8_t mode;
 };
+#define MATTY_GPS_MODE_INIT \
+    { 0U }
 
 MATTY_API enum matty_result matty_gps_mode_encode(const struct matty_gps_mode *message,
                                                   uint8_t *payload, size_t capacity, size_t *size);
@@ -285,6 +308,8 @@ struct matty_ack {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_ACK_INIT \
+    { 0 }
 
 MATTY_API enum matty_result matty_ack_encode(const struct matty_ack *message, uint8_t *payload,
                                              size_t capacity, size_t *size);
@@ -309,6 +334,8 @@ struct matty_nack {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_NACK_INIT \
+    { 0 }
 
 MATTY_API enum matty_result matty_nack_encode(const struct matty_nack *message, uint8_t *payload,
                                               size_t capacity, size_t *size);
@@ -361,6 +388,8 @@ struct matty_status {
     /** Way of the fourth encoder, mm, 0..65535 (lines 33-34). */
     uint16_t encoder3;
 };
+#define MATTY_STATUS_INIT \
+    { 0U, 0U, 0U, 0U, 0, 0, 0U, 0U, 0U, 0U }
 
 MATTY_API enum matty_result matty_status_encode(const struct matty_status *message,
                                                 uint8_t *payload, size_t capacity, size_t *size);
@@ -386,6 +415,8 @@ struct matty_gps {
     /** The whole sentence, from $ to CR LF (lines 47-48). */
     char nmea[121];
 };
+#define MATTY_GPS_INIT \
+    { 0U, MATTY_ZEROS }
 
 MATTY_API enum matty_result matty_gps_encode(const struct matty_gps *message, uint8_t *payload,
                                              size_t capacity, size_t *size);
@@ -553,14 +584,6 @@ enum matty_reason {
     MATTY_STUFFING,  /**< An escape or substitution is none. */
     MATTY_TRUNCATED  /**< The frame is cut off. */
 } MATTY_PACKED;
-
-#ifdef __cplusplus
-#define MATTY_ZEROS \
-    {}
-#else
-#define MATTY_ZEROS \
-    { 0 }
-#endif
 
 /* --- what pc sends ---------------------------------------------------------------------------- */
 

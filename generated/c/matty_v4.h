@@ -57,6 +57,14 @@ enum matty_v4_result {
     MATTY_V4_ERROR_SPACE
 } MATTY_V4_PACKED;
 
+#ifdef __cplusplus
+#define MATTY_V4_ZEROS \
+    {}
+#else
+#define MATTY_V4_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum matty_v4_message {
     MATTY_V4_MESSAGE_STOP = 0,
@@ -117,7 +125,8 @@ enum matty_v4_gps_mode_mode {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- stop ------------------------------------------------------------------------------------- */
@@ -137,6 +146,8 @@ struct matty_v4_stop {
     /** How to stop (esp/matty-v4.txt, line 16). */
     uint8_t mode;
 };
+#define MATTY_V4_STOP_INIT \
+    { 0U }
 
 MATTY_V4_API enum matty_v4_result matty_v4_stop_encode(const struct matty_v4_stop *message,
                                                        uint8_t *payload, size_t capacity,
@@ -158,6 +169,8 @@ struct matty_v4_reset {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_V4_RESET_INIT \
+    { 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_reset_encode(const struct matty_v4_reset *message,
                                                         uint8_t *payload, size_t capacity,
@@ -179,6 +192,8 @@ struct matty_v4_mode {
     /** The mode to take (004_bc163d01a5f01dc1.txt, line 18). */
     uint8_t mode;
 };
+#define MATTY_V4_MODE_INIT \
+    { 0U }
 
 MATTY_V4_API enum matty_v4_result matty_v4_mode_encode(const struct matty_v4_mode *message,
                                                        uint8_t *payload, size_t capacity,
@@ -206,6 +221,8 @@ struct matty_v4_go {
     /** Wanted angle of the joint, 1/100 deg, -32768..32767 (004_bc163d01a5f01dc1.txt, line 19). */
     int16_t steer;
 };
+#define MATTY_V4_GO_INIT \
+    { 0, 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_go_encode(const struct matty_v4_go *message,
                                                      uint8_t *payload, size_t capacity,
@@ -238,6 +255,8 @@ struct matty_v4_limits {
      */
     int16_t max_steer;
 };
+#define MATTY_V4_LIMITS_INIT \
+    { 0, 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_limits_encode(const struct matty_v4_limits *message,
                                                          uint8_t *payload, size_t capacity,
@@ -266,6 +285,8 @@ struct matty_v4_timing {
     /** Longest time without a command, ms, 0..65535 (004_bc163d01a5f01dc1.txt, line 21). */
     uint16_t timeout;
 };
+#define MATTY_V4_TIMING_INIT \
+    { 0U, 0U }
 
 MATTY_V4_API enum matty_v4_result matty_v4_timing_encode(const struct matty_v4_timing *message,
                                                          uint8_t *payload, size_t capacity,
@@ -287,6 +308,8 @@ struct matty_v4_gps_mode {
     /** What is sent (004_bc163d01a5f01dc1.txt, line 22). */
     uint8_t mode;
 };
+#define MATTY_V4_GPS_MODE_INIT \
+    { 0U }
 
 MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_encode(const struct matty_v4_gps_mode *message,
                                                            uint8_t *payload, size_t capacity,
@@ -308,6 +331,8 @@ struct matty_v4_version_query {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_V4_VERSION_QUERY_INIT \
+    { 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_version_query_encode(
     const struct matty_v4_version_query *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -331,6 +356,8 @@ struct matty_v4_led {
     /** Colour, 0..16777215 (esp/Robot/src/data.h). */
     uint32_t rgb;
 };
+#define MATTY_V4_LED_INIT \
+    { 0U, 0U }
 
 MATTY_V4_API enum matty_v4_result matty_v4_led_encode(const struct matty_v4_led *message,
                                                       uint8_t *payload, size_t capacity,
@@ -356,6 +383,8 @@ struct matty_v4_ack {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_V4_ACK_INIT \
+    { 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_ack_encode(const struct matty_v4_ack *message,
                                                       uint8_t *payload, size_t capacity,
@@ -381,6 +410,8 @@ struct matty_v4_nack {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_V4_NACK_INIT \
+    { 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_nack_encode(const struct matty_v4_nack *message,
                                                        uint8_t *payload, size_t capacity,
@@ -451,6 +482,8 @@ struct matty_v4_status {
     /** Yaw, 1/100 deg, -32768..32767 (esp/Robot/src/communication.cpp). */
     int16_t yaw;
 };
+#define MATTY_V4_STATUS_INIT \
+    { 0U, 0U, 0U, 0U, 0, 0, 0U, 0U, 0U, 0U, 0, 0, 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_status_encode(const struct matty_v4_status *message,
                                                          uint8_t *payload, size_t capacity,
@@ -477,6 +510,8 @@ struct matty_v4_gps {
     /** The whole sentence, from $ to CR LF (004_bc163d01a5f01dc1.txt, lines 47-48). */
     char nmea[121];
 };
+#define MATTY_V4_GPS_INIT \
+    { 0U, MATTY_V4_ZEROS }
 
 MATTY_V4_API enum matty_v4_result matty_v4_gps_encode(const struct matty_v4_gps *message,
                                                       uint8_t *payload, size_t capacity,
@@ -501,6 +536,8 @@ struct matty_v4_version {
     /** Version of the firmware, 0..255 (esp/matty-v4.txt, lines 52-55). */
     uint8_t version;
 };
+#define MATTY_V4_VERSION_INIT \
+    { 0U, 0U }
 
 MATTY_V4_API enum matty_v4_result matty_v4_version_encode(const struct matty_v4_version *message,
                                                           uint8_t *payload, size_t capacity,
@@ -712,14 +749,6 @@ enum matty_v4_reason {
     MATTY_V4_STUFFING,  /**< An escape or substitution is none. */
     MATTY_V4_TRUNCATED  /**< The frame is cut off. */
 } MATTY_V4_PACKED;
-
-#ifdef __cplusplus
-#define MATTY_V4_ZEROS \
-    {}
-#else
-#define MATTY_V4_ZEROS \
-    { 0 }
-#endif
 
 /* --- what pc sends ---------------------------------------------------------------------------- */
 

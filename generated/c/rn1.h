@@ -58,6 +58,14 @@ enum rn1_result {
     RN1_ERROR_SPACE
 } RN1_PACKED;
 
+#ifdef __cplusplus
+#define RN1_ZEROS \
+    {}
+#else
+#define RN1_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum rn1_message {
     RN1_MESSAGE_MOVE_MANUAL = 0,
@@ -141,7 +149,8 @@ struct rn1_maintenance_argument_run_motor_controller_flasher {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- move_manual ------------------------------------------------------------------------------ */
@@ -159,6 +168,8 @@ struct rn1_move_manual {
     /** 0 goes straight on, negative values turn left, -64..63 (line 29). */
     int8_t arc;
 };
+#define RN1_MOVE_MANUAL_INIT \
+    { 0, 0 }
 
 RN1_API enum rn1_result rn1_move_manual_encode(const struct rn1_move_manual *message,
                                                uint8_t *payload, size_t capacity, size_t *size);
@@ -185,6 +196,8 @@ struct rn1_move_relative_twostep {
     /** How far to drive, negative is backwards, mm, -8192..8191 (line 34). */
     int16_t forward;
 };
+#define RN1_MOVE_RELATIVE_TWOSTEP_INIT \
+    { 0, 0 }
 
 RN1_API enum rn1_result rn1_move_relative_twostep_encode(
     const struct rn1_move_relative_twostep *message, uint8_t *payload, size_t capacity,
@@ -213,6 +226,8 @@ struct rn1_move_relative_arc {
     /** How far to drive, negative is backwards, mm, -8192..8191 (line 39). */
     int16_t forward;
 };
+#define RN1_MOVE_RELATIVE_ARC_INIT \
+    { 0, 0 }
 
 RN1_API enum rn1_result rn1_move_relative_arc_encode(const struct rn1_move_relative_arc *message,
                                                      uint8_t *payload, size_t capacity,
@@ -249,6 +264,10 @@ struct rn1_maintenance {
         } other;
     } argument;
 };
+/* clang-format off */
+#define RN1_MAINTENANCE_INIT \
+    { 0U, {{0U}} }
+/* clang-format on */
 
 RN1_API enum rn1_result rn1_maintenance_encode(const struct rn1_maintenance *message,
                                                uint8_t *payload, size_t capacity, size_t *size);
@@ -276,6 +295,8 @@ struct rn1_gyro {
     /** Integral of gyro Z since the message before, -8192..8191 (line 65). */
     int16_t int_z;
 };
+#define RN1_GYRO_INIT \
+    { 0U, 0, 0, 0 }
 
 RN1_API enum rn1_result rn1_gyro_encode(const struct rn1_gyro *message, uint8_t *payload,
                                         size_t capacity, size_t *size);
@@ -302,6 +323,8 @@ struct rn1_xcel {
     /** Integral of acceleration Z since the message before, -8192..8191 (line 71). */
     int16_t int_z;
 };
+#define RN1_XCEL_INIT \
+    { 0U, 0, 0, 0 }
 
 RN1_API enum rn1_result rn1_xcel_encode(const struct rn1_xcel *message, uint8_t *payload,
                                         size_t capacity, size_t *size);
@@ -328,6 +351,8 @@ struct rn1_compass {
     /** Mean of compass Z since the message before, -8192..8191 (line 77). */
     int16_t avg_z;
 };
+#define RN1_COMPASS_INIT \
+    { 0U, 0, 0, 0 }
 
 RN1_API enum rn1_result rn1_compass_encode(const struct rn1_compass *message, uint8_t *payload,
                                            size_t capacity, size_t *size);
@@ -354,6 +379,8 @@ struct rn1_optflow {
     /** Quality of the surface, 0..127 (line 83). */
     uint8_t q;
 };
+#define RN1_OPTFLOW_INIT \
+    { 0U, 0, 0, 0U }
 
 RN1_API enum rn1_result rn1_optflow_encode(const struct rn1_optflow *message, uint8_t *payload,
                                            size_t capacity, size_t *size);
@@ -387,6 +414,8 @@ struct rn1_lidar {
      */
     uint16_t distances[360];
 };
+#define RN1_LIDAR_INIT \
+    { 0U, RN1_ZEROS }
 
 RN1_API enum rn1_result rn1_lidar_encode(const struct rn1_lidar *message, uint8_t *payload,
                                          size_t capacity, size_t *size);
@@ -418,6 +447,8 @@ struct rn1_sonar {
     /** Distances of sonar 0 to sonar 6, mm, 0..16383, 7 elements, 0 = no_datapoint (line 94). */
     uint16_t distances[7];
 };
+#define RN1_SONAR_INIT \
+    { 0U, RN1_ZEROS }
 
 RN1_API enum rn1_result rn1_sonar_encode(const struct rn1_sonar *message, uint8_t *payload,
                                          size_t capacity, size_t *size);
@@ -450,6 +481,8 @@ struct rn1_facing {
     /** Present speed, mm/s, -8192..8191 (line 100). */
     int16_t speed;
 };
+#define RN1_FACING_INIT \
+    { 0U, 0U, 0 }
 
 RN1_API enum rn1_result rn1_facing_encode(const struct rn1_facing *message, uint8_t *payload,
                                           size_t capacity, size_t *size);
@@ -611,14 +644,6 @@ enum rn1_reason {
     RN1_STUFFING,  /**< An escape or substitution is none. */
     RN1_TRUNCATED  /**< The frame is cut off. */
 } RN1_PACKED;
-
-#ifdef __cplusplus
-#define RN1_ZEROS \
-    {}
-#else
-#define RN1_ZEROS \
-    { 0 }
-#endif
 
 /* --- what host sends -------------------------------------------------------------------------- */
 

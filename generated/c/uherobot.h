@@ -54,6 +54,14 @@ enum uherobot_result {
     UHEROBOT_ERROR_SPACE
 } UHEROBOT_PACKED;
 
+#ifdef __cplusplus
+#define UHEROBOT_ZEROS \
+    {}
+#else
+#define UHEROBOT_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum uherobot_message {
     UHEROBOT_MESSAGE_MOTORS_SERVOS_LEDS = 0,
@@ -80,7 +88,8 @@ enum uherobot_message {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- motors_servos_leds ----------------------------------------------------------------------- */
@@ -102,6 +111,8 @@ struct uherobot_motors_servos_leds {
     /** One bit for each LED (line 43). */
     uint8_t leds;
 };
+#define UHEROBOT_MOTORS_SERVOS_LEDS_INIT \
+    { 0, 0, UHEROBOT_ZEROS, 0U }
 
 UHEROBOT_API enum uherobot_result uherobot_motors_servos_leds_encode(
     const struct uherobot_motors_servos_leds *message, uint8_t *payload, size_t capacity,
@@ -134,6 +145,8 @@ struct uherobot_motors_two_servos {
     /** Positions of servo 1 and servo 2, 0..65535, 2 elements (line 48). */
     uint16_t servos[2];
 };
+#define UHEROBOT_MOTORS_TWO_SERVOS_INIT \
+    { 0, 0, UHEROBOT_ZEROS }
 
 UHEROBOT_API enum uherobot_result uherobot_motors_two_servos_encode(
     const struct uherobot_motors_two_servos *message, uint8_t *payload, size_t capacity,
@@ -164,6 +177,8 @@ struct uherobot_motor_test {
     /** Drive of motor 2, -32768..32767 (lines 57-58). */
     int16_t motor_2;
 };
+#define UHEROBOT_MOTOR_TEST_INIT \
+    { 0, 0 }
 
 UHEROBOT_API enum uherobot_result uherobot_motor_test_encode(
     const struct uherobot_motor_test *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -200,6 +215,8 @@ struct uherobot_status {
     /** Temperature, 1/100 degC, -32768..32767 (line 53). */
     int16_t temperature;
 };
+#define UHEROBOT_STATUS_INIT \
+    { 0, 0, 0 }
 
 UHEROBOT_API enum uherobot_result uherobot_status_encode(const struct uherobot_status *message,
                                                          uint8_t *payload, size_t capacity,
@@ -314,14 +331,6 @@ enum uherobot_reason {
     UHEROBOT_STUFFING,  /**< An escape or substitution is none. */
     UHEROBOT_TRUNCATED  /**< The frame is cut off. */
 } UHEROBOT_PACKED;
-
-#ifdef __cplusplus
-#define UHEROBOT_ZEROS \
-    {}
-#else
-#define UHEROBOT_ZEROS \
-    { 0 }
-#endif
 
 /* --- what daemon sends ------------------------------------------------------------------------ */
 

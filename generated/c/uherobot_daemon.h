@@ -58,6 +58,14 @@ enum uherobot_daemon_result {
     UHEROBOT_DAEMON_ERROR_SPACE
 } UHEROBOT_DAEMON_PACKED;
 
+#ifdef __cplusplus
+#define UHEROBOT_DAEMON_ZEROS \
+    {}
+#else
+#define UHEROBOT_DAEMON_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum uherobot_daemon_message {
     UHEROBOT_DAEMON_MESSAGE_MOTORS_SERVOS_LEDS = 0,
@@ -84,7 +92,8 @@ enum uherobot_daemon_message {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- motors_servos_leds ----------------------------------------------------------------------- */
@@ -128,6 +137,8 @@ struct uherobot_daemon_motors_servos_leds {
      */
     uint8_t leds;
 };
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_INIT \
+    { 0, 0, UHEROBOT_DAEMON_ZEROS, 0U }
 
 UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_encode(
     const struct uherobot_daemon_motors_servos_leds *message, uint8_t *payload, size_t capacity,
@@ -182,6 +193,8 @@ struct uherobot_daemon_status {
     /** Voltage of the motors, mV, 0..65535 (main.c, lines 152-158). */
     uint16_t motor_voltage;
 };
+#define UHEROBOT_DAEMON_STATUS_INIT \
+    { 0, 0, 0U, 0U, 0U, 0U }
 
 UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_status_encode(
     const struct uherobot_daemon_status *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -278,14 +291,6 @@ enum uherobot_daemon_reason {
     UHEROBOT_DAEMON_STUFFING,  /**< An escape or substitution is none. */
     UHEROBOT_DAEMON_TRUNCATED  /**< The frame is cut off. */
 } UHEROBOT_DAEMON_PACKED;
-
-#ifdef __cplusplus
-#define UHEROBOT_DAEMON_ZEROS \
-    {}
-#else
-#define UHEROBOT_DAEMON_ZEROS \
-    { 0 }
-#endif
 
 /* --- what daemon sends ------------------------------------------------------------------------ */
 

@@ -27,6 +27,11 @@ def claim_message(names: Names, item: Message) -> dict[str, str]:
     return called
 
 
+def claim_init(names: Names, item: Message) -> str:
+    """The macro with the initial values of its struct."""
+    return names.claim_macro(naming.message(item.name), item.name, "init")
+
+
 class FrameNames(msgspec.Struct, frozen=True):
     """The names of the functions that make a message's frames, and of their macros."""
 
@@ -63,6 +68,7 @@ def claim_all(names: Names, item: Message, senders: Sequence[Sender]) -> None:
         claim_handler(names, item.name, suffix)
         claim_frame(names, item.name, suffix)
     claim_message(names, item)
+    claim_init(names, item)
     constants_of(item, senders[0], names)
     claim_fields(names, item.name, item.fields)
     for step in item.plan.steps:

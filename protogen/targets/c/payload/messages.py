@@ -22,9 +22,10 @@ from protogen.targets.c.payload.checking import Checker
 from protogen.targets.c.payload.held import HeldNumber, from_parts, held_numbers
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.images import copied, is_image
+from protogen.targets.c.payload.initial import initialiser
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.measuring import Measure
-from protogen.targets.c.payload.message_names import claim_message, constants_of
+from protogen.targets.c.payload.message_names import claim_init, claim_message, constants_of
 from protogen.targets.c.payload.records import Records, StructView
 from protogen.targets.c.payload.storing import Put, Store
 from protogen.targets.c.payload.validating import Validate, can_be_refused, path_of
@@ -80,6 +81,8 @@ class MessageView(msgspec.Struct, frozen=True):
     """(const struct rn1_gyro *message): name of the first member that `validate` refuses."""
     record: StructView
     """The struct; its macros are identity, sizes and the meaning of raw values."""
+    initialiser: tuple[str, ...]
+    """The lines of `RN1_GYRO_INIT`."""
     prototypes: tuple[str, ...]
     accessors: tuple[str, ...]
     functions: tuple[str, ...]
@@ -116,6 +119,7 @@ class MessagePrinter(msgspec.Struct, frozen=True):
             accessor(item.name, step, names, self.helpers, self.records) for step in item.plan.steps
         )
         accessors = tuple(text for text in read if text)
+        zeros = f"{names.prefix.upper()}_ZEROS"
         codec = _Codec(self, item, f"struct {tag}", called)
         return MessageView(
             name=item.name,
@@ -130,6 +134,7 @@ class MessagePrinter(msgspec.Struct, frozen=True):
             held=codec.held,
             is_image=codec.is_image,
             record=record,
+            initialiser=initialiser(claim_init(names, item), zeros, item.plan.steps),
             prototypes=codec.prototypes(),
             accessors=accessors,
             functions=codec.functions(),
