@@ -20,7 +20,7 @@ import pytest
 from compiled import DOCUMENTS, module_at, protocol_of
 from corpus import Material, material_of, stream_of
 from doc_pages import ROOT, Page
-from tooling import PROGRAM, require_compiler, require_tool, unavailable
+from tooling import PROGRAM, require_arduino_core, require_compiler, require_tool
 
 from protogen.link import RefusedError
 from protogen.model.protocol import Protocol
@@ -30,8 +30,6 @@ from protogen.targets.c.options import COptions
 BOARDS = ROOT / "tests" / "c_boards"
 INTERRUPTS = Page("docs/howto/bytes-by-interrupt.md")
 ARDUINO = Page("docs/howto/arduino.md")
-CORE = Path("/usr/share/arduino/hardware/arduino/avr")
-"""Where Debian has Arduino's own sources for AVR."""
 CORE_SOURCES = (
     *("main.cpp", "hooks.c", "wiring.c", "wiring_digital.c", "abi.cpp"),
     *("HardwareSerial.cpp", "HardwareSerial0.cpp", "Print.cpp"),
@@ -107,17 +105,16 @@ def robot(matty_c: Path) -> Path:
 @pytest.fixture(scope="module")
 def sketch(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     """The sketch of the page about Arduinos, with Arduino's own core; and its schema."""
-    if not CORE.is_dir():
-        unavailable("Debian's package arduino-core-avr is not installed")
+    arduino = require_arduino_core()
     folder = tmp_path_factory.mktemp("sketch")
     schema = folder / "blink.yaml"
     (text,) = (it.text for it in ARDUINO.blocks if it.language == "yaml")
     schema.write_text(text, encoding="utf-8")
     generated(protocol_of(schema), folder)
     source = written(ARDUINO, "blink.ino", folder)
-    paths = (folder, CORE / "cores" / "arduino", CORE / "variants" / "standard")
+    paths = (folder, arduino / "cores" / "arduino", arduino / "variants" / "standard")
     flags = (*FLAGS, "-DARDUINO=10808", *(f"-I{path}" for path in paths))
-    core = [CORE / "cores" / "arduino" / name for name in CORE_SOURCES]
+    core = [arduino / "cores" / "arduino" / name for name in CORE_SOURCES]
     compiler = require_tool("avr-g++")
     # One call for each language; `-w`: Arduino's own sources have warnings.
     as_cpp = ("-std=gnu++11", "-fpermissive", "-c")
