@@ -61,6 +61,7 @@ def run(text: str, names: dict[str, Any]) -> None:
         if token.type == tokenize.COMMENT
     }
     for item in ast.parse(text).body:
+        be_patient()
         source = ast.get_source_segment(text, item) or ""
         expected = expected_value(item.end_lineno or 0, comments)
         with contextlib.suppress(Unplugged):
@@ -68,6 +69,13 @@ def run(text: str, names: dict[str, Any]) -> None:
                 compare(source, expected, names)
             else:
                 exec(compile(source, "<page>", "exec"), names)
+
+
+def be_patient() -> None:
+    """Let a busy machine have more time than the second in which a device answers."""
+    requests = sys.modules.get("protogen.link.requests")
+    if requests is not None:
+        vars(requests)["DEFAULT_TIMEOUT"] = 60.0
 
 
 def compare(source: str, expected: str, names: dict[str, Any]) -> None:

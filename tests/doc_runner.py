@@ -35,7 +35,7 @@ from tooling import require_tool
 from typescript_engine import require_npm
 
 PROGRAMS = ROOT / "tests" / "doc_programs"
-BOARDS = ("arm-none-eabi-gcc", "qemu-system-arm")
+BOARDS = ("arm-none-eabi-gcc", "avr-gcc", "qemu-system-arm")
 """Tools for boards, which not every machine has."""
 _WARNINGS = ("-Wall", "-Wextra", "-Werror")
 

@@ -662,8 +662,26 @@ static int differs(const char *name, const char *expected) {
     return strcmp(name, expected) != 0;
 }
 
+static int refuses_by_member(void) {
+    struct rn1_move_manual fits = {-64, 63}, fast = {64, 63}, sharp = {-64, -65};
+    struct rn1_maintenance motor, other;
+    struct rn1_sonar sonar = {0x7F, {0, 1, 2, 3, 16383, 16384, 16384}};
+    motor.operation = RN1_MAINTENANCE_OPERATION_RUN_MOTOR_CONTROLLER_FLASHER;
+    motor.argument.run_motor_controller_flasher.motor_controller = 5;
+    other.operation = 1;
+    other.argument.other.size = 4;
+    return rn1_move_manual_refused(&fits) != NULL ||
+           differs(rn1_move_manual_refused(&fast), "speed") ||
+           differs(rn1_move_manual_refused(&sharp), "arc") ||
+           differs(rn1_maintenance_refused(&motor),
+                   "argument.run_motor_controller_flasher.motor_controller") ||
+           differs(rn1_maintenance_refused(&other), "argument.other") ||
+           differs(rn1_sonar_refused(&sonar), "distances");
+}
+
 int main(void) {
-    return differs(rn1_message_name(RN1_MESSAGE_GYRO), "gyro") ||
+    return refuses_by_member() ||
+           differs(rn1_message_name(RN1_MESSAGE_GYRO), "gyro") ||
            differs(rn1_message_name(RN1_NO_MESSAGE), "?") ||
            differs(rn1_result_name(RN1_OK), "ok") ||
            differs(rn1_result_name(RN1_ERROR_RANGE), "range") ||

@@ -1,8 +1,8 @@
 """One set of vectors through generated C on every machine: bytes, values and events as Python's.
 
-On x86-64 by three compilers, on a big-endian s390x, on a Cortex-M3 and on an ATmega328P. Frames,
-payloads and streams are the boundaries of every field, random ones, and damaged ones; all follow
-from fixed seeds.
+On x86-64 by three compilers, on a big-endian s390x, on a 32-bit RISC-V without a C library, on a
+Cortex-M3 and on an ATmega328P. Frames, payloads and streams are the boundaries of every field,
+random ones, and damaged ones; all follow from fixed seeds.
 """
 
 from __future__ import annotations
@@ -118,6 +118,10 @@ _CORTEX_M3 = (
     *("-Os", "-mcpu=cortex-m3", "-mthumb", "--specs=rdimon.specs", "-lrdimon"),
     *("-Wl,--gc-sections", f"-T{MACHINES / 'mps2_an385.ld'}"),
 )
+_RISCV32 = (
+    *("-Os", "-march=rv32imac", "-mabi=ilp32", "-ffreestanding", "-nostdlib", "-static"),
+    *(f"-isystem{MACHINES / 'freestanding'}", "-Wl,--no-relax"),
+)
 _ATMEGA328P = ("-Os", "-mmcu=atmega328p", "-DDRIVER_CHUNK=32u")
 ALL = {
     "gcc": Machine("gcc", ("-O2",), "streams.c", on_streams()),
@@ -126,6 +130,7 @@ ALL = {
     "s390x": Machine(
         "s390x-linux-gnu-gcc", ("-O2", "-static"), "streams.c", on_streams("qemu-s390x")
     ),
+    "riscv32": Machine("riscv64-unknown-elf-gcc", _RISCV32, "riscv.c", on_streams("qemu-riscv32")),
     "cortex-m3": Machine("arm-none-eabi-gcc", _CORTEX_M3, "files.c", on_cortex_m3),
     "atmega328p": Machine("avr-gcc", _ATMEGA328P, "avr.c", on_atmega328p, SMALL, 32),
 }

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
 import yaml
-from tooling import require_tool
+from compiled import DOCUMENTS, protocol_of
+from tooling import require_arduino_core, require_tool
+
+from protogen.targets.c.emit import emit
+from protogen.targets.c.options import COptions
 
 ROOT = Path(__file__).resolve().parent.parent
 GENERATED = ROOT / "generated" / "c"
@@ -92,31 +98,91 @@ def test_cmake_generates_from_a_schema_and_again_when_it_changes(
     assert "error[PG" in again.stdout + again.stderr
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_sketch_is_cpp_that_uses_the_library(name: str, tmp_path: Path) -> None:
-    """The Arduino core is stood in for by its declarations; the real compiler checks the rest."""
-    core = (
-        "#include <stdint.h>\n#include <stddef.h>\n"
-        "#define HIGH 1\n#define LOW 0\n#define OUTPUT 1\n#define LED_BUILTIN 13\n"
-        'extern "C" void pinMode(int, int);\nextern "C" void digitalWrite(int, int);\n'
-        "struct Port { void begin(long); int available(); int read(); };\nextern Port Serial;\n"
-    )
-    sketch = tmp_path / "sketch.cpp"
-    sketch.write_text(core + (GENERATED / "examples" / name / f"{name}.ino").read_text())
-    compiler = require_tool("g++")
-    flags = ["-std=c++11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only"]
-    run([compiler, *flags, f"-I{GENERATED}", str(sketch)])
+@pytest.fixture
+def polled(tmp_path: Path) -> Path:
+    """A library of decoders that are polled, and of such that are not."""
+    documents = [path for path in DOCUMENTS if path.stem in ("matty", "dagny")]
+    for file in emit([protocol_of(path) for path in documents], COptions(events="messages")):
+        target = tmp_path / file.path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(file.bytes)
+    return tmp_path
+
+
+def test_the_sketches_are_cpp_that_uses_the_library(polled: Path) -> None:
+    """Arduino's own core declares what they call."""
+    check_sketches(GENERATED, len(NAMES))
+    check_sketches(polled, 2)
+
+
+def check_sketches(library: Path, count: int) -> None:
+    sketches = sorted(library.glob("examples/*/*.ino"))
+    assert len(sketches) == count
+    arduino = require_arduino_core()
+    core = [f"-I{arduino / name}" for name in ("cores/arduino", "variants/standard")]
+    board = ["-mmcu=atmega328p", "-DF_CPU=16000000L", "-DARDUINO=10808", "-include", "Arduino.h"]
+    flags = ["-std=gnu++11", "-fpermissive", "-Os", "-Wall", "-Wextra", "-Werror", "-fsyntax-only"]
+    compiler = require_tool("avr-g++")
+    run([compiler, *board, *flags, *core, f"-I{library}", "-x", "c++", *map(str, sketches)])
 
 
 def test_the_libraries_list_every_protocol() -> None:
     platformio = json.loads((GENERATED / "library.json").read_text())
     assert sorted(platformio["headers"]) == [f"{name}.h" for name in NAMES]
     assert {f"+<{name}.c>" for name in NAMES} < set(platformio["build"]["srcFilter"])
-    lines = (GENERATED / "library.properties").read_text().splitlines()
-    arduino = dict(line.split("=", 1) for line in lines if not line.startswith("#"))
-    wanted = {"name", "version", "author", "maintainer", "sentence", "architectures", "includes"}
-    assert wanted < set(arduino)
-    assert sorted(arduino["includes"].split(",")) == [f"{name}.h" for name in NAMES]
+    assert sorted(arduino_properties()["includes"].split(",")) == [f"{name}.h" for name in NAMES]
     zephyr = yaml.safe_load((GENERATED / "zephyr" / "module.yml").read_text())
     assert (GENERATED / zephyr["build"]["kconfig"]).is_file()
     assert (GENERATED / zephyr["build"]["cmake"] / "CMakeLists.txt").is_file()
+
+
+def arduino_properties() -> dict[str, str]:
+    lines = (GENERATED / "library.properties").read_text().splitlines()
+    return dict(line.split("=", 1) for line in lines if line and not line.startswith("#"))
+
+
+class TestArduinoLibrary:
+    """What arduino-lint looks at, of rules that hold for a library that nobody publishes."""
+
+    def test_has_every_field_that_is_needed_and_no_other(self) -> None:
+        found = arduino_properties()
+        assert {*found} == {
+            *("name", "version", "author", "maintainer", "sentence", "paragraph"),
+            *("category", "url", "architectures", "includes"),
+        }
+        assert all(value.strip() == value != "" for value in found.values())
+
+    def test_has_a_name_that_others_may_take(self) -> None:
+        name = arduino_properties()["name"]
+        assert re.fullmatch(r"[A-Za-z][A-Za-z0-9_.-]{0,31}", name)
+        assert not any(word in name.lower() for word in ("arduino", "library"))
+
+    def test_says_what_it_is(self) -> None:
+        found = arduino_properties()
+        assert re.fullmatch(r"\d+\.\d+\.\d+", found["version"])
+        assert found["category"] == "Communication"
+        assert found["architectures"] == "*"
+        assert found["sentence"] not in found["paragraph"]
+        assert "arduino" not in found["maintainer"].lower()
+        url = urlsplit(found["url"])
+        assert (url.scheme, bool(url.netloc)) == ("https", True)
+
+    def test_has_the_headers_that_it_names(self) -> None:
+        included = arduino_properties()["includes"].split(",")
+        assert all((GENERATED / name).is_file() for name in included)
+
+    def test_is_flat(self) -> None:
+        """Arduino compiles the sources of the folder itself where there is no `src`."""
+        folders = {path.name for path in GENERATED.iterdir() if path.is_dir()}
+        assert folders == {"examples", "zephyr"}
+        assert not [path for path in GENERATED.rglob("*") if path.is_symlink()]
+        assert not list(GENERATED.rglob("*.exe"))
+        assert not list(GENERATED.rglob(".development"))
+        assert len(list(GENERATED.rglob("library.properties"))) == 1
+
+    def test_has_sketches_in_folders_of_their_names(self) -> None:
+        sketches = list(GENERATED.rglob("*.ino"))
+        assert sketches
+        for sketch in sketches:
+            assert sketch == GENERATED / "examples" / sketch.stem / sketch.name
+            assert re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}", sketch.stem)

@@ -11,10 +11,11 @@ import re
 from pathlib import Path
 
 import pytest
-from c_proof.annotations import OPTIONS, annotated
+from c_proof.annotations import OPTIONS, annotated, fed
 from c_proof.drivers import Driver, decode_driver, first_driver, push_driver
 from c_proof.eva import MACHINES, Report, analyse
 from c_proof.generated import Generated, generate
+from c_proof.sending import send_driver, unrolled
 from compiled import DIALECTS, DOCUMENTS, ROOT, SCHEMAS, name_of, protocol_of
 
 from protogen.copying import replace
@@ -100,6 +101,16 @@ FIRST = [ROOT / "schemas" / f"{name}.yaml" for name in ("matty", "rn1")]
 MATTY = ROOT / "schemas" / "matty.yaml"
 
 
+LOADS_UNSEEN = ("dagny", "rflex", "rn1")
+"""Documents whose `dispatch` copies arrays of any number of elements: EVA does not see that this is
+what the size of the payload says."""
+
+FEED_UNSEEN = ("rn1", "messages")
+"""A document whose `feed` EVA takes all ways through together."""
+UHEROBOT = ROOT / "schemas" / "uherobot.yaml"
+SENT = [path for path in DOCUMENTS if path.stem != "rn1"]
+"""Documents whose messages are sent. In rn1 one has cases of any size, which EVA takes together."""
+
 SMALL = [
     *sorted((ROOT / "tests" / "c_proof" / "schemas").glob("*.yaml")),
     ROOT / "tests" / "framings" / "terminated_alone.yaml",
@@ -157,15 +168,57 @@ def test_annotations_are_comments(path: Path, tmp_path: Path) -> None:
     assert re.sub(r" +//@ (split .*;\n +;|slevel merge;)\n", "", with_comments) == plain
 
 
+_TAKES = re.compile(r"\b\w+_take_byte\b")
+
+
+def prove_sending(made: Generated) -> Report:
+    """Analyse what encodes and sends messages of up to `GREATEST` bytes."""
+    assert made.source is not None
+    header, source = (path.read_text(encoding="utf-8") for path in (made.header, made.source))
+    made.source.write_text(unrolled(source), encoding="utf-8")
+    return prove(made, send_driver(made.protocol, header, source))
+
+
+def plain_driver(made: Generated, path: Path) -> Driver:
+    """The driver of decoders that get bytes one at a time."""
+    header = made.header.read_text(encoding="utf-8")
+    return push_driver(made.protocol, header, reads_ends=path != FORMS)
+
+
+def whole_driver(made: Generated, *, loads: bool = True) -> Driver:
+    """The driver of decoders that also get several at a time, and of what takes their events."""
+    assert made.source is not None
+    header = made.header.read_text(encoding="utf-8")
+    plain = made.source.read_text(encoding="utf-8")
+    made.source.write_text(fed(plain, header), encoding="utf-8")
+    driver = push_driver(made.protocol, header, feeds=True, loads=loads)
+    depths = {
+        f"{name}:64": f"{name}(" in plain for name in _TAKES.findall(" ".join(driver.options))
+    }
+    options = driver.options
+    for depth, is_there in depths.items():  # Not each `feed` has a function of its own for a byte.
+        options = options if is_there else tuple(o.replace(f",{depth}", "") for o in options)
+    return replace(driver, options=options)
+
+
 @pytest.mark.parametrize(("path", "events", "machine"), PUSHES, ids=name_of)
 def test_no_input_harms_a_decoder(path: Path, events: Events, machine: str, tmp_path: Path) -> None:
     protocol = protocol_of(path)
     made = generate(protocol, tmp_path, COptions(events=events))
-    header = made.header.read_text(encoding="utf-8")
-    driver = push_driver(protocol, header, reads_ends=path != FORMS)
+    is_fed = path in DOCUMENTS and (path.stem, events) != FEED_UNSEEN
+    if is_fed and path.stem not in SLOW_ALL:
+        driver = whole_driver(made, loads=path.stem not in LOADS_UNSEEN)
+    else:
+        driver = plain_driver(made, path)
     together = [name for name in protocol.sending if len(protocol.forms(name)) > 1]
     assert len(driver.proves) == len(protocol.senders) + len(together)
     report = prove(made, driver, machine)
+    assert (report.alarms, report.found) == (0, ())
+
+
+@pytest.mark.parametrize("path", SENT, ids=name_of)
+def test_no_message_harms_what_encodes_and_sends_it(path: Path, tmp_path: Path) -> None:
+    report = prove_sending(generate(protocol_of(path), tmp_path))
     assert (report.alarms, report.found) == (0, ())
 
 
@@ -200,6 +253,41 @@ def changed(path: Path, pattern: str, replacement: str) -> str:
     assert count, f"{path.name} has no {pattern}"
     path.write_text(after, encoding="utf-8")
     return before
+
+
+def test_a_feed_that_reads_a_byte_too_many_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(MATTY), tmp_path)
+    assert made.source is not None
+    changed(made.source, r"while \(index < size\)", "while (index <= size)")
+    report = prove(made, whole_driver(made))
+    assert any("uninitialized" in found or "out of bounds" in found for found in report.found)
+
+
+def test_a_load_that_writes_a_byte_too_many_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(MATTY), tmp_path, COptions(events="messages"))
+    assert made.source is not None
+    changed(made.source, r"(_copy\(message->nmea, [^;]*size)\);", r"\1 + 1U);")
+    report = prove(made, whole_driver(made))
+    assert any("out of bounds" in found for found in report.found)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "fault"),
+    [
+        (
+            r"return 2U \* content \+ 1U;",
+            "return 2U * content - 1U;",
+        ),  # Of these two bytes, one was to spare.
+        (r"capacity < 21U", "capacity < 20U"),
+    ],
+)
+def test_a_frame_that_needs_more_than_it_asks_for_is_found(
+    pattern: str, fault: str, tmp_path: Path
+) -> None:
+    made = generate(protocol_of(UHEROBOT), tmp_path)
+    assert made.source is not None
+    changed(made.source, pattern, fault)
+    assert any("out of bounds" in found for found in prove_sending(made).found)
 
 
 def test_a_buffer_that_is_too_small_by_a_byte_is_found(tmp_path: Path) -> None:

@@ -306,7 +306,7 @@ class TestScreen:
             status = app.query_one("#status", Static)
             await until(pilot, lambda: "PAUSED" in str(status.render()))
 
-        rates = {"status": 50, "ack": 20}
+        rates = {"status": 20, "ack": 10}
         with SimulatedDevice(MATTY, "esp", rates=rates) as board:
             watched({"esp": board.port}, test)
 

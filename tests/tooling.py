@@ -17,6 +17,8 @@ STRICT = "PROTOGEN_REQUIRE_TOOLS"
 
 PATIENCE = 120
 PROGRAM = "#include <stdint.h>\n#include <string.h>\nint main(void) { return 0; }\n"
+ARDUINO_CORE = Path("/usr/share/arduino/hardware/arduino/avr")
+"""Where Debian has Arduino's own sources for AVR."""
 HOST = ("cc", "gcc", "clang", "g++")
 """Compilers whose programs run here."""
 _LEAST: dict[str, tuple[str, ...]] = {
@@ -70,6 +72,13 @@ def require_module(name: str) -> None:
     """Skip the test, or fail, unless the Python module can be imported."""
     if importlib.util.find_spec(name) is None:
         unavailable(f"the Python module {name} is not installed")
+
+
+def require_arduino_core() -> Path:
+    """Folder of Arduino's own sources; without them, skip the test or fail."""
+    if not ARDUINO_CORE.is_dir():
+        unavailable("Debian's package arduino-core-avr is not installed")
+    return ARDUINO_CORE
 
 
 def unavailable(reason: str) -> None:

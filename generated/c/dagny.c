@@ -2598,4 +2598,81 @@ const char *dagny_power_code_name(uint8_t value) {
     }
 }
 
+const char *dagny_sonar_refused(const struct dagny_sonar *message) {
+    if (message->data_size > 128U) {
+        return "data";
+    }
+    return NULL;
+}
+
+const char *dagny_gps_refused(const struct dagny_gps *message) {
+    if (message->data_size > 128U) {
+        return "data";
+    }
+    return NULL;
+}
+
+const char *dagny_bump_refused(const struct dagny_bump *message) {
+    if (message->data_size > 128U) {
+        return "data";
+    }
+    return NULL;
+}
+
+const char *dagny_odometry_refused(const struct dagny_odometry *message) {
+    if (message->data_size > 128U) {
+        return "data";
+    }
+    return NULL;
+}
+
+const char *dagny_speed_refused(const struct dagny_speed *message) {
+    if (message->data_size > 128U) {
+        return "data";
+    }
+    return NULL;
+}
+
+const char *dagny_wheel_slip_refused(const struct dagny_wheel_slip *message) {
+    if (message->data_size > 128U) {
+        return "data";
+    }
+    return NULL;
+}
+
+const char *dagny_battery_refused(const struct dagny_battery *message) {
+    if (message->data_size > 128U) {
+        return "data";
+    }
+    return NULL;
+}
+
+const char *dagny_reflex_settings_refused(const struct dagny_reflex_settings *message) {
+    if (message->data_size > 128U) {
+        return "data";
+    }
+    return NULL;
+}
+
+const char *dagny_hardware_status_refused(const struct dagny_hardware_status *message) {
+    if (message->data_size > 128U) {
+        return "data";
+    }
+    return NULL;
+}
+
+const char *dagny_laser_refused(const struct dagny_laser *message) {
+    if (message->readings_count > 512U) {
+        return "readings";
+    }
+    return NULL;
+}
+
+const char *dagny_command_refused(const struct dagny_command *message) {
+    if (message->data_size > 128U) {
+        return "data";
+    }
+    return NULL;
+}
+
 #endif

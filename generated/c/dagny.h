@@ -57,6 +57,14 @@ enum dagny_result {
     DAGNY_ERROR_SPACE
 } DAGNY_PACKED;
 
+#ifdef __cplusplus
+#define DAGNY_ZEROS \
+    {}
+#else
+#define DAGNY_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum dagny_message {
     DAGNY_MESSAGE_SONAR = 0,
@@ -104,7 +112,8 @@ enum dagny_power_code {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- sonar ------------------------------------------------------------------------------------ */
@@ -121,6 +130,8 @@ struct dagny_sonar {
     /** Not said by the document. */
     uint8_t data[128];
 };
+#define DAGNY_SONAR_INIT \
+    { 0U, DAGNY_ZEROS }
 
 DAGNY_API enum dagny_result dagny_sonar_encode(const struct dagny_sonar *message, uint8_t *payload,
                                                size_t capacity, size_t *size);
@@ -146,6 +157,8 @@ struct dagny_gps {
     /** Not said by the document. */
     uint8_t data[128];
 };
+#define DAGNY_GPS_INIT \
+    { 0U, DAGNY_ZEROS }
 
 DAGNY_API enum dagny_result dagny_gps_encode(const struct dagny_gps *message, uint8_t *payload,
                                              size_t capacity, size_t *size);
@@ -167,6 +180,8 @@ struct dagny_bump {
     /** Not said by the document. */
     uint8_t data[128];
 };
+#define DAGNY_BUMP_INIT \
+    { 0U, DAGNY_ZEROS }
 
 DAGNY_API enum dagny_result dagny_bump_encode(const struct dagny_bump *message, uint8_t *payload,
                                               size_t capacity, size_t *size);
@@ -188,6 +203,8 @@ struct dagny_odometry {
     /** Not said by the document. */
     uint8_t data[128];
 };
+#define DAGNY_ODOMETRY_INIT \
+    { 0U, DAGNY_ZEROS }
 
 DAGNY_API enum dagny_result dagny_odometry_encode(const struct dagny_odometry *message,
                                                   uint8_t *payload, size_t capacity, size_t *size);
@@ -210,6 +227,8 @@ struct dagny_speed {
     /** Not said by the document. */
     uint8_t data[128];
 };
+#define DAGNY_SPEED_INIT \
+    { 0U, DAGNY_ZEROS }
 
 DAGNY_API enum dagny_result dagny_speed_encode(const struct dagny_speed *message, uint8_t *payload,
                                                size_t capacity, size_t *size);
@@ -235,6 +254,8 @@ struct dagny_wheel_slip {
     /** Not said by the document. */
     uint8_t data[128];
 };
+#define DAGNY_WHEEL_SLIP_INIT \
+    { 0U, DAGNY_ZEROS }
 
 DAGNY_API enum dagny_result dagny_wheel_slip_encode(const struct dagny_wheel_slip *message,
                                                     uint8_t *payload, size_t capacity,
@@ -262,6 +283,8 @@ struct dagny_battery {
     /** Not said by the document. */
     uint8_t data[128];
 };
+#define DAGNY_BATTERY_INIT \
+    { 0U, DAGNY_ZEROS }
 
 DAGNY_API enum dagny_result dagny_battery_encode(const struct dagny_battery *message,
                                                  uint8_t *payload, size_t capacity, size_t *size);
@@ -284,6 +307,8 @@ struct dagny_reflex_settings {
     /** Not said by the document. */
     uint8_t data[128];
 };
+#define DAGNY_REFLEX_SETTINGS_INIT \
+    { 0U, DAGNY_ZEROS }
 
 DAGNY_API enum dagny_result dagny_reflex_settings_encode(
     const struct dagny_reflex_settings *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -306,6 +331,8 @@ struct dagny_hardware_status {
     /** Not said by the document. */
     uint8_t data[128];
 };
+#define DAGNY_HARDWARE_STATUS_INIT \
+    { 0U, DAGNY_ZEROS }
 
 DAGNY_API enum dagny_result dagny_hardware_status_encode(
     const struct dagny_hardware_status *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -327,6 +354,8 @@ struct dagny_motor {
     /** What the document writes as <s>, 0..255 (line 42). */
     uint8_t s;
 };
+#define DAGNY_MOTOR_INIT \
+    { 0U }
 
 DAGNY_API enum dagny_result dagny_motor_encode(const struct dagny_motor *message, uint8_t *payload,
                                                size_t capacity, size_t *size);
@@ -347,6 +376,8 @@ struct dagny_steering {
     /** What the document writes as <s>, 0..255 (line 43). */
     uint8_t s;
 };
+#define DAGNY_STEERING_INIT \
+    { 0U }
 
 DAGNY_API enum dagny_result dagny_steering_encode(const struct dagny_steering *message,
                                                   uint8_t *payload, size_t capacity, size_t *size);
@@ -372,6 +403,8 @@ struct dagny_reflex {
     /** The reflex byte (lines 67-74). */
     uint8_t reflex;
 };
+#define DAGNY_REFLEX_INIT \
+    { 0U }
 
 DAGNY_API enum dagny_result dagny_reflex_encode(const struct dagny_reflex *message,
                                                 uint8_t *payload, size_t capacity, size_t *size);
@@ -416,6 +449,8 @@ struct dagny_power_down {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define DAGNY_POWER_DOWN_INIT \
+    { 0 }
 
 DAGNY_API enum dagny_result dagny_power_down_encode(const struct dagny_power_down *message,
                                                     uint8_t *payload, size_t capacity,
@@ -437,6 +472,8 @@ struct dagny_power {
     /** Power control code (lines 77-82). */
     uint8_t code;
 };
+#define DAGNY_POWER_INIT \
+    { 0U }
 
 DAGNY_API enum dagny_result dagny_power_encode(const struct dagny_power *message, uint8_t *payload,
                                                size_t capacity, size_t *size);
@@ -466,6 +503,8 @@ struct dagny_laser {
     /** Distance; the metres times 50, 2 cm, 0..255, 0..512 elements (lines 14-15). */
     uint8_t readings[512];
 };
+#define DAGNY_LASER_INIT \
+    { 0U, DAGNY_ZEROS }
 
 DAGNY_API enum dagny_result dagny_laser_encode(const struct dagny_laser *message, uint8_t *payload,
                                                size_t capacity, size_t *size);
@@ -493,6 +532,8 @@ struct dagny_command {
     /** Not said by the document. */
     uint8_t data[128];
 };
+#define DAGNY_COMMAND_INIT \
+    { 0U, DAGNY_ZEROS }
 
 DAGNY_API enum dagny_result dagny_command_encode(const struct dagny_command *message,
                                                  uint8_t *payload, size_t capacity, size_t *size);
@@ -513,6 +554,43 @@ DAGNY_API void dagny_command_load(struct dagny_command *message, const uint8_t *
 
 /** Takes the next byte of a frame. */
 typedef void (*dagny_put)(void *user, uint8_t byte);
+
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*dagny_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * dagny_transmit to a `send`, then ask dagny_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct dagny_transmission {
+    dagny_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct dagny_transmission. */
+static inline void dagny_transmit(void *user, uint8_t byte) {
+    struct dagny_transmission *const frame = (struct dagny_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool dagny_transmitted(struct dagny_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_SONAR_FRAME_MAX 131U
@@ -641,14 +719,6 @@ enum dagny_reason {
     DAGNY_STUFFING,  /**< An escape or substitution is none. */
     DAGNY_TRUNCATED  /**< The frame is cut off. */
 } DAGNY_PACKED;
-
-#ifdef __cplusplus
-#define DAGNY_ZEROS \
-    {}
-#else
-#define DAGNY_ZEROS \
-    { 0 }
-#endif
 
 /* --- what host sends -------------------------------------------------------------------------- */
 
@@ -935,6 +1005,24 @@ DAGNY_API const char *dagny_result_name(enum dagny_result result);
 DAGNY_API const char *dagny_reason_name(enum dagny_reason reason);
 DAGNY_API const char *dagny_reflex_reflex_command_name(uint8_t value);
 DAGNY_API const char *dagny_power_code_name(uint8_t value);
+
+/*
+ * Where a function returned DAGNY_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+DAGNY_API const char *dagny_sonar_refused(const struct dagny_sonar *message);
+DAGNY_API const char *dagny_gps_refused(const struct dagny_gps *message);
+DAGNY_API const char *dagny_bump_refused(const struct dagny_bump *message);
+DAGNY_API const char *dagny_odometry_refused(const struct dagny_odometry *message);
+DAGNY_API const char *dagny_speed_refused(const struct dagny_speed *message);
+DAGNY_API const char *dagny_wheel_slip_refused(const struct dagny_wheel_slip *message);
+DAGNY_API const char *dagny_battery_refused(const struct dagny_battery *message);
+DAGNY_API const char *dagny_reflex_settings_refused(const struct dagny_reflex_settings *message);
+DAGNY_API const char *dagny_hardware_status_refused(const struct dagny_hardware_status *message);
+DAGNY_API const char *dagny_laser_refused(const struct dagny_laser *message);
+DAGNY_API const char *dagny_command_refused(const struct dagny_command *message);
 
 #endif
 

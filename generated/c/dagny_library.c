@@ -2246,4 +2246,21 @@ const char *dagny_library_power_code_name(uint8_t value) {
     }
 }
 
+const char *dagny_library_gps_refused(const struct dagny_library_gps *message) {
+    if (message->nmea_size > 126U) {
+        return "nmea";
+    }
+    if (!dagny_library_is_seven_bit(message->nmea, message->nmea_size)) {
+        return "nmea";
+    }
+    return NULL;
+}
+
+const char *dagny_library_laser_refused(const struct dagny_library_laser *message) {
+    if (message->readings_count > 512U) {
+        return "readings";
+    }
+    return NULL;
+}
+
 #endif

@@ -57,6 +57,14 @@ enum dagny_library_result {
     DAGNY_LIBRARY_ERROR_SPACE
 } DAGNY_LIBRARY_PACKED;
 
+#ifdef __cplusplus
+#define DAGNY_LIBRARY_ZEROS \
+    {}
+#else
+#define DAGNY_LIBRARY_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum dagny_library_message {
     DAGNY_LIBRARY_MESSAGE_SONAR = 0,
@@ -92,7 +100,8 @@ enum dagny_library_power_code {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- sonar ------------------------------------------------------------------------------------ */
@@ -115,6 +124,8 @@ struct dagny_library_sonar {
      */
     uint8_t distances[5];
 };
+#define DAGNY_LIBRARY_SONAR_INIT \
+    { DAGNY_LIBRARY_ZEROS }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_sonar_encode(
     const struct dagny_library_sonar *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -151,6 +162,8 @@ struct dagny_library_gps {
      */
     char nmea[126];
 };
+#define DAGNY_LIBRARY_GPS_INIT \
+    { 0U, DAGNY_LIBRARY_ZEROS }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_encode(
     const struct dagny_library_gps *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -208,6 +221,8 @@ struct dagny_library_odometry {
      */
     int8_t steer;
 };
+#define DAGNY_LIBRARY_ODOMETRY_INIT \
+    { 0U, 0U, 0U, 0, 0, 0, 0 }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_odometry_encode(
     const struct dagny_library_odometry *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -247,6 +262,8 @@ struct dagny_library_battery {
      */
     int32_t idle;
 };
+#define DAGNY_LIBRARY_BATTERY_INIT \
+    { 0U, 0U, 0 }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_battery_encode(
     const struct dagny_library_battery *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -279,6 +296,8 @@ struct dagny_library_compass {
      */
     int16_t y;
 };
+#define DAGNY_LIBRARY_COMPASS_INIT \
+    { 0, 0 }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_compass_encode(
     const struct dagny_library_compass *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -308,6 +327,8 @@ struct dagny_library_motor {
      */
     int8_t speed;
 };
+#define DAGNY_LIBRARY_MOTOR_INIT \
+    { 0 }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_motor_encode(
     const struct dagny_library_motor *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -342,6 +363,8 @@ struct dagny_library_drive {
      */
     uint8_t steer;
 };
+#define DAGNY_LIBRARY_DRIVE_INIT \
+    { 0, 0U }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_drive_encode(
     const struct dagny_library_drive *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -369,6 +392,8 @@ struct dagny_library_steering {
      */
     uint8_t position;
 };
+#define DAGNY_LIBRARY_STEERING_INIT \
+    { 0U }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_encode(
     const struct dagny_library_steering *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -395,6 +420,8 @@ struct dagny_library_power {
     /** Power control code, an ASCII digit (002_5af75f454b134d02.txt, lines 77-82). */
     uint8_t code;
 };
+#define DAGNY_LIBRARY_POWER_INIT \
+    { 0U }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_encode(
     const struct dagny_library_power *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -433,6 +460,8 @@ struct dagny_library_gps_position {
      */
     int32_t longitude;
 };
+#define DAGNY_LIBRARY_GPS_POSITION_INIT \
+    { 0, 0 }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_position_encode(
     const struct dagny_library_gps_position *message, uint8_t *payload, size_t capacity,
@@ -467,6 +496,8 @@ struct dagny_library_laser {
      */
     uint8_t readings[512];
 };
+#define DAGNY_LIBRARY_LASER_INIT \
+    { 0U, DAGNY_LIBRARY_ZEROS }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_laser_encode(
     const struct dagny_library_laser *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -499,6 +530,8 @@ struct dagny_library_shutdown {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define DAGNY_LIBRARY_SHUTDOWN_INIT \
+    { 0 }
 
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_encode(
     const struct dagny_library_shutdown *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -519,6 +552,43 @@ DAGNY_LIBRARY_API void dagny_library_shutdown_load(struct dagny_library_shutdown
 
 /** Takes the next byte of a frame. */
 typedef void (*dagny_library_put)(void *user, uint8_t byte);
+
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*dagny_library_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * dagny_library_transmit to a `send`, then ask dagny_library_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct dagny_library_transmission {
+    dagny_library_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct dagny_library_transmission. */
+static inline void dagny_library_transmit(void *user, uint8_t byte) {
+    struct dagny_library_transmission *const frame = (struct dagny_library_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool dagny_library_transmitted(struct dagny_library_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_SONAR_FRAME_MAX 12U
@@ -638,14 +708,6 @@ enum dagny_library_reason {
     DAGNY_LIBRARY_STUFFING,  /**< An escape or substitution is none. */
     DAGNY_LIBRARY_TRUNCATED  /**< The frame is cut off. */
 } DAGNY_LIBRARY_PACKED;
-
-#ifdef __cplusplus
-#define DAGNY_LIBRARY_ZEROS \
-    {}
-#else
-#define DAGNY_LIBRARY_ZEROS \
-    { 0 }
-#endif
 
 /* --- what host sends -------------------------------------------------------------------------- */
 
@@ -916,6 +978,16 @@ DAGNY_LIBRARY_API const char *dagny_library_message_name(enum dagny_library_mess
 DAGNY_LIBRARY_API const char *dagny_library_result_name(enum dagny_library_result result);
 DAGNY_LIBRARY_API const char *dagny_library_reason_name(enum dagny_library_reason reason);
 DAGNY_LIBRARY_API const char *dagny_library_power_code_name(uint8_t value);
+
+/*
+ * Where a function returned DAGNY_LIBRARY_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+DAGNY_LIBRARY_API const char *dagny_library_gps_refused(const struct dagny_library_gps *message);
+DAGNY_LIBRARY_API const char *dagny_library_laser_refused(
+    const struct dagny_library_laser *message);
 
 #endif
 

@@ -2368,4 +2368,14 @@ const char *matty_gps_mode_mode_name(uint8_t value) {
     }
 }
 
+const char *matty_gps_refused(const struct matty_gps *message) {
+    if (message->nmea_size > 121U) {
+        return "nmea";
+    }
+    if (!matty_is_seven_bit(message->nmea, message->nmea_size)) {
+        return "nmea";
+    }
+    return NULL;
+}
+
 #endif

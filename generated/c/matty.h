@@ -58,6 +58,14 @@ enum matty_result {
     MATTY_ERROR_SPACE
 } MATTY_PACKED;
 
+#ifdef __cplusplus
+#define MATTY_ZEROS \
+    {}
+#else
+#define MATTY_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum matty_message {
     MATTY_MESSAGE_STOP = 0,
@@ -105,7 +113,8 @@ enum matty_gps_mode_mode {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- stop ------------------------------------------------------------------------------------- */
@@ -125,6 +134,8 @@ struct matty_stop {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_STOP_INIT \
+    { 0 }
 
 MATTY_API enum matty_result matty_stop_encode(const struct matty_stop *message, uint8_t *payload,
                                               size_t capacity, size_t *size);
@@ -145,6 +156,8 @@ struct matty_reset {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_RESET_INIT \
+    { 0 }
 
 MATTY_API enum matty_result matty_reset_encode(const struct matty_reset *message, uint8_t *payload,
                                                size_t capacity, size_t *size);
@@ -165,6 +178,8 @@ struct matty_mode {
     /** The mode to take (line 18). */
     uint8_t mode;
 };
+#define MATTY_MODE_INIT \
+    { 0U }
 
 MATTY_API enum matty_result matty_mode_encode(const struct matty_mode *message, uint8_t *payload,
                                               size_t capacity, size_t *size);
@@ -191,6 +206,8 @@ struct matty_go {
     /** Wanted angle of the joint, 1/100 deg, -32768..32767 (line 19). */
     int16_t steer;
 };
+#define MATTY_GO_INIT \
+    { 0, 0 }
 
 MATTY_API enum matty_result matty_go_encode(const struct matty_go *message, uint8_t *payload,
                                             size_t capacity, size_t *size);
@@ -217,6 +234,8 @@ struct matty_limits {
     /** Fastest change of the angle, 1/100 deg/s, -32768..32767 (line 20). */
     int16_t max_steer;
 };
+#define MATTY_LIMITS_INIT \
+    { 0, 0 }
 
 MATTY_API enum matty_result matty_limits_encode(const struct matty_limits *message,
                                                 uint8_t *payload, size_t capacity, size_t *size);
@@ -241,6 +260,8 @@ struct matty_timing {
     /** Longest time without a command, ms, 0..65535 (line 21). */
     uint16_t timeout;
 };
+#define MATTY_TIMING_INIT \
+    { 0U, 0U }
 
 MATTY_API enum matty_result matty_timing_encode(const struct matty_timing *message,
                                                 uint8_t *payload, size_t capacity, size_t *size);
@@ -261,6 +282,8 @@ struct matty_gps_mode {
     /** What is sent (line 22). */
     uint8_t mode;
 };
+#define MATTY_GPS_MODE_INIT \
+    { 0U }
 
 MATTY_API enum matty_result matty_gps_mode_encode(const struct matty_gps_mode *message,
                                                   uint8_t *payload, size_t capacity, size_t *size);
@@ -285,6 +308,8 @@ struct matty_ack {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_ACK_INIT \
+    { 0 }
 
 MATTY_API enum matty_result matty_ack_encode(const struct matty_ack *message, uint8_t *payload,
                                              size_t capacity, size_t *size);
@@ -309,6 +334,8 @@ struct matty_nack {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_NACK_INIT \
+    { 0 }
 
 MATTY_API enum matty_result matty_nack_encode(const struct matty_nack *message, uint8_t *payload,
                                               size_t capacity, size_t *size);
@@ -361,6 +388,8 @@ struct matty_status {
     /** Way of the fourth encoder, mm, 0..65535 (lines 33-34). */
     uint16_t encoder3;
 };
+#define MATTY_STATUS_INIT \
+    { 0U, 0U, 0U, 0U, 0, 0, 0U, 0U, 0U, 0U }
 
 MATTY_API enum matty_result matty_status_encode(const struct matty_status *message,
                                                 uint8_t *payload, size_t capacity, size_t *size);
@@ -386,6 +415,8 @@ struct matty_gps {
     /** The whole sentence, from $ to CR LF (lines 47-48). */
     char nmea[121];
 };
+#define MATTY_GPS_INIT \
+    { 0U, MATTY_ZEROS }
 
 MATTY_API enum matty_result matty_gps_encode(const struct matty_gps *message, uint8_t *payload,
                                              size_t capacity, size_t *size);
@@ -405,6 +436,43 @@ MATTY_API void matty_gps_load(struct matty_gps *message, const uint8_t *payload,
 
 /** Takes the next byte of a frame. */
 typedef void (*matty_put)(void *user, uint8_t byte);
+
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*matty_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * matty_transmit to a `send`, then ask matty_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct matty_transmission {
+    matty_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct matty_transmission. */
+static inline void matty_transmit(void *user, uint8_t byte) {
+    struct matty_transmission *const frame = (struct matty_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool matty_transmitted(struct matty_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_STOP_FRAME_MAX 7U
@@ -516,14 +584,6 @@ enum matty_reason {
     MATTY_STUFFING,  /**< An escape or substitution is none. */
     MATTY_TRUNCATED  /**< The frame is cut off. */
 } MATTY_PACKED;
-
-#ifdef __cplusplus
-#define MATTY_ZEROS \
-    {}
-#else
-#define MATTY_ZEROS \
-    { 0 }
-#endif
 
 /* --- what pc sends ---------------------------------------------------------------------------- */
 
@@ -761,6 +821,14 @@ MATTY_API const char *matty_result_name(enum matty_result result);
 MATTY_API const char *matty_reason_name(enum matty_reason reason);
 MATTY_API const char *matty_robot_mode_name(uint8_t value);
 MATTY_API const char *matty_gps_mode_mode_name(uint8_t value);
+
+/*
+ * Where a function returned MATTY_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+MATTY_API const char *matty_gps_refused(const struct matty_gps *message);
 
 #endif
 

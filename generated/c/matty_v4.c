@@ -2688,4 +2688,21 @@ const char *matty_v4_gps_mode_mode_name(uint8_t value) {
     }
 }
 
+const char *matty_v4_led_refused(const struct matty_v4_led *message) {
+    if (message->rgb > 16777215UL) {
+        return "rgb";
+    }
+    return NULL;
+}
+
+const char *matty_v4_gps_refused(const struct matty_v4_gps *message) {
+    if (message->nmea_size > 121U) {
+        return "nmea";
+    }
+    if (!matty_v4_is_seven_bit(message->nmea, message->nmea_size)) {
+        return "nmea";
+    }
+    return NULL;
+}
+
 #endif

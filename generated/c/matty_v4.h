@@ -57,6 +57,14 @@ enum matty_v4_result {
     MATTY_V4_ERROR_SPACE
 } MATTY_V4_PACKED;
 
+#ifdef __cplusplus
+#define MATTY_V4_ZEROS \
+    {}
+#else
+#define MATTY_V4_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum matty_v4_message {
     MATTY_V4_MESSAGE_STOP = 0,
@@ -117,7 +125,8 @@ enum matty_v4_gps_mode_mode {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- stop ------------------------------------------------------------------------------------- */
@@ -137,6 +146,8 @@ struct matty_v4_stop {
     /** How to stop (esp/matty-v4.txt, line 16). */
     uint8_t mode;
 };
+#define MATTY_V4_STOP_INIT \
+    { 0U }
 
 MATTY_V4_API enum matty_v4_result matty_v4_stop_encode(const struct matty_v4_stop *message,
                                                        uint8_t *payload, size_t capacity,
@@ -158,6 +169,8 @@ struct matty_v4_reset {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_V4_RESET_INIT \
+    { 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_reset_encode(const struct matty_v4_reset *message,
                                                         uint8_t *payload, size_t capacity,
@@ -179,6 +192,8 @@ struct matty_v4_mode {
     /** The mode to take (004_bc163d01a5f01dc1.txt, line 18). */
     uint8_t mode;
 };
+#define MATTY_V4_MODE_INIT \
+    { 0U }
 
 MATTY_V4_API enum matty_v4_result matty_v4_mode_encode(const struct matty_v4_mode *message,
                                                        uint8_t *payload, size_t capacity,
@@ -206,6 +221,8 @@ struct matty_v4_go {
     /** Wanted angle of the joint, 1/100 deg, -32768..32767 (004_bc163d01a5f01dc1.txt, line 19). */
     int16_t steer;
 };
+#define MATTY_V4_GO_INIT \
+    { 0, 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_go_encode(const struct matty_v4_go *message,
                                                      uint8_t *payload, size_t capacity,
@@ -238,6 +255,8 @@ struct matty_v4_limits {
      */
     int16_t max_steer;
 };
+#define MATTY_V4_LIMITS_INIT \
+    { 0, 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_limits_encode(const struct matty_v4_limits *message,
                                                          uint8_t *payload, size_t capacity,
@@ -266,6 +285,8 @@ struct matty_v4_timing {
     /** Longest time without a command, ms, 0..65535 (004_bc163d01a5f01dc1.txt, line 21). */
     uint16_t timeout;
 };
+#define MATTY_V4_TIMING_INIT \
+    { 0U, 0U }
 
 MATTY_V4_API enum matty_v4_result matty_v4_timing_encode(const struct matty_v4_timing *message,
                                                          uint8_t *payload, size_t capacity,
@@ -287,6 +308,8 @@ struct matty_v4_gps_mode {
     /** What is sent (004_bc163d01a5f01dc1.txt, line 22). */
     uint8_t mode;
 };
+#define MATTY_V4_GPS_MODE_INIT \
+    { 0U }
 
 MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_encode(const struct matty_v4_gps_mode *message,
                                                            uint8_t *payload, size_t capacity,
@@ -308,6 +331,8 @@ struct matty_v4_version_query {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_V4_VERSION_QUERY_INIT \
+    { 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_version_query_encode(
     const struct matty_v4_version_query *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -331,6 +356,8 @@ struct matty_v4_led {
     /** Colour, 0..16777215 (esp/Robot/src/data.h). */
     uint32_t rgb;
 };
+#define MATTY_V4_LED_INIT \
+    { 0U, 0U }
 
 MATTY_V4_API enum matty_v4_result matty_v4_led_encode(const struct matty_v4_led *message,
                                                       uint8_t *payload, size_t capacity,
@@ -356,6 +383,8 @@ struct matty_v4_ack {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_V4_ACK_INIT \
+    { 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_ack_encode(const struct matty_v4_ack *message,
                                                       uint8_t *payload, size_t capacity,
@@ -381,6 +410,8 @@ struct matty_v4_nack {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define MATTY_V4_NACK_INIT \
+    { 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_nack_encode(const struct matty_v4_nack *message,
                                                        uint8_t *payload, size_t capacity,
@@ -451,6 +482,8 @@ struct matty_v4_status {
     /** Yaw, 1/100 deg, -32768..32767 (esp/Robot/src/communication.cpp). */
     int16_t yaw;
 };
+#define MATTY_V4_STATUS_INIT \
+    { 0U, 0U, 0U, 0U, 0, 0, 0U, 0U, 0U, 0U, 0, 0, 0 }
 
 MATTY_V4_API enum matty_v4_result matty_v4_status_encode(const struct matty_v4_status *message,
                                                          uint8_t *payload, size_t capacity,
@@ -477,6 +510,8 @@ struct matty_v4_gps {
     /** The whole sentence, from $ to CR LF (004_bc163d01a5f01dc1.txt, lines 47-48). */
     char nmea[121];
 };
+#define MATTY_V4_GPS_INIT \
+    { 0U, MATTY_V4_ZEROS }
 
 MATTY_V4_API enum matty_v4_result matty_v4_gps_encode(const struct matty_v4_gps *message,
                                                       uint8_t *payload, size_t capacity,
@@ -501,6 +536,8 @@ struct matty_v4_version {
     /** Version of the firmware, 0..255 (esp/matty-v4.txt, lines 52-55). */
     uint8_t version;
 };
+#define MATTY_V4_VERSION_INIT \
+    { 0U, 0U }
 
 MATTY_V4_API enum matty_v4_result matty_v4_version_encode(const struct matty_v4_version *message,
                                                           uint8_t *payload, size_t capacity,
@@ -521,6 +558,43 @@ MATTY_V4_API void matty_v4_version_load(struct matty_v4_version *message, const 
 
 /** Takes the next byte of a frame. */
 typedef void (*matty_v4_put)(void *user, uint8_t byte);
+
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*matty_v4_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * matty_v4_transmit to a `send`, then ask matty_v4_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct matty_v4_transmission {
+    matty_v4_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct matty_v4_transmission. */
+static inline void matty_v4_transmit(void *user, uint8_t byte) {
+    struct matty_v4_transmission *const frame = (struct matty_v4_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool matty_v4_transmitted(struct matty_v4_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_STOP_FRAME_MAX 8U
@@ -675,14 +749,6 @@ enum matty_v4_reason {
     MATTY_V4_STUFFING,  /**< An escape or substitution is none. */
     MATTY_V4_TRUNCATED  /**< The frame is cut off. */
 } MATTY_V4_PACKED;
-
-#ifdef __cplusplus
-#define MATTY_V4_ZEROS \
-    {}
-#else
-#define MATTY_V4_ZEROS \
-    { 0 }
-#endif
 
 /* --- what pc sends ---------------------------------------------------------------------------- */
 
@@ -936,6 +1002,15 @@ MATTY_V4_API const char *matty_v4_reason_name(enum matty_v4_reason reason);
 MATTY_V4_API const char *matty_v4_stop_mode_name(uint8_t value);
 MATTY_V4_API const char *matty_v4_robot_mode_name(uint8_t value);
 MATTY_V4_API const char *matty_v4_gps_mode_mode_name(uint8_t value);
+
+/*
+ * Where a function returned MATTY_V4_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+MATTY_V4_API const char *matty_v4_led_refused(const struct matty_v4_led *message);
+MATTY_V4_API const char *matty_v4_gps_refused(const struct matty_v4_gps *message);
 
 #endif
 

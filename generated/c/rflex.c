@@ -3764,4 +3764,11 @@ const char *rflex_start_stop_sonar_packets_start_stop_name(uint8_t value) {
     }
 }
 
+const char *rflex_sonar_data_refused(const struct rflex_sonar_data *message) {
+    if (message->readings_count > 82U) {
+        return "readings";
+    }
+    return NULL;
+}
+
 #endif

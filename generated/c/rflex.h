@@ -57,6 +57,14 @@ enum rflex_result {
     RFLEX_ERROR_SPACE
 } RFLEX_PACKED;
 
+#ifdef __cplusplus
+#define RFLEX_ZEROS \
+    {}
+#else
+#define RFLEX_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum rflex_message {
     RFLEX_MESSAGE_REQUEST_SYSTEM_STATUS = 0,
@@ -151,7 +159,8 @@ struct rflex_sonar_data_readings {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* What the functions below share that read an element of an array. */
@@ -174,6 +183,8 @@ struct rflex_request_system_status {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define RFLEX_REQUEST_SYSTEM_STATUS_INIT \
+    { 0 }
 
 RFLEX_API enum rflex_result rflex_request_system_status_encode(
     const struct rflex_request_system_status *message, uint8_t *payload, size_t capacity,
@@ -201,6 +212,8 @@ struct rflex_system_status {
     /** Brake (line 61). */
     uint8_t brake;
 };
+#define RFLEX_SYSTEM_STATUS_INIT \
+    { 0U, 0U, 0U }
 
 RFLEX_API enum rflex_result rflex_system_status_encode(const struct rflex_system_status *message,
                                                        uint8_t *payload, size_t capacity,
@@ -224,6 +237,8 @@ struct rflex_motor_00 {
     /** Not said by the document, 0..255 (line 71). */
     uint8_t unknown;
 };
+#define RFLEX_MOTOR_00_INIT \
+    { 0U }
 
 RFLEX_API enum rflex_result rflex_motor_00_encode(const struct rflex_motor_00 *message,
                                                   uint8_t *payload, size_t capacity, size_t *size);
@@ -253,6 +268,8 @@ struct rflex_motor_command {
     /** Direction (lines 88-89). */
     uint8_t direction;
 };
+#define RFLEX_MOTOR_COMMAND_INIT \
+    { 0U, 0U, 0U, 0U, 0U }
 
 RFLEX_API enum rflex_result rflex_motor_command_encode(const struct rflex_motor_command *message,
                                                        uint8_t *payload, size_t capacity,
@@ -280,6 +297,8 @@ struct rflex_confirm_motor_command {
     /** Axis (line 95). */
     uint8_t axis;
 };
+#define RFLEX_CONFIRM_MOTOR_COMMAND_INIT \
+    { 0U, 0U, 0U }
 
 RFLEX_API enum rflex_result rflex_confirm_motor_command_encode(
     const struct rflex_confirm_motor_command *message, uint8_t *payload, size_t capacity,
@@ -305,6 +324,8 @@ struct rflex_motor_0a {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define RFLEX_MOTOR_0A_INIT \
+    { 0 }
 
 RFLEX_API enum rflex_result rflex_motor_0a_encode(const struct rflex_motor_0a *message,
                                                   uint8_t *payload, size_t capacity, size_t *size);
@@ -329,6 +350,8 @@ struct rflex_motor_0c {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define RFLEX_MOTOR_0C_INIT \
+    { 0 }
 
 RFLEX_API enum rflex_result rflex_motor_0c_encode(const struct rflex_motor_0c *message,
                                                   uint8_t *payload, size_t capacity, size_t *size);
@@ -352,6 +375,8 @@ struct rflex_motor_0c_answer {
     /** Timestamp, 0..4294967295 (line 119). */
     uint32_t timestamp;
 };
+#define RFLEX_MOTOR_0C_ANSWER_INIT \
+    { 0U, 0U }
 
 RFLEX_API enum rflex_result rflex_motor_0c_answer_encode(
     const struct rflex_motor_0c_answer *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -386,6 +411,8 @@ struct rflex_read_motor {
     /** Torque, -2147483648..2147483647 (line 133). */
     int32_t torque;
 };
+#define RFLEX_READ_MOTOR_INIT \
+    { 0U, 0U, 0U, 0, 0, 0, 0 }
 
 RFLEX_API enum rflex_result rflex_read_motor_encode(const struct rflex_read_motor *message,
                                                     uint8_t *payload, size_t capacity,
@@ -410,6 +437,8 @@ struct rflex_start_stop_motor_packets {
     /** Start stop (line 141). */
     uint32_t start_stop;
 };
+#define RFLEX_START_STOP_MOTOR_PACKETS_INIT \
+    { 0U, 0U }
 
 RFLEX_API enum rflex_result rflex_start_stop_motor_packets_encode(
     const struct rflex_start_stop_motor_packets *message, uint8_t *payload, size_t capacity,
@@ -435,6 +464,8 @@ struct rflex_confirm_start_stop_motor_packets {
     /** Timestamp, 0..4294967295 (line 150). */
     uint32_t timestamp;
 };
+#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_INIT \
+    { 0U, 0U }
 
 RFLEX_API enum rflex_result rflex_confirm_start_stop_motor_packets_encode(
     const struct rflex_confirm_start_stop_motor_packets *message, uint8_t *payload, size_t capacity,
@@ -458,6 +489,8 @@ struct rflex_request_joystick_data {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define RFLEX_REQUEST_JOYSTICK_DATA_INIT \
+    { 0 }
 
 RFLEX_API enum rflex_result rflex_request_joystick_data_encode(
     const struct rflex_request_joystick_data *message, uint8_t *payload, size_t capacity,
@@ -487,6 +520,8 @@ struct rflex_joystick_data {
     /** Buttons (line 171). */
     uint8_t buttons;
 };
+#define RFLEX_JOYSTICK_DATA_INIT \
+    { 0U, 0, 0, 0U }
 
 RFLEX_API enum rflex_result rflex_joystick_data_encode(const struct rflex_joystick_data *message,
                                                        uint8_t *payload, size_t capacity,
@@ -516,6 +551,8 @@ struct rflex_start_stop_sonar_packets {
     /** Start stop (line 203). */
     uint32_t start_stop;
 };
+#define RFLEX_START_STOP_SONAR_PACKETS_INIT \
+    { 0U, 0U, 0U, 0U }
 
 RFLEX_API enum rflex_result rflex_start_stop_sonar_packets_encode(
     const struct rflex_start_stop_sonar_packets *message, uint8_t *payload, size_t capacity,
@@ -541,6 +578,8 @@ struct rflex_confirm_start_stop_sonar_packets {
     /** Timestamp, 0..4294967295 (line 215). */
     uint32_t timestamp;
 };
+#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_INIT \
+    { 0U, 0U }
 
 RFLEX_API enum rflex_result rflex_confirm_start_stop_sonar_packets_encode(
     const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t *payload, size_t capacity,
@@ -578,6 +617,10 @@ struct rflex_sonar_data {
     /** Readings, 0..82 elements (lines 226-229). */
     struct rflex_sonar_data_readings readings[82];
 };
+/* clang-format off */
+#define RFLEX_SONAR_DATA_INIT \
+    { 2U, 0U, 0U, {{0U, 0U}} }
+/* clang-format on */
 
 RFLEX_API enum rflex_result rflex_sonar_data_encode(const struct rflex_sonar_data *message,
                                                     uint8_t *payload, size_t capacity,
@@ -615,6 +658,8 @@ struct rflex_initialize_digital_io {
      */
     uint32_t unknown;
 };
+#define RFLEX_INITIALIZE_DIGITAL_IO_INIT \
+    { 0U }
 
 RFLEX_API enum rflex_result rflex_initialize_digital_io_encode(
     const struct rflex_initialize_digital_io *message, uint8_t *payload, size_t capacity,
@@ -644,6 +689,8 @@ struct rflex_confirm_initialize_digital_io {
     /** Timestamp, 0..4294967295 (lines 301, 309). */
     uint32_t timestamp;
 };
+#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_INIT \
+    { 0U, 0U }
 
 RFLEX_API enum rflex_result rflex_confirm_initialize_digital_io_encode(
     const struct rflex_confirm_initialize_digital_io *message, uint8_t *payload, size_t capacity,
@@ -678,6 +725,8 @@ struct rflex_changed_bumpers {
      */
     uint16_t value;
 };
+#define RFLEX_CHANGED_BUMPERS_INIT \
+    { 0U, 0U, 0U }
 
 RFLEX_API enum rflex_result rflex_changed_bumpers_encode(
     const struct rflex_changed_bumpers *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -700,6 +749,8 @@ struct rflex_check_io_changed {
     /** See the decision check_timestamp, 0..4294967295 (line 265). */
     uint32_t timestamp;
 };
+#define RFLEX_CHECK_IO_CHANGED_INIT \
+    { 0U }
 
 RFLEX_API enum rflex_result rflex_check_io_changed_encode(
     const struct rflex_check_io_changed *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -726,6 +777,8 @@ struct rflex_check_io_changed_answer {
     /** Packets including this one; 1 if nothing changed, 0..4294967295 (lines 269-270, 273). */
     uint32_t package_count;
 };
+#define RFLEX_CHECK_IO_CHANGED_ANSWER_INIT \
+    { 0U, 0U, 0U }
 
 RFLEX_API enum rflex_result rflex_check_io_changed_answer_encode(
     const struct rflex_check_io_changed_answer *message, uint8_t *payload, size_t capacity,
@@ -755,6 +808,8 @@ struct rflex_changed_byte {
      */
     uint16_t value;
 };
+#define RFLEX_CHANGED_BYTE_INIT \
+    { 0U, 0U, 0U }
 
 RFLEX_API enum rflex_result rflex_changed_byte_encode(const struct rflex_changed_byte *message,
                                                       uint8_t *payload, size_t capacity,
@@ -775,6 +830,43 @@ RFLEX_API void rflex_changed_byte_load(struct rflex_changed_byte *message, const
 
 /** Takes the next byte of a frame. */
 typedef void (*rflex_put)(void *user, uint8_t byte);
+
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*rflex_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * rflex_transmit to a `send`, then ask rflex_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct rflex_transmission {
+    rflex_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct rflex_transmission. */
+static inline void rflex_transmit(void *user, uint8_t byte) {
+    struct rflex_transmission *const frame = (struct rflex_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool rflex_transmitted(struct rflex_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_MAX 11U
@@ -1000,14 +1092,6 @@ enum rflex_reason {
     RFLEX_STUFFING,  /**< An escape or substitution is none. */
     RFLEX_TRUNCATED  /**< The frame is cut off. */
 } RFLEX_PACKED;
-
-#ifdef __cplusplus
-#define RFLEX_ZEROS \
-    {}
-#else
-#define RFLEX_ZEROS \
-    { 0 }
-#endif
 
 /* --- what linux sends ------------------------------------------------------------------------- */
 
@@ -1323,6 +1407,14 @@ RFLEX_API const char *rflex_axis_name(uint8_t value);
 RFLEX_API const char *rflex_motor_command_direction_name(uint8_t value);
 RFLEX_API const char *rflex_start_stop_motor_packets_start_stop_name(uint8_t value);
 RFLEX_API const char *rflex_start_stop_sonar_packets_start_stop_name(uint8_t value);
+
+/*
+ * Where a function returned RFLEX_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+RFLEX_API const char *rflex_sonar_data_refused(const struct rflex_sonar_data *message);
 
 #endif
 

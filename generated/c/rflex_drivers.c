@@ -4339,4 +4339,26 @@ const char *rflex_drivers_ir_run_mode_name(uint8_t value) {
     }
 }
 
+const char *rflex_drivers_lcd_dump_refused(const struct rflex_drivers_lcd_dump *message) {
+    if (message->byte_count > 249U) {
+        return "pixels";
+    }
+    return NULL;
+}
+
+const char *rflex_drivers_sonar_data_refused(const struct rflex_drivers_sonar_data *message) {
+    if (message->readings_count > 82U) {
+        return "readings";
+    }
+    return NULL;
+}
+
+const char *rflex_drivers_ir_report_refused(const struct rflex_drivers_ir_report *message) {
+    const size_t size = rflex_drivers_ir_report_measure(message);
+    if (size < 1U) {
+        return "?";
+    }
+    return NULL;
+}
+
 #endif

@@ -57,6 +57,14 @@ enum rflex_drivers_result {
     RFLEX_DRIVERS_ERROR_SPACE
 } RFLEX_DRIVERS_PACKED;
 
+#ifdef __cplusplus
+#define RFLEX_DRIVERS_ZEROS \
+    {}
+#else
+#define RFLEX_DRIVERS_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum rflex_drivers_message {
     RFLEX_DRIVERS_MESSAGE_REQUEST_SYSTEM_STATUS = 0,
@@ -156,7 +164,8 @@ struct rflex_drivers_sonar_data_readings {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* What the functions below share that read an element of an array. */
@@ -179,6 +188,8 @@ struct rflex_drivers_request_system_status {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_INIT \
+    { 0 }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_encode(
     const struct rflex_drivers_request_system_status *message, uint8_t *payload, size_t capacity,
@@ -212,6 +223,8 @@ struct rflex_drivers_system_status {
     /** Brake (003_037af2f07b705118.txt, line 61). */
     uint8_t brake;
 };
+#define RFLEX_DRIVERS_SYSTEM_STATUS_INIT \
+    { 0U, 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_system_status_encode(
     const struct rflex_drivers_system_status *message, uint8_t *payload, size_t capacity,
@@ -243,6 +256,8 @@ struct rflex_drivers_lcd_dump {
      */
     uint8_t pixels[249];
 };
+#define RFLEX_DRIVERS_LCD_DUMP_INIT \
+    { 0U, 0U, 0U, RFLEX_DRIVERS_ZEROS }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_lcd_dump_encode(
     const struct rflex_drivers_lcd_dump *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -265,6 +280,8 @@ struct rflex_drivers_axis_get_system {
     /** Axis (rflex-protocol.txt, MOT_AXIS_GET_SYSTEM). */
     uint8_t axis;
 };
+#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_INIT \
+    { 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_encode(
     const struct rflex_drivers_axis_get_system *message, uint8_t *payload, size_t capacity,
@@ -302,6 +319,8 @@ struct rflex_drivers_motor_command {
     /** Direction (003_037af2f07b705118.txt, lines 88-89). */
     uint8_t direction;
 };
+#define RFLEX_DRIVERS_MOTOR_COMMAND_INIT \
+    { 0U, 0U, 0U, 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_motor_command_encode(
     const struct rflex_drivers_motor_command *message, uint8_t *payload, size_t capacity,
@@ -332,6 +351,8 @@ struct rflex_drivers_confirm_motor_command {
     /** Axis (003_037af2f07b705118.txt, line 95). */
     uint8_t axis;
 };
+#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_INIT \
+    { 0U, 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_motor_command_encode(
     const struct rflex_drivers_confirm_motor_command *message, uint8_t *payload, size_t capacity,
@@ -355,6 +376,8 @@ struct rflex_drivers_set_defaults {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define RFLEX_DRIVERS_SET_DEFAULTS_INIT \
+    { 0 }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_encode(
     const struct rflex_drivers_set_defaults *message, uint8_t *payload, size_t capacity,
@@ -378,6 +401,8 @@ struct rflex_drivers_brake_set {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define RFLEX_DRIVERS_BRAKE_SET_INIT \
+    { 0 }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_encode(
     const struct rflex_drivers_brake_set *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -400,6 +425,8 @@ struct rflex_drivers_brake_release {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define RFLEX_DRIVERS_BRAKE_RELEASE_INIT \
+    { 0 }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_encode(
     const struct rflex_drivers_brake_release *message, uint8_t *payload, size_t capacity,
@@ -428,6 +455,8 @@ struct rflex_drivers_brake_release_answer {
     /** Timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 119). */
     uint32_t timestamp;
 };
+#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_INIT \
+    { 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_answer_encode(
     const struct rflex_drivers_brake_release_answer *message, uint8_t *payload, size_t capacity,
@@ -466,6 +495,8 @@ struct rflex_drivers_read_motor {
     /** Torque, -2147483648..2147483647 (003_037af2f07b705118.txt, line 133). */
     int32_t torque;
 };
+#define RFLEX_DRIVERS_READ_MOTOR_INIT \
+    { 0U, 0U, 0U, 0, 0, 0, 0 }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_read_motor_encode(
     const struct rflex_drivers_read_motor *message, uint8_t *payload, size_t capacity,
@@ -495,6 +526,8 @@ struct rflex_drivers_start_stop_motor_packets {
     /** Axes that report; none stops the reports (rflex-protocol.txt, MOT_SYSTEM_REPORT_REQ). */
     uint32_t mask;
 };
+#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_INIT \
+    { 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_encode(
     const struct rflex_drivers_start_stop_motor_packets *message, uint8_t *payload, size_t capacity,
@@ -525,6 +558,8 @@ struct rflex_drivers_confirm_start_stop_motor_packets {
     /** Timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 150). */
     uint32_t timestamp;
 };
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_INIT \
+    { 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_encode(
     const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t *payload,
@@ -549,6 +584,8 @@ struct rflex_drivers_request_joystick_data {
     /** There are no fields, and C has no empty structs. */
     uint8_t unused;
 };
+#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_INIT \
+    { 0 }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_encode(
     const struct rflex_drivers_request_joystick_data *message, uint8_t *payload, size_t capacity,
@@ -578,6 +615,8 @@ struct rflex_drivers_joystick_data {
     /** Buttons (003_037af2f07b705118.txt, line 171). */
     uint8_t buttons;
 };
+#define RFLEX_DRIVERS_JOYSTICK_DATA_INIT \
+    { 0U, 0, 0, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_joystick_data_encode(
     const struct rflex_drivers_joystick_data *message, uint8_t *payload, size_t capacity,
@@ -613,6 +652,8 @@ struct rflex_drivers_start_stop_sonar_packets {
     /** Mode (rflex-protocol.txt, SONAR_RUN). */
     uint8_t mode;
 };
+#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_INIT \
+    { 0U, 0U, 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_encode(
     const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t *payload, size_t capacity,
@@ -643,6 +684,8 @@ struct rflex_drivers_confirm_start_stop_sonar_packets {
     /** Timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 215). */
     uint32_t timestamp;
 };
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_INIT \
+    { 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_encode(
     const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t *payload,
@@ -681,6 +724,10 @@ struct rflex_drivers_sonar_data {
     /** Readings, 0..82 elements (003_037af2f07b705118.txt, lines 226-229). */
     struct rflex_drivers_sonar_data_readings readings[82];
 };
+/* clang-format off */
+#define RFLEX_DRIVERS_SONAR_DATA_INIT \
+    { 2U, 0U, 0U, {{0U, 0U}} }
+/* clang-format on */
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_sonar_data_encode(
     const struct rflex_drivers_sonar_data *message, uint8_t *payload, size_t capacity,
@@ -719,6 +766,8 @@ struct rflex_drivers_initialize_digital_io {
      */
     uint32_t period;
 };
+#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_INIT \
+    { 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_initialize_digital_io_encode(
     const struct rflex_drivers_initialize_digital_io *message, uint8_t *payload, size_t capacity,
@@ -750,6 +799,8 @@ struct rflex_drivers_confirm_initialize_digital_io {
     /** Timestamp, 0..4294967295 (003_037af2f07b705118.txt, lines 301, 309). */
     uint32_t timestamp;
 };
+#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_INIT \
+    { 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_encode(
     const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t *payload,
@@ -781,6 +832,8 @@ struct rflex_drivers_changed_bumpers {
      */
     uint16_t data;
 };
+#define RFLEX_DRIVERS_CHANGED_BUMPERS_INIT \
+    { 0U, 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_bumpers_encode(
     const struct rflex_drivers_changed_bumpers *message, uint8_t *payload, size_t capacity,
@@ -804,6 +857,8 @@ struct rflex_drivers_check_io_changed {
     /** See the decision check_timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 265). */
     uint32_t timestamp;
 };
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_INIT \
+    { 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_encode(
     const struct rflex_drivers_check_io_changed *message, uint8_t *payload, size_t capacity,
@@ -837,6 +892,8 @@ struct rflex_drivers_check_io_changed_answer {
      */
     uint32_t package_count;
 };
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_INIT \
+    { 0U, 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_answer_encode(
     const struct rflex_drivers_check_io_changed_answer *message, uint8_t *payload, size_t capacity,
@@ -867,6 +924,8 @@ struct rflex_drivers_changed_byte {
      */
     uint16_t data;
 };
+#define RFLEX_DRIVERS_CHANGED_BYTE_INIT \
+    { 0U, 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_byte_encode(
     const struct rflex_drivers_changed_byte *message, uint8_t *payload, size_t capacity,
@@ -903,6 +962,8 @@ struct rflex_drivers_ir_run {
      */
     uint8_t mode;
 };
+#define RFLEX_DRIVERS_IR_RUN_INIT \
+    { 0U, 0U, 0U, 0U, 0U, 0U }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_run_encode(
     const struct rflex_drivers_ir_run *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -930,6 +991,8 @@ struct rflex_drivers_ir_report {
     /** Not said by the document. */
     uint8_t data[255];
 };
+#define RFLEX_DRIVERS_IR_REPORT_INIT \
+    { 0U, RFLEX_DRIVERS_ZEROS }
 
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_report_encode(
     const struct rflex_drivers_ir_report *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -950,6 +1013,43 @@ RFLEX_DRIVERS_API void rflex_drivers_ir_report_load(struct rflex_drivers_ir_repo
 
 /** Takes the next byte of a frame. */
 typedef void (*rflex_drivers_put)(void *user, uint8_t byte);
+
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*rflex_drivers_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * rflex_drivers_transmit to a `send`, then ask rflex_drivers_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct rflex_drivers_transmission {
+    rflex_drivers_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct rflex_drivers_transmission. */
+static inline void rflex_drivers_transmit(void *user, uint8_t byte) {
+    struct rflex_drivers_transmission *const frame = (struct rflex_drivers_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool rflex_drivers_transmitted(struct rflex_drivers_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_MAX 13U
@@ -1231,14 +1331,6 @@ enum rflex_drivers_reason {
     RFLEX_DRIVERS_STUFFING,  /**< An escape or substitution is none. */
     RFLEX_DRIVERS_TRUNCATED  /**< The frame is cut off. */
 } RFLEX_DRIVERS_PACKED;
-
-#ifdef __cplusplus
-#define RFLEX_DRIVERS_ZEROS \
-    {}
-#else
-#define RFLEX_DRIVERS_ZEROS \
-    { 0 }
-#endif
 
 /* --- what linux sends ------------------------------------------------------------------------- */
 
@@ -1587,6 +1679,19 @@ RFLEX_DRIVERS_API const char *rflex_drivers_axis_name(uint8_t value);
 RFLEX_DRIVERS_API const char *rflex_drivers_motor_command_direction_name(uint8_t value);
 RFLEX_DRIVERS_API const char *rflex_drivers_start_stop_sonar_packets_mode_name(uint8_t value);
 RFLEX_DRIVERS_API const char *rflex_drivers_ir_run_mode_name(uint8_t value);
+
+/*
+ * Where a function returned RFLEX_DRIVERS_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+RFLEX_DRIVERS_API const char *rflex_drivers_lcd_dump_refused(
+    const struct rflex_drivers_lcd_dump *message);
+RFLEX_DRIVERS_API const char *rflex_drivers_sonar_data_refused(
+    const struct rflex_drivers_sonar_data *message);
+RFLEX_DRIVERS_API const char *rflex_drivers_ir_report_refused(
+    const struct rflex_drivers_ir_report *message);
 
 #endif
 

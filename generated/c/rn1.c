@@ -2542,4 +2542,158 @@ const char *rn1_compass_status_name(uint8_t value) {
     }
 }
 
+const char *rn1_move_manual_refused(const struct rn1_move_manual *message) {
+    if (message->speed < -64 || message->speed > 63) {
+        return "speed";
+    }
+    if (message->arc < -64 || message->arc > 63) {
+        return "arc";
+    }
+    return NULL;
+}
+
+const char *rn1_move_relative_twostep_refused(const struct rn1_move_relative_twostep *message) {
+    if (message->angle < -8192 || message->angle > 8191) {
+        return "angle";
+    }
+    if (message->forward < -8192 || message->forward > 8191) {
+        return "forward";
+    }
+    return NULL;
+}
+
+const char *rn1_move_relative_arc_refused(const struct rn1_move_relative_arc *message) {
+    if (message->angle < -8192 || message->angle > 8191) {
+        return "angle";
+    }
+    if (message->forward < -8192 || message->forward > 8191) {
+        return "forward";
+    }
+    return NULL;
+}
+
+const char *rn1_maintenance_refused(const struct rn1_maintenance *message) {
+    if (message->operation > 127U) {
+        return "operation";
+    }
+    switch (message->operation) {
+    case 65U:
+    case 81U:
+    case 82U:
+        break;
+    case 83U:
+        if (message->argument.run_motor_controller_flasher.motor_controller < 1U ||
+            message->argument.run_motor_controller_flasher.motor_controller > 4U) {
+            return "argument.run_motor_controller_flasher.motor_controller";
+        }
+        break;
+    default:
+        if (message->argument.other.size > 3U) {
+            return "argument.other";
+        }
+        if (!rn1_is_seven_bit(message->argument.other.bytes, message->argument.other.size)) {
+            return "argument.other";
+        }
+        break;
+    }
+    return NULL;
+}
+
+const char *rn1_gyro_refused(const struct rn1_gyro *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (message->int_x < -8192 || message->int_x > 8191) {
+        return "int_x";
+    }
+    if (message->int_y < -8192 || message->int_y > 8191) {
+        return "int_y";
+    }
+    if (message->int_z < -8192 || message->int_z > 8191) {
+        return "int_z";
+    }
+    return NULL;
+}
+
+const char *rn1_xcel_refused(const struct rn1_xcel *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (message->int_x < -8192 || message->int_x > 8191) {
+        return "int_x";
+    }
+    if (message->int_y < -8192 || message->int_y > 8191) {
+        return "int_y";
+    }
+    if (message->int_z < -8192 || message->int_z > 8191) {
+        return "int_z";
+    }
+    return NULL;
+}
+
+const char *rn1_compass_refused(const struct rn1_compass *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (message->avg_x < -8192 || message->avg_x > 8191) {
+        return "avg_x";
+    }
+    if (message->avg_y < -8192 || message->avg_y > 8191) {
+        return "avg_y";
+    }
+    if (message->avg_z < -8192 || message->avg_z > 8191) {
+        return "avg_z";
+    }
+    return NULL;
+}
+
+const char *rn1_optflow_refused(const struct rn1_optflow *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (message->dx < -8192 || message->dx > 8191) {
+        return "dx";
+    }
+    if (message->dy < -8192 || message->dy > 8191) {
+        return "dy";
+    }
+    if (message->q > 127U) {
+        return "q";
+    }
+    return NULL;
+}
+
+const char *rn1_lidar_refused(const struct rn1_lidar *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (rn1_all_bits_u16(message->distances, 360U) > 16383U) {
+        return "distances";
+    }
+    return NULL;
+}
+
+const char *rn1_sonar_refused(const struct rn1_sonar *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (rn1_all_bits_u16(message->distances, 7U) > 16383U) {
+        return "distances";
+    }
+    return NULL;
+}
+
+const char *rn1_facing_refused(const struct rn1_facing *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (message->heading > 16383U) {
+        return "heading";
+    }
+    if (message->speed < -8192 || message->speed > 8191) {
+        return "speed";
+    }
+    return NULL;
+}
+
 #endif

@@ -58,6 +58,14 @@ enum rn1_result {
     RN1_ERROR_SPACE
 } RN1_PACKED;
 
+#ifdef __cplusplus
+#define RN1_ZEROS \
+    {}
+#else
+#define RN1_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum rn1_message {
     RN1_MESSAGE_MOVE_MANUAL = 0,
@@ -141,7 +149,8 @@ struct rn1_maintenance_argument_run_motor_controller_flasher {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- move_manual ------------------------------------------------------------------------------ */
@@ -159,6 +168,8 @@ struct rn1_move_manual {
     /** 0 goes straight on, negative values turn left, -64..63 (line 29). */
     int8_t arc;
 };
+#define RN1_MOVE_MANUAL_INIT \
+    { 0, 0 }
 
 RN1_API enum rn1_result rn1_move_manual_encode(const struct rn1_move_manual *message,
                                                uint8_t *payload, size_t capacity, size_t *size);
@@ -185,6 +196,8 @@ struct rn1_move_relative_twostep {
     /** How far to drive, negative is backwards, mm, -8192..8191 (line 34). */
     int16_t forward;
 };
+#define RN1_MOVE_RELATIVE_TWOSTEP_INIT \
+    { 0, 0 }
 
 RN1_API enum rn1_result rn1_move_relative_twostep_encode(
     const struct rn1_move_relative_twostep *message, uint8_t *payload, size_t capacity,
@@ -213,6 +226,8 @@ struct rn1_move_relative_arc {
     /** How far to drive, negative is backwards, mm, -8192..8191 (line 39). */
     int16_t forward;
 };
+#define RN1_MOVE_RELATIVE_ARC_INIT \
+    { 0, 0 }
 
 RN1_API enum rn1_result rn1_move_relative_arc_encode(const struct rn1_move_relative_arc *message,
                                                      uint8_t *payload, size_t capacity,
@@ -249,6 +264,10 @@ struct rn1_maintenance {
         } other;
     } argument;
 };
+/* clang-format off */
+#define RN1_MAINTENANCE_INIT \
+    { 0U, {{0U}} }
+/* clang-format on */
 
 RN1_API enum rn1_result rn1_maintenance_encode(const struct rn1_maintenance *message,
                                                uint8_t *payload, size_t capacity, size_t *size);
@@ -276,6 +295,8 @@ struct rn1_gyro {
     /** Integral of gyro Z since the message before, -8192..8191 (line 65). */
     int16_t int_z;
 };
+#define RN1_GYRO_INIT \
+    { 0U, 0, 0, 0 }
 
 RN1_API enum rn1_result rn1_gyro_encode(const struct rn1_gyro *message, uint8_t *payload,
                                         size_t capacity, size_t *size);
@@ -302,6 +323,8 @@ struct rn1_xcel {
     /** Integral of acceleration Z since the message before, -8192..8191 (line 71). */
     int16_t int_z;
 };
+#define RN1_XCEL_INIT \
+    { 0U, 0, 0, 0 }
 
 RN1_API enum rn1_result rn1_xcel_encode(const struct rn1_xcel *message, uint8_t *payload,
                                         size_t capacity, size_t *size);
@@ -328,6 +351,8 @@ struct rn1_compass {
     /** Mean of compass Z since the message before, -8192..8191 (line 77). */
     int16_t avg_z;
 };
+#define RN1_COMPASS_INIT \
+    { 0U, 0, 0, 0 }
 
 RN1_API enum rn1_result rn1_compass_encode(const struct rn1_compass *message, uint8_t *payload,
                                            size_t capacity, size_t *size);
@@ -354,6 +379,8 @@ struct rn1_optflow {
     /** Quality of the surface, 0..127 (line 83). */
     uint8_t q;
 };
+#define RN1_OPTFLOW_INIT \
+    { 0U, 0, 0, 0U }
 
 RN1_API enum rn1_result rn1_optflow_encode(const struct rn1_optflow *message, uint8_t *payload,
                                            size_t capacity, size_t *size);
@@ -387,6 +414,8 @@ struct rn1_lidar {
      */
     uint16_t distances[360];
 };
+#define RN1_LIDAR_INIT \
+    { 0U, RN1_ZEROS }
 
 RN1_API enum rn1_result rn1_lidar_encode(const struct rn1_lidar *message, uint8_t *payload,
                                          size_t capacity, size_t *size);
@@ -418,6 +447,8 @@ struct rn1_sonar {
     /** Distances of sonar 0 to sonar 6, mm, 0..16383, 7 elements, 0 = no_datapoint (line 94). */
     uint16_t distances[7];
 };
+#define RN1_SONAR_INIT \
+    { 0U, RN1_ZEROS }
 
 RN1_API enum rn1_result rn1_sonar_encode(const struct rn1_sonar *message, uint8_t *payload,
                                          size_t capacity, size_t *size);
@@ -450,6 +481,8 @@ struct rn1_facing {
     /** Present speed, mm/s, -8192..8191 (line 100). */
     int16_t speed;
 };
+#define RN1_FACING_INIT \
+    { 0U, 0U, 0 }
 
 RN1_API enum rn1_result rn1_facing_encode(const struct rn1_facing *message, uint8_t *payload,
                                           size_t capacity, size_t *size);
@@ -469,6 +502,43 @@ RN1_API void rn1_facing_load(struct rn1_facing *message, const uint8_t *payload)
 
 /** Takes the next byte of a frame. */
 typedef void (*rn1_put)(void *user, uint8_t byte);
+
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*rn1_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * rn1_transmit to a `send`, then ask rn1_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct rn1_transmission {
+    rn1_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct rn1_transmission. */
+static inline void rn1_transmit(void *user, uint8_t byte) {
+    struct rn1_transmission *const frame = (struct rn1_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool rn1_transmitted(struct rn1_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_MOVE_MANUAL_FRAME_MAX 4U
@@ -574,14 +644,6 @@ enum rn1_reason {
     RN1_STUFFING,  /**< An escape or substitution is none. */
     RN1_TRUNCATED  /**< The frame is cut off. */
 } RN1_PACKED;
-
-#ifdef __cplusplus
-#define RN1_ZEROS \
-    {}
-#else
-#define RN1_ZEROS \
-    { 0 }
-#endif
 
 /* --- what host sends -------------------------------------------------------------------------- */
 
@@ -824,6 +886,25 @@ RN1_API const char *rn1_maintenance_operation_name(uint8_t value);
 RN1_API const char *rn1_gyro_status_name(uint8_t value);
 RN1_API const char *rn1_xcel_status_name(uint8_t value);
 RN1_API const char *rn1_compass_status_name(uint8_t value);
+
+/*
+ * Where a function returned RN1_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+RN1_API const char *rn1_move_manual_refused(const struct rn1_move_manual *message);
+RN1_API const char *rn1_move_relative_twostep_refused(
+    const struct rn1_move_relative_twostep *message);
+RN1_API const char *rn1_move_relative_arc_refused(const struct rn1_move_relative_arc *message);
+RN1_API const char *rn1_maintenance_refused(const struct rn1_maintenance *message);
+RN1_API const char *rn1_gyro_refused(const struct rn1_gyro *message);
+RN1_API const char *rn1_xcel_refused(const struct rn1_xcel *message);
+RN1_API const char *rn1_compass_refused(const struct rn1_compass *message);
+RN1_API const char *rn1_optflow_refused(const struct rn1_optflow *message);
+RN1_API const char *rn1_lidar_refused(const struct rn1_lidar *message);
+RN1_API const char *rn1_sonar_refused(const struct rn1_sonar *message);
+RN1_API const char *rn1_facing_refused(const struct rn1_facing *message);
 
 #endif
 

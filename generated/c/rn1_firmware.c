@@ -3002,4 +3002,186 @@ const char *rn1_firmware_compass_status_name(uint8_t value) {
     }
 }
 
+const char *rn1_firmware_move_manual_refused(const struct rn1_firmware_move_manual *message) {
+    if (message->speed < -64 || message->speed > 63) {
+        return "speed";
+    }
+    if (message->arc < -64 || message->arc > 63) {
+        return "arc";
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_move_relative_twostep_refused(
+    const struct rn1_firmware_move_relative_twostep *message) {
+    if (message->angle < -8192 || message->angle > 8191) {
+        return "angle";
+    }
+    if (message->forward < -8192 || message->forward > 8191) {
+        return "forward";
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_decrease_phase_angle_refused(
+    const struct rn1_firmware_decrease_phase_angle *message) {
+    if (message->ignored > 127U) {
+        return "ignored";
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_increase_phase_angle_refused(
+    const struct rn1_firmware_increase_phase_angle *message) {
+    if (message->ignored > 127U) {
+        return "ignored";
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_maintenance_refused(const struct rn1_firmware_maintenance *message) {
+    if (message->operation > 127U) {
+        return "operation";
+    }
+    switch (message->operation) {
+    case 82U:
+        break;
+    case 83U:
+        if (message->argument.run_motor_controller_flasher.motor_controller < 1U ||
+            message->argument.run_motor_controller_flasher.motor_controller > 4U) {
+            return "argument.run_motor_controller_flasher.motor_controller";
+        }
+        break;
+    default:
+        if (message->argument.other.size > 1U) {
+            return "argument.other";
+        }
+        if (!rn1_firmware_is_seven_bit(message->argument.other.bytes,
+                                       message->argument.other.size)) {
+            return "argument.other";
+        }
+        break;
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_gyro_refused(const struct rn1_firmware_gyro *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (message->int_x < -8192 || message->int_x > 8191) {
+        return "int_x";
+    }
+    if (message->int_y < -8192 || message->int_y > 8191) {
+        return "int_y";
+    }
+    if (message->int_z < -8192 || message->int_z > 8191) {
+        return "int_z";
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_xcel_refused(const struct rn1_firmware_xcel *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (message->int_x < -8192 || message->int_x > 8191) {
+        return "int_x";
+    }
+    if (message->int_y < -8192 || message->int_y > 8191) {
+        return "int_y";
+    }
+    if (message->int_z < -8192 || message->int_z > 8191) {
+        return "int_z";
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_compass_refused(const struct rn1_firmware_compass *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (message->avg_x < -8192 || message->avg_x > 8191) {
+        return "avg_x";
+    }
+    if (message->avg_y < -8192 || message->avg_y > 8191) {
+        return "avg_y";
+    }
+    if (message->avg_z < -8192 || message->avg_z > 8191) {
+        return "avg_z";
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_lidar_refused(const struct rn1_firmware_lidar *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (rn1_firmware_all_bits_u16(message->distances, 360U) > 16383U) {
+        return "distances";
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_sonar_refused(const struct rn1_firmware_sonar *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (rn1_firmware_all_bits_u16(message->distances, 3U) > 16383U) {
+        return "distances";
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_facing_refused(const struct rn1_firmware_facing *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (message->heading < -8192 || message->heading > 8191) {
+        return "heading";
+    }
+    if (message->speed < -8192 || message->speed > 8191) {
+        return "speed";
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_optflow_integral_refused(
+    const struct rn1_firmware_optflow_integral *message) {
+    if (message->status > 127U) {
+        return "status";
+    }
+    if (message->int_x < -8192 || message->int_x > 8191) {
+        return "int_x";
+    }
+    if (message->int_y < -8192 || message->int_y > 8191) {
+        return "int_y";
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_motor_controller_message_refused(
+    const struct rn1_firmware_motor_controller_message *message) {
+    if (message->last_msg > 16383U) {
+        return "last_msg";
+    }
+    return NULL;
+}
+
+const char *rn1_firmware_debug_numbers_refused(const struct rn1_firmware_debug_numbers *message) {
+    if (message->dbg1 < -2147483648LL || message->dbg1 > 2147483647L) {
+        return "dbg1";
+    }
+    if (message->dbg2 < -2147483648LL || message->dbg2 > 2147483647L) {
+        return "dbg2";
+    }
+    if (message->dbg3 < -2147483648LL || message->dbg3 > 2147483647L) {
+        return "dbg3";
+    }
+    if (message->dbg4 < -2147483648LL || message->dbg4 > 2147483647L) {
+        return "dbg4";
+    }
+    return NULL;
+}
+
 #endif

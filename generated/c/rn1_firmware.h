@@ -58,6 +58,14 @@ enum rn1_firmware_result {
     RN1_FIRMWARE_ERROR_SPACE
 } RN1_FIRMWARE_PACKED;
 
+#ifdef __cplusplus
+#define RN1_FIRMWARE_ZEROS \
+    {}
+#else
+#define RN1_FIRMWARE_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum rn1_firmware_message {
     RN1_FIRMWARE_MESSAGE_MOVE_MANUAL = 0,
@@ -126,7 +134,8 @@ struct rn1_firmware_maintenance_argument_run_motor_controller_flasher {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- move_manual ------------------------------------------------------------------------------ */
@@ -146,6 +155,8 @@ struct rn1_firmware_move_manual {
      */
     int8_t arc;
 };
+#define RN1_FIRMWARE_MOVE_MANUAL_INIT \
+    { 0, 0 }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_manual_encode(
     const struct rn1_firmware_move_manual *message, uint8_t *payload, size_t capacity,
@@ -180,6 +191,8 @@ struct rn1_firmware_move_relative_twostep {
      */
     int16_t forward;
 };
+#define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_INIT \
+    { 0, 0 }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_relative_twostep_encode(
     const struct rn1_firmware_move_relative_twostep *message, uint8_t *payload, size_t capacity,
@@ -210,6 +223,8 @@ struct rn1_firmware_decrease_phase_angle {
      */
     uint8_t ignored;
 };
+#define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_INIT \
+    { 0U }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_decrease_phase_angle_encode(
     const struct rn1_firmware_decrease_phase_angle *message, uint8_t *payload, size_t capacity,
@@ -240,6 +255,8 @@ struct rn1_firmware_increase_phase_angle {
      */
     uint8_t ignored;
 };
+#define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_INIT \
+    { 0U }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_increase_phase_angle_encode(
     const struct rn1_firmware_increase_phase_angle *message, uint8_t *payload, size_t capacity,
@@ -276,6 +293,10 @@ struct rn1_firmware_maintenance {
         } other;
     } argument;
 };
+/* clang-format off */
+#define RN1_FIRMWARE_MAINTENANCE_INIT \
+    { 0U, {{0U}} }
+/* clang-format on */
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_maintenance_encode(
     const struct rn1_firmware_maintenance *message, uint8_t *payload, size_t capacity,
@@ -317,6 +338,8 @@ struct rn1_firmware_gyro {
      */
     int16_t int_z;
 };
+#define RN1_FIRMWARE_GYRO_INIT \
+    { 0U, 0, 0, 0 }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_gyro_encode(
     const struct rn1_firmware_gyro *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -357,6 +380,8 @@ struct rn1_firmware_xcel {
      */
     int16_t int_z;
 };
+#define RN1_FIRMWARE_XCEL_INIT \
+    { 0U, 0, 0, 0 }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_xcel_encode(
     const struct rn1_firmware_xcel *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -397,6 +422,8 @@ struct rn1_firmware_compass {
      */
     int16_t avg_z;
 };
+#define RN1_FIRMWARE_COMPASS_INIT \
+    { 0U, 0, 0, 0 }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_compass_encode(
     const struct rn1_firmware_compass *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -431,6 +458,8 @@ struct rn1_firmware_lidar {
      */
     uint16_t distances[360];
 };
+#define RN1_FIRMWARE_LIDAR_INIT \
+    { 0U, RN1_FIRMWARE_ZEROS }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_lidar_encode(
     const struct rn1_firmware_lidar *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -466,6 +495,8 @@ struct rn1_firmware_sonar {
      */
     uint16_t distances[3];
 };
+#define RN1_FIRMWARE_SONAR_INIT \
+    { 0U, RN1_FIRMWARE_ZEROS }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_sonar_encode(
     const struct rn1_firmware_sonar *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -504,6 +535,8 @@ struct rn1_firmware_facing {
     /** Always 0, mm/s, -8192..8191 (main.c, lines 913-914). */
     int16_t speed;
 };
+#define RN1_FIRMWARE_FACING_INIT \
+    { 1U, 0, 0 }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_facing_encode(
     const struct rn1_firmware_facing *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -535,6 +568,8 @@ struct rn1_firmware_optflow_integral {
     /** Way in Y divided by 4 and rounded down, -8192..8191 (main.c, lines 922-923). */
     int16_t int_y;
 };
+#define RN1_FIRMWARE_OPTFLOW_INTEGRAL_INIT \
+    { 1U, 0, 0 }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_optflow_integral_encode(
     const struct rn1_firmware_optflow_integral *message, uint8_t *payload, size_t capacity,
@@ -557,6 +592,8 @@ struct rn1_firmware_motor_controller_message {
     /** The 14 high bits of a 16-bit word, 0..16383 (main.c, lines 942-943). */
     uint16_t last_msg;
 };
+#define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_INIT \
+    { 0U }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_motor_controller_message_encode(
     const struct rn1_firmware_motor_controller_message *message, uint8_t *payload, size_t capacity,
@@ -598,6 +635,8 @@ struct rn1_firmware_debug_numbers {
     /** Not said by the document, -2147483648..2147483647 (main.c, lines 966-970). */
     int64_t dbg4;
 };
+#define RN1_FIRMWARE_DEBUG_NUMBERS_INIT \
+    { 0, 0, 0, 0 }
 
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_debug_numbers_encode(
     const struct rn1_firmware_debug_numbers *message, uint8_t *payload, size_t capacity,
@@ -619,6 +658,43 @@ RN1_FIRMWARE_API void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_
 
 /** Takes the next byte of a frame. */
 typedef void (*rn1_firmware_put)(void *user, uint8_t byte);
+
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*rn1_firmware_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * rn1_firmware_transmit to a `send`, then ask rn1_firmware_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct rn1_firmware_transmission {
+    rn1_firmware_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct rn1_firmware_transmission. */
+static inline void rn1_firmware_transmit(void *user, uint8_t byte) {
+    struct rn1_firmware_transmission *const frame = (struct rn1_firmware_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool rn1_firmware_transmitted(struct rn1_firmware_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_MOVE_MANUAL_FRAME_MAX 4U
@@ -759,14 +835,6 @@ enum rn1_firmware_reason {
     RN1_FIRMWARE_STUFFING,  /**< An escape or substitution is none. */
     RN1_FIRMWARE_TRUNCATED  /**< The frame is cut off. */
 } RN1_FIRMWARE_PACKED;
-
-#ifdef __cplusplus
-#define RN1_FIRMWARE_ZEROS \
-    {}
-#else
-#define RN1_FIRMWARE_ZEROS \
-    { 0 }
-#endif
 
 /* --- what host sends -------------------------------------------------------------------------- */
 
@@ -1036,6 +1104,36 @@ RN1_FIRMWARE_API const char *rn1_firmware_maintenance_operation_name(uint8_t val
 RN1_FIRMWARE_API const char *rn1_firmware_gyro_status_name(uint8_t value);
 RN1_FIRMWARE_API const char *rn1_firmware_xcel_status_name(uint8_t value);
 RN1_FIRMWARE_API const char *rn1_firmware_compass_status_name(uint8_t value);
+
+/*
+ * Where a function returned RN1_FIRMWARE_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+RN1_FIRMWARE_API const char *rn1_firmware_move_manual_refused(
+    const struct rn1_firmware_move_manual *message);
+RN1_FIRMWARE_API const char *rn1_firmware_move_relative_twostep_refused(
+    const struct rn1_firmware_move_relative_twostep *message);
+RN1_FIRMWARE_API const char *rn1_firmware_decrease_phase_angle_refused(
+    const struct rn1_firmware_decrease_phase_angle *message);
+RN1_FIRMWARE_API const char *rn1_firmware_increase_phase_angle_refused(
+    const struct rn1_firmware_increase_phase_angle *message);
+RN1_FIRMWARE_API const char *rn1_firmware_maintenance_refused(
+    const struct rn1_firmware_maintenance *message);
+RN1_FIRMWARE_API const char *rn1_firmware_gyro_refused(const struct rn1_firmware_gyro *message);
+RN1_FIRMWARE_API const char *rn1_firmware_xcel_refused(const struct rn1_firmware_xcel *message);
+RN1_FIRMWARE_API const char *rn1_firmware_compass_refused(
+    const struct rn1_firmware_compass *message);
+RN1_FIRMWARE_API const char *rn1_firmware_lidar_refused(const struct rn1_firmware_lidar *message);
+RN1_FIRMWARE_API const char *rn1_firmware_sonar_refused(const struct rn1_firmware_sonar *message);
+RN1_FIRMWARE_API const char *rn1_firmware_facing_refused(const struct rn1_firmware_facing *message);
+RN1_FIRMWARE_API const char *rn1_firmware_optflow_integral_refused(
+    const struct rn1_firmware_optflow_integral *message);
+RN1_FIRMWARE_API const char *rn1_firmware_motor_controller_message_refused(
+    const struct rn1_firmware_motor_controller_message *message);
+RN1_FIRMWARE_API const char *rn1_firmware_debug_numbers_refused(
+    const struct rn1_firmware_debug_numbers *message);
 
 #endif
 

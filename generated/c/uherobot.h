@@ -54,6 +54,14 @@ enum uherobot_result {
     UHEROBOT_ERROR_SPACE
 } UHEROBOT_PACKED;
 
+#ifdef __cplusplus
+#define UHEROBOT_ZEROS \
+    {}
+#else
+#define UHEROBOT_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum uherobot_message {
     UHEROBOT_MESSAGE_MOTORS_SERVOS_LEDS = 0,
@@ -80,7 +88,8 @@ enum uherobot_message {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- motors_servos_leds ----------------------------------------------------------------------- */
@@ -102,6 +111,8 @@ struct uherobot_motors_servos_leds {
     /** One bit for each LED (line 43). */
     uint8_t leds;
 };
+#define UHEROBOT_MOTORS_SERVOS_LEDS_INIT \
+    { 0, 0, UHEROBOT_ZEROS, 0U }
 
 UHEROBOT_API enum uherobot_result uherobot_motors_servos_leds_encode(
     const struct uherobot_motors_servos_leds *message, uint8_t *payload, size_t capacity,
@@ -134,6 +145,8 @@ struct uherobot_motors_two_servos {
     /** Positions of servo 1 and servo 2, 0..65535, 2 elements (line 48). */
     uint16_t servos[2];
 };
+#define UHEROBOT_MOTORS_TWO_SERVOS_INIT \
+    { 0, 0, UHEROBOT_ZEROS }
 
 UHEROBOT_API enum uherobot_result uherobot_motors_two_servos_encode(
     const struct uherobot_motors_two_servos *message, uint8_t *payload, size_t capacity,
@@ -164,6 +177,8 @@ struct uherobot_motor_test {
     /** Drive of motor 2, -32768..32767 (lines 57-58). */
     int16_t motor_2;
 };
+#define UHEROBOT_MOTOR_TEST_INIT \
+    { 0, 0 }
 
 UHEROBOT_API enum uherobot_result uherobot_motor_test_encode(
     const struct uherobot_motor_test *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -200,6 +215,8 @@ struct uherobot_status {
     /** Temperature, 1/100 degC, -32768..32767 (line 53). */
     int16_t temperature;
 };
+#define UHEROBOT_STATUS_INIT \
+    { 0, 0, 0 }
 
 UHEROBOT_API enum uherobot_result uherobot_status_encode(const struct uherobot_status *message,
                                                          uint8_t *payload, size_t capacity,
@@ -220,6 +237,43 @@ UHEROBOT_API void uherobot_status_load(struct uherobot_status *message, const ui
 
 /** Takes the next byte of a frame. */
 typedef void (*uherobot_put)(void *user, uint8_t byte);
+
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*uherobot_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * uherobot_transmit to a `send`, then ask uherobot_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct uherobot_transmission {
+    uherobot_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct uherobot_transmission. */
+static inline void uherobot_transmit(void *user, uint8_t byte) {
+    struct uherobot_transmission *const frame = (struct uherobot_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool uherobot_transmitted(struct uherobot_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_MOTORS_SERVOS_LEDS_FRAME_MAX 48U
@@ -277,14 +331,6 @@ enum uherobot_reason {
     UHEROBOT_STUFFING,  /**< An escape or substitution is none. */
     UHEROBOT_TRUNCATED  /**< The frame is cut off. */
 } UHEROBOT_PACKED;
-
-#ifdef __cplusplus
-#define UHEROBOT_ZEROS \
-    {}
-#else
-#define UHEROBOT_ZEROS \
-    { 0 }
-#endif
 
 /* --- what daemon sends ------------------------------------------------------------------------ */
 

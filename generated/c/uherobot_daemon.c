@@ -1248,4 +1248,20 @@ const char *uherobot_daemon_reason_name(enum uherobot_daemon_reason reason) {
     }
 }
 
+const char *uherobot_daemon_motors_servos_leds_refused(
+    const struct uherobot_daemon_motors_servos_leds *message) {
+    if (message->right_motor < -3200 || message->right_motor > 3200) {
+        return "right_motor";
+    }
+    if (message->left_motor < -3200 || message->left_motor > 3200) {
+        return "left_motor";
+    }
+    for (size_t i = 0; i < 8U; i++) {
+        if (message->servos[i] > 250U) {
+            return "servos[]";
+        }
+    }
+    return NULL;
+}
+
 #endif

@@ -58,6 +58,14 @@ enum uherobot_daemon_result {
     UHEROBOT_DAEMON_ERROR_SPACE
 } UHEROBOT_DAEMON_PACKED;
 
+#ifdef __cplusplus
+#define UHEROBOT_DAEMON_ZEROS \
+    {}
+#else
+#define UHEROBOT_DAEMON_ZEROS \
+    { 0 }
+#endif
+
 /** Every message, in the schema's order. */
 enum uherobot_daemon_message {
     UHEROBOT_DAEMON_MESSAGE_MOTORS_SERVOS_LEDS = 0,
@@ -84,7 +92,8 @@ enum uherobot_daemon_message {
  * bytes and says its size; it refuses fields that are out of range. `decode` takes a payload of
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
- * message brings, which the decoder has checked, and for nothing else.
+ * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
+ * ..._INIT: the defaults of its fields, and zeros where they have none.
  */
 
 /* --- motors_servos_leds ----------------------------------------------------------------------- */
@@ -128,6 +137,8 @@ struct uherobot_daemon_motors_servos_leds {
      */
     uint8_t leds;
 };
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_INIT \
+    { 0, 0, UHEROBOT_DAEMON_ZEROS, 0U }
 
 UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_encode(
     const struct uherobot_daemon_motors_servos_leds *message, uint8_t *payload, size_t capacity,
@@ -182,6 +193,8 @@ struct uherobot_daemon_status {
     /** Voltage of the motors, mV, 0..65535 (main.c, lines 152-158). */
     uint16_t motor_voltage;
 };
+#define UHEROBOT_DAEMON_STATUS_INIT \
+    { 0, 0, 0U, 0U, 0U, 0U }
 
 UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_status_encode(
     const struct uherobot_daemon_status *message, uint8_t *payload, size_t capacity, size_t *size);
@@ -202,6 +215,43 @@ UHEROBOT_DAEMON_API void uherobot_daemon_status_load(struct uherobot_daemon_stat
 
 /** Takes the next byte of a frame. */
 typedef void (*uherobot_daemon_put)(void *user, uint8_t byte);
+
+/** Takes the next byte of a frame and returns true, or returns false where it has no room now. */
+typedef bool (*uherobot_daemon_offer)(void *user, uint8_t byte);
+
+/**
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
+ * uherobot_daemon_transmit to a `send`, then ask uherobot_daemon_transmitted. As long as that is false, call the same
+ * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
+ * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ */
+struct uherobot_daemon_transmission {
+    uherobot_daemon_offer offer;
+    void *user;
+    /** Bytes that were taken. */
+    size_t sent;
+    /** Bytes that this call has come to. */
+    size_t seen;
+};
+
+/** The `put` for a `send` that may be refused bytes; `user` is a struct uherobot_daemon_transmission. */
+static inline void uherobot_daemon_transmit(void *user, uint8_t byte) {
+    struct uherobot_daemon_transmission *const frame = (struct uherobot_daemon_transmission *)user;
+    if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
+        frame->sent++;
+    }
+    frame->seen++;
+}
+
+/** True if all bytes are gone, and the next frame can be begun. Ask behind each call of `send`. */
+static inline bool uherobot_daemon_transmitted(struct uherobot_daemon_transmission *frame) {
+    const bool all = frame->sent == frame->seen;
+    frame->seen = 0;
+    if (all) {
+        frame->sent = 0;
+    }
+    return all;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_MAX 48U
@@ -241,14 +291,6 @@ enum uherobot_daemon_reason {
     UHEROBOT_DAEMON_STUFFING,  /**< An escape or substitution is none. */
     UHEROBOT_DAEMON_TRUNCATED  /**< The frame is cut off. */
 } UHEROBOT_DAEMON_PACKED;
-
-#ifdef __cplusplus
-#define UHEROBOT_DAEMON_ZEROS \
-    {}
-#else
-#define UHEROBOT_DAEMON_ZEROS \
-    { 0 }
-#endif
 
 /* --- what daemon sends ------------------------------------------------------------------------ */
 
@@ -466,6 +508,15 @@ UHEROBOT_DAEMON_API void uherobot_daemon_board_dispatch(
 UHEROBOT_DAEMON_API const char *uherobot_daemon_message_name(enum uherobot_daemon_message message);
 UHEROBOT_DAEMON_API const char *uherobot_daemon_result_name(enum uherobot_daemon_result result);
 UHEROBOT_DAEMON_API const char *uherobot_daemon_reason_name(enum uherobot_daemon_reason reason);
+
+/*
+ * Where a function returned UHEROBOT_DAEMON_ERROR_RANGE: the first member whose value, or number of
+ * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
+ * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
+ * A message that can always be sent has no such function.
+ */
+UHEROBOT_DAEMON_API const char *uherobot_daemon_motors_servos_leds_refused(
+    const struct uherobot_daemon_motors_servos_leds *message);
 
 #endif
 

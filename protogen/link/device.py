@@ -23,7 +23,7 @@ from protogen.link.simulation import Counts, Simulation, rates_of
 from protogen.live.codec import kept_module
 from protogen.model.protocol import Protocol
 
-_PATIENCE = 10
+_PATIENCE = 60
 """Seconds in which the device has to begin and to end."""
 
 

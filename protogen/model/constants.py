@@ -28,11 +28,12 @@ def constant_bytes(field: Field) -> bytes:
             run.put(field.type.element.bits, item)
         return run.finish()
     if isinstance(field.const, tuple):
-        return b"".join(_wire_bytes(field.element, item) for item in field.const)
-    return _wire_bytes(field.type, field.const)
+        return b"".join(raw_bytes(field.element, item) for item in field.const)
+    return raw_bytes(field.type, field.const)
 
 
-def _wire_bytes(type_: Type, value: Constant) -> bytes:
+def raw_bytes(type_: Type, value: Constant) -> bytes:
+    """The wire bytes of one value."""
     if isinstance(value, bytes):
         return value
     if isinstance(value, str):

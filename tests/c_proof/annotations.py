@@ -23,6 +23,13 @@ _REFUSAL = re.compile(r" +if \([^{}]*\) \{\n +return [^;]*;\n +\}\n")
 _ERROR = re.compile(r"^( +)(return \w+_ERROR_\w+;)\n", re.MULTILINE)
 """Ways that end with an error need not stay apart."""
 _SEARCH = re.compile(r"^( +)while \(length < size && bytes\[length\] != end\) \{\n", re.MULTILINE)
+_LIMIT = re.compile(r"struct (\w+)_decoder \{[^}]* limit;")
+"""Until a frame's size is known the limit is nought, which is no size of a frame."""
+_POLLED_FEED = re.compile(
+    r"^(size_t (\w+)_decoder_feed\([^{]*\{\n(?:.*\n)*?    event->message = \w+_NO_MESSAGE;\n)"
+    r"(    while \(index < size)",
+    re.MULTILINE,
+)
 _FIXED = re.compile(r"payload\[\d+\]")
 
 
@@ -31,6 +38,20 @@ def annotated(source: str) -> str:
     source = _CHECK.sub(lambda check: _annotated_check(check.group()), source)
     # A range can't leave out a byte in its middle, but those below and above it can do so.
     return _SEARCH.sub(lambda m: m.group() + _split(m[1] + "    ", "bytes[length] < end"), source)
+
+
+def fed(source: str, header: str) -> str:
+    """Generated C with annotations where `feed` looks whether an event was filled.
+
+    It is filled, with a payload of that message, just where it has a message.
+    """
+
+    def splits(found: re.Match[str]) -> str:
+        limit = "    //@ dynamic_split decoder->limit == 0;\n" if found[2] in limited else ""
+        return f"{found[1]}    //@ dynamic_split event->message;\n{limit}{found[3]}"
+
+    limited = set(_LIMIT.findall(header))
+    return _POLLED_FEED.sub(splits, source)
 
 
 def _annotated_check(text: str) -> str:

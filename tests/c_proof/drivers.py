@@ -38,7 +38,7 @@ _TELLS = re.compile(
 _POLLS = re.compile(r"void (\w+)_decoder_init\(\s*struct \w+ \*decoder\);")
 """A decoder whose `push` returns which message is complete, and takes no handler."""
 
-_HEAD = """#define {upper}_FAST_FEED 0 /* memcpy, which only `feed` needs; fuzzed against `push` */
+HEAD = """#define {upper}_FAST_FEED 0 /* memcpy, which only `feed` needs; fuzzed against `push` */
 #include "{name}.c"
 #include "__fc_builtin.h"
 #include <stddef.h>
@@ -49,7 +49,7 @@ static volatile uint8_t sink;
 _TAKE = """
 static void take_{prefix}(void *user, const struct {prefix}_event *event) {{
     (void)user;
-{reads}}}
+{dispatch}{reads}}}
 
 {step}"""
 _ENDLESS = """static void prove_{prefix}_push(void) {{
@@ -65,7 +65,7 @@ _ENDLESS = """static void prove_{prefix}_push(void) {{
 {apart}    while (any) {{
         if (any) {{
             {push}
-{tells}        }} else {{
+{tells}{feed}        }} else {{
             {prefix}_decoder_flush(&decoder);
         }}
     }}
@@ -74,6 +74,23 @@ _ENDLESS = """static void prove_{prefix}_push(void) {{
 _TELL = """        }} else if (any) {{
             (void){function}(&decoder, ({type})Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU));
 """
+_FEED = """        }} else if (any) {{
+            uint8_t bytes[{count}];
+            Frama_C_make_unknown((char *)bytes, sizeof bytes);
+            {prefix}_decoder_feed(&decoder, bytes, Frama_C_interval(0, {count}));
+"""
+_POLLED_FEED = """        }} else if (any) {{
+            uint8_t bytes[{count}];
+            struct {prefix}_event event;
+            Frama_C_make_unknown((char *)bytes, sizeof bytes);
+            {prefix}_decoder_feed(&decoder, bytes, Frama_C_interval(0, {count}), &event);
+            if (event.message != {upper}_NO_MESSAGE) {{
+                take_{prefix}(NULL, &event);
+            }}
+"""
+FED = 40
+"""Bytes that are fed at once, at most; again and again."""
+_DISPATCH = "    {prefix}_dispatch(NULL, event);\n"
 _ENDS = """    if (event->payload_size > 0) {
         /* EVA has to show that these two bytes are there. `decode` is shown to read no others. */
         sink = event->payload[0];
@@ -175,7 +192,7 @@ def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
     flat = re.sub(r"\s+", " ", header)
     greatest = {name: int(size) for name, size in _GREATEST.findall(flat)}
     messages = {f"{protocol.name}_{message.name}": message for message in protocol.messages}
-    parts, proofs = [_HEAD.format(name=protocol.name, upper=protocol.name.upper())], []
+    parts, proofs = [HEAD.format(name=protocol.name, upper=protocol.name.upper())], []
     for prefix, struct, held in _DECODE.findall(flat):
         types = re.findall(r"(\w+) \w+", held)
         room = greatest[prefix.upper()] + 1
@@ -192,14 +209,22 @@ def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
     # Bytes that are copied are all alike: to follow each of them takes most of the time.
     copy = f"{protocol.name}_copy"
     options = (STATES, *((f"-eva-slevel-function={copy}:0",) if f"{copy}(" in source else ()))
-    return replace(_driver(parts, proofs), options=options)
+    return replace(program(parts, proofs), options=options)
 
 
-def push_driver(protocol: Protocol, header: str, *, reads_ends: bool = True) -> Driver:
+def push_driver(
+    protocol: Protocol,
+    header: str,
+    *,
+    reads_ends: bool = True,
+    feeds: bool = False,
+    loads: bool = False,
+) -> Driver:
     """Any number of bytes and ends of input, for each sender's decoder.
 
     The handler reads payloads: both ends, or the first byte alone. The decoder's memory holds
-    anything before it is initialised, or it is not, and its memory holds zeros.
+    anything before it is initialised, or it is not, and its memory holds zeros. Where it
+    `feeds`, bytes also come several at a time; where it `loads`, each event is dispatched.
     """
     prefixes, polled = _PUSH.findall(header), set(_POLLS.findall(header))
     limited = polled & set(_LIMIT.findall(header))
@@ -216,13 +241,21 @@ def push_driver(protocol: Protocol, header: str, *, reads_ends: bool = True) -> 
             polls=prefix in polled,
             apart=_IDLE if prefix in limited else "",
             tells=tells.get(prefix, ""),
+            feed=_feed_of(prefix, upper, polls=prefix in polled) if feeds else "",
+            dispatch=_DISPATCH.format(prefix=prefix) if loads else "",
             **given,
         )
         for prefix in prefixes
     ]
-    head = _HEAD.format(name=protocol.name, upper=upper)
-    driver = _driver([head, *parts], [f"{prefix}_push" for prefix in prefixes])
-    return replace(driver, options=_apart(sorted(polled)))
+    head = HEAD.format(name=protocol.name, upper=upper)
+    driver = program([head, *parts], [f"{prefix}_push" for prefix in prefixes])
+    options = _apart(sorted(polled), feeds=feeds)
+    return replace(driver, options=options)
+
+
+def _feed_of(prefix: str, upper: str, *, polls: bool) -> str:
+    call = _POLLED_FEED if polls else _FEED
+    return call.format(prefix=prefix, upper=upper, count=FED)
 
 
 def first_driver(protocol: Protocol, header: str) -> Driver:
@@ -233,25 +266,27 @@ def first_driver(protocol: Protocol, header: str) -> Driver:
     """
     polled = set(_POLLS.findall(header))
     upper = protocol.name.upper()
-    parts = [_HEAD.format(name=protocol.name, upper=upper)]
+    parts = [HEAD.format(name=protocol.name, upper=upper)]
     proofs, names = [], names_of(protocol)
     for sender in protocol.senders:
         prefix = names.senders[sender.name]
         count = sender.framing.least + FIRST
-        given = {"polls": prefix in polled, "count": count, "reads": _EACH}
+        given = {"polls": prefix in polled, "count": count, "reads": _EACH, "dispatch": ""}
         parts.append(_decoder(_FIRST, prefix, upper, **given))
         proofs.append(f"{prefix}_first")
-    driver = _driver(parts, proofs)
+    driver = program(parts, proofs)
     return replace(driver, options=(*_apart(sorted(polled)), f"-eva-slevel={PATHS}"))
 
 
-def _apart(prefixes: Sequence[str]) -> tuple[str, ...]:
+def _apart(prefixes: Sequence[str], *, feeds: bool = False) -> tuple[str, ...]:
     """Split by the message that `push` returns: only with one the event is filled."""
     if not prefixes:
         return ()
     steps = [name for p in prefixes for name in (f"step_{p}", f"{p}_decoder_push", f"{p}_complete")]
+    steps += [f"{p}_{name}" for p in prefixes for name in ("take_byte", "decoder_feed") if feeds]
     depths = ",".join(f"{name}:64" for name in steps)
-    return ("-eva-split-return=full", f"-eva-slevel-function={depths}")
+    splits = ("-eva-interprocedural-splits",) if feeds else ()
+    return ("-eva-split-return=full", f"-eva-slevel-function={depths}", *splits)
 
 
 def _decoder(proof: str, prefix: str, upper: str, *, polls: object, **given: object) -> str:
@@ -273,7 +308,7 @@ def _bounds(header: str) -> str:
     return ", ".join(map(str, sorted(near)))
 
 
-def _driver(parts: Sequence[str], proofs: Sequence[str]) -> Driver:
+def program(parts: Sequence[str], proofs: Sequence[str]) -> Driver:
     assert proofs
     calls = "".join(f"    prove_{proof}();\n" for proof in proofs)
     main = f"\nint main(void) {{\n{calls}    return 0;\n}}\n"

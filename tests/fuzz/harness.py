@@ -26,6 +26,7 @@ from compiled import protocol_of
 from corpus import material_of, stream_of
 from tooling import require_compiler, require_tool
 
+from fuzz.corpora import unpack
 from protogen.model.protocol import Protocol
 from protogen.targets.c.options import EVENTS, COptions, Events
 
@@ -105,9 +106,14 @@ class Fuzzer:
 def build(
     protocol: Protocol, seeds: Path, folder: Path, *flags: str, events: Events = "all"
 ) -> Fuzzer:
-    """Compile the fuzzer of a protocol; its corpus begins with streams of the schema at `seeds`."""
+    """Compile the fuzzer of a protocol.
+
+    Its corpus begins with streams of the schema at `seeds`, and with what was kept for that.
+    """
     made = generate(protocol, folder, COptions(events=events))
-    return build_from(made.header, protocol, seeds, *flags)
+    fuzzer = build_from(made.header, protocol, seeds, *flags)
+    unpack(seeds, fuzzer.corpus)
+    return fuzzer
 
 
 _ANY = (

@@ -33,9 +33,11 @@ flash_16 flash_32 flash_64 packed as_in_memory
 flash_16 flash_32 flash_64 hpp always_inline nodiscard
 >>>>>>> cpp
 """
-_TAGS = "result message event_kind reason writer"
-_TYPES = "put float64"
-_FUNCTIONS = "write first is_high mask sum_of xor_of message_name result_name reason_name"
+_TAGS = "result message event_kind reason writer transmission"
+_TYPES = "put offer float64"
+_FUNCTIONS = """
+write first is_high mask sum_of xor_of message_name result_name reason_name transmit transmitted
+"""
 _TAGS_OF_A_SENDER = "parts event decoder"
 _TYPES_OF_A_SENDER = "handler"
 _FUNCTIONS_OF_A_SENDER = """

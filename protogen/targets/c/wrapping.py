@@ -36,9 +36,18 @@ class _Break(msgspec.Struct, frozen=True):
 
 
 def wrapped(text: str) -> str:
-    """The text with every line of code on at most so many columns, where that can be."""
+    """The text with every line of code on at most so many columns, where that can be.
+
+    A macro that goes on below is left as it is.
+    """
     lines = text.split("\n")
-    return "\n".join([line if len(line) <= WIDTH else _broken(line) for line in lines])
+    before = ["", *lines]
+    return "\n".join(
+        [
+            line if len(line) <= WIDTH or above.endswith("\\") else _broken(line)
+            for above, line in zip(before, lines, strict=False)
+        ]
+    )
 
 
 def _broken(line: str) -> str:

@@ -6,7 +6,7 @@ static struct dagny_host_decoder decoder;
 static bool lit = false;
 
 extern "C" void dagny_on_motor(void *user, const struct dagny_motor *message,
-                    const struct dagny_host_parts *parts) {
+                               const struct dagny_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;

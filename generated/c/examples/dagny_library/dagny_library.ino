@@ -6,7 +6,7 @@ static struct dagny_library_host_decoder decoder;
 static bool lit = false;
 
 extern "C" void dagny_library_on_motor(void *user, const struct dagny_library_motor *message,
-                            const struct dagny_library_host_parts *parts) {
+                                       const struct dagny_library_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;

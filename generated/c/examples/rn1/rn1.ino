@@ -6,7 +6,7 @@ static struct rn1_host_decoder decoder;
 static bool lit = false;
 
 extern "C" void rn1_on_move_manual(void *user, const struct rn1_move_manual *message,
-                        const struct rn1_host_parts *parts) {
+                                   const struct rn1_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;

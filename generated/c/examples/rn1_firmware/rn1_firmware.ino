@@ -5,8 +5,9 @@
 static struct rn1_firmware_host_decoder decoder;
 static bool lit = false;
 
-extern "C" void rn1_firmware_on_move_manual(void *user, const struct rn1_firmware_move_manual *message,
-                                 const struct rn1_firmware_host_parts *parts) {
+extern "C" void rn1_firmware_on_move_manual(void *user,
+                                            const struct rn1_firmware_move_manual *message,
+                                            const struct rn1_firmware_host_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;

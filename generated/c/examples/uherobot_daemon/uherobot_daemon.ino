@@ -5,9 +5,9 @@
 static struct uherobot_daemon_daemon_decoder decoder;
 static bool lit = false;
 
-extern "C" void uherobot_daemon_on_motors_servos_leds(void *user,
-                                           const struct uherobot_daemon_motors_servos_leds *message,
-                                           const struct uherobot_daemon_daemon_parts *parts) {
+extern "C" void uherobot_daemon_on_motors_servos_leds(
+    void *user, const struct uherobot_daemon_motors_servos_leds *message,
+    const struct uherobot_daemon_daemon_parts *parts) {
     (void)user;
     (void)message;
     (void)parts;

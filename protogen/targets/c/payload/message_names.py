@@ -15,16 +15,21 @@ from protogen.targets.c.named import Macro, claim_fields
 from protogen.targets.c.payload.accessors import claim_accessor, is_readable
 from protogen.targets.c.spelling import Names, from_sender
 
-_FUNCTIONS = ("check", "load", "validate", "measure", "store", "put", "encode", "decode")
+_FUNCTIONS = "check load validate refused measure store put encode decode"
 
 
 def claim_message(names: Names, item: Message) -> dict[str, str]:
     """The names of its struct, of its value among the messages, and of its payload's functions."""
     thing = naming.message(item.name)
-    called = {word: names.claim(thing, item.name, word) for word in _FUNCTIONS}
+    called = {word: names.claim(thing, item.name, word) for word in _FUNCTIONS.split()}
     called["tag"] = names.claim_tag(thing, item.name)
     called["constant"] = names.claim_macro(thing, "message", item.name)
     return called
+
+
+def claim_init(names: Names, item: Message) -> str:
+    """The macro with the initial values of its struct."""
+    return names.claim_macro(naming.message(item.name), item.name, "init")
 
 
 class FrameNames(msgspec.Struct, frozen=True):
@@ -66,6 +71,7 @@ def claim_all(names: Names, item: Message, senders: Sequence[Sender]) -> None:
         claim_handler(names, item.name, suffix)
         claim_frame(names, item.name, suffix)
     claim_message(names, item)
+    claim_init(names, item)
     constants_of(item, senders[0], names)
     claim_fields(names, item.name, item.fields)
     for step in item.plan.steps:

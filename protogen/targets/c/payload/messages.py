@@ -7,7 +7,7 @@ What the rest of the generated file uses of them is static: `validate`, `measure
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import msgspec
 
@@ -16,17 +16,19 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.passes.framing.capacity import is_delimited
 from protogen.targets import descriptions
 from protogen.targets.c.lines import Lines, function, mentions, prototype
+from protogen.targets.c.named import string
 from protogen.targets.c.payload.accessors import accessor
 from protogen.targets.c.payload.checking import Checker
 from protogen.targets.c.payload.held import HeldNumber, from_parts, held_numbers
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.images import copied, is_image
+from protogen.targets.c.payload.initial import initialiser
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.measuring import Measure
-from protogen.targets.c.payload.message_names import claim_message, constants_of
+from protogen.targets.c.payload.message_names import claim_init, claim_message, constants_of
 from protogen.targets.c.payload.records import Records, StructView
 from protogen.targets.c.payload.storing import Put, Store
-from protogen.targets.c.payload.validating import Validate, can_be_refused
+from protogen.targets.c.payload.validating import Validate, can_be_refused, path_of
 from protogen.targets.c.payload.walk import out_of_bounds
 from protogen.targets.c.spelling import Names
 
@@ -75,13 +77,20 @@ class MessageView(msgspec.Struct, frozen=True):
     """(const struct rn1_gyro *message, struct rn1_writer *writer)."""
     encode: str
     decode: str
+    refused: str
+    """(const struct rn1_gyro *message): name of the first member that `validate` refuses."""
     record: StructView
     """The struct; its macros are identity, sizes and the meaning of raw values."""
+    initialiser: tuple[str, ...]
+    """The lines of `RN1_GYRO_INIT`."""
     prototypes: tuple[str, ...]
     accessors: tuple[str, ...]
     functions: tuple[str, ...]
     """All functions of the payload but `put`."""
     put_function: str
+    refused_prototype: str
+    """Empty, as the function is, if there is no function `validate`."""
+    refused_function: str
 
     def given(self, parts: str) -> str:
         """The numbers of the frame as arguments behind others; `parts` leads to an event's."""
@@ -110,6 +119,7 @@ class MessagePrinter(msgspec.Struct, frozen=True):
             accessor(item.name, step, names, self.helpers, self.records) for step in item.plan.steps
         )
         accessors = tuple(text for text in read if text)
+        zeros = f"{names.prefix.upper()}_ZEROS"
         codec = _Codec(self, item, f"struct {tag}", called)
         return MessageView(
             name=item.name,
@@ -124,10 +134,13 @@ class MessagePrinter(msgspec.Struct, frozen=True):
             held=codec.held,
             is_image=codec.is_image,
             record=record,
+            initialiser=initialiser(claim_init(names, item), zeros, item.plan.steps),
             prototypes=codec.prototypes(),
             accessors=accessors,
             functions=codec.functions(),
             put_function=codec.put(),
+            refused_prototype=codec.prototype("refused") if codec.validates else "",
+            refused_function=codec.refused() if codec.validates else "",
             **called,
         )
 
@@ -168,6 +181,7 @@ class _Codec:
         self._signatures: dict[str, tuple[str, tuple[str, ...]]] = {
             "measure": ("static size_t", (given,)),
             "validate": (f"{inline} {result}", (given,)),
+            "refused": ("const char *", (given,)),
             "store": (f"{inline} void", (given, "uint8_t *payload")),
             "put": (f"{inline} void", (given, printer.names.writer)),
             "encode": (result, (given, "uint8_t *payload", "size_t capacity", "size_t *size")),
@@ -179,12 +193,16 @@ class _Codec:
 
     def _head(self, word: str) -> tuple[str, tuple[str, ...]]:
         result, arguments = self._signatures[word]
-        return f"{result} {self._names[word]}", arguments
+        return f"{result}{'' if result.endswith('*') else ' '}{self._names[word]}", arguments
 
     def prototypes(self) -> tuple[str, ...]:
         """Declarations for the header."""
-        heads = (self._head(word) for word in ("encode", "decode", "load"))
-        return tuple(prototype(f"{self._upper}_API {head}", args) for head, args in heads)
+        return tuple(map(self.prototype, ("encode", "decode", "load")))
+
+    def prototype(self, word: str) -> str:
+        """The declaration of a function for the header."""
+        head, arguments = self._head(word)
+        return prototype(f"{self._upper}_API {head}", arguments)
 
     def functions(self) -> tuple[str, ...]:
         """All but `put`."""
@@ -225,13 +243,23 @@ class _Codec:
         return self._function("measure", lines)
 
     def _validate(self) -> str:
+        error = f"{self._upper}_ERROR_RANGE"
+        return self._told("validate", lambda _: error, error, f"{self._upper}_OK")
+
+    def refused(self) -> str:
+        """The function that names the first member that `validate` refuses."""
+        return self._told("refused", lambda place: string(path_of(place)), '"?"', "NULL")
+
+    def _told(self, word: str, error: Callable[[str], str], size_error: str, good: str) -> str:
+        """A function that looks at each member, and at the size of the payload."""
         lines, unfit = Lines(), _unfit(self._item)
-        Validate(self._printer.helpers, lines, self._prefix).message(self._item.plan)
+        Validate(self._printer.helpers, lines, error).message(self._item.plan)
         if unfit:
             lines.add(f"const size_t size = {self._names['measure']}(message);")
-            self._refuse(lines, unfit, "RANGE")
-        lines.add(f"return {self._upper}_OK;")
-        return self._function("validate", lines)
+            with lines.block(f"if ({unfit})"):
+                lines.add(f"return {size_error};")
+        lines.add(f"return {good};")
+        return self._function(word, lines)
 
     def _store(self) -> str:
         lines = Lines()

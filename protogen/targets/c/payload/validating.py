@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable
+
 from protogen.c_language.numbers import constant, hexadecimal, unsigned
 from protogen.model.payload_plan import (
     AnyStep,
@@ -62,22 +65,33 @@ def _is_bounded_by_bits(step: IntegerStep) -> bool:
     return is_plain and fits and not any(item.value > greatest for item in step.field.special)
 
 
-class Validate(Walk):
-    """Prints a check of what `message` points to."""
+def path_of(place: str) -> str:
+    """A member of a message as text: `points[].x` for `message->points[i].x`."""
+    return re.sub(r"\[\w+\]", "[]", place.removeprefix("message->"))
 
-    def __init__(self, helpers: Helpers, lines: Lines, prefix: str) -> None:
+
+class Validate(Walk):
+    """Prints a check of what `message` points to; `error` is returned for a member."""
+
+    def __init__(self, helpers: Helpers, lines: Lines, error: Callable[[str], str]) -> None:
         super().__init__(helpers, lines)
-        self._error = f"return {prefix.upper()}_ERROR_RANGE;"
+        self._error = error
+        self._member = ""
 
     def _refuse(self, condition: str) -> None:
         if condition:
             with self.lines.block(f"if ({condition})"):
-                self.lines.add(self._error)
+                self._fail()
+
+    def _fail(self) -> None:
+        self.lines.add(f"return {self._error(self._member)};")
 
     def step(self, step: AnyStep, place: str) -> None:
         """A step of any kind; nothing is said of values that can't be wrong."""
         if step.is_refusable:
+            around, self._member = self._member, place
             super().step(step, place)
+            self._member = around
 
     def number(self, step: NumberStep, place: str) -> None:
         """A number."""
@@ -182,10 +196,10 @@ class Validate(Walk):
 
     def rest(self, step: RestStep, place: str) -> None:
         """The bytes of a value without a case."""
-        size = f"{place}.{step.count.member}"
+        self._member, size = place, f"{place}.{step.count.member}"
         self._bounded(size, step.count, counting_bits(step.count.greatest))
         super().rest(step, place)
 
     def no_case(self) -> None:
         """A value without a case."""
-        self.lines.add(self._error)
+        self._fail()

@@ -1,0 +1,121 @@
+"""Programs for EVA that send every message, whatever its fields hold.
+
+They are made from the text of the C alone: a message's `encode`, `frame` and `send` take a struct
+of any bytes. Buffers have what the function asks for, or less, and end where memory does.
+"""
+
+from __future__ import annotations
+
+import re
+
+from c_proof.drivers import HEAD, STATES, Driver, program
+from protogen.copying import replace
+from protogen.model.protocol import Protocol
+
+GREATEST = 64
+"""Greater payloads take minutes: EVA follows each of their sizes, and each byte that is stuffed."""
+_ENCODERS = re.compile(
+    r"enum \w+ ((\w+)_(encode|frame|send))\( ?const struct (\w+) \*message, ([^)]*)\);"
+)
+_ROOM = re.compile(r"#define (\w+_(?:PAYLOAD_MAX|FRAME_ROOM)) (\d+)[uU]")
+_STRUCT = re.compile(r"^struct (\w+) \{\n((?:.*\n)*?)\};\n", re.MULTILINE)
+_TRUTH = re.compile(r"^ +bool (\w+);", re.MULTILINE)
+_PART = re.compile(r"(\w+) (\w+)")
+_BODY = r"^[^\n;]*\b{name}\([^;{{]*\{{\n(?:.*\n)*?\}}\n"
+_ASKS = re.compile(r"if \(capacity < (.*)\) \{")
+_COUNT = re.compile(r"message->(\w+)")
+_WRAP = re.compile(r"^( +)for \(; from < stuffed; from\+\+\) \{\n", re.MULTILINE)
+_BUFFER = """
+static void prove_{function}_into(bool fits) {{
+    uint8_t bytes[{room} + 1]; /* C has no empty arrays. */
+    struct {struct} message;
+    size_t size = 0;
+{values}    const size_t payload = {payload};
+    const size_t needed = payload;
+    const size_t asked = {asks};
+    const size_t most = payload <= {greatest} && asked <= {room} ? asked : {room};
+    const size_t capacity = fits || most == 0 ? most : Frama_C_unsigned_long_interval(0, most - 1);
+    (void)needed;
+    /* It ends where the array does, so that no byte behind it can be written. */
+    if ({function}(&message, {parts}&bytes[sizeof bytes - capacity], capacity, &size) == 0) {{
+        //@ assert size <= capacity;
+    }}
+}}
+
+static void prove_{function}(void) {{
+    prove_{function}_into(true);
+    prove_{function}_into(false);
+}}
+"""
+_STREAM = """
+static void prove_{function}(void) {{
+    struct {struct} message;
+    uint8_t last = 0;
+{values}    (void){function}(&message, {parts}put, &last);
+}}
+"""
+_PUT = """
+static void put(void *user, uint8_t byte) {
+    *(uint8_t *)user = byte;
+}
+"""
+
+
+def send_driver(protocol: Protocol, header: str, source: str) -> Driver:
+    """Each message with any values of its fields, into buffers that suffice or do not, and away."""
+    flat = re.sub(r"\s+", " ", header)
+    rooms = {name: int(size) for name, size in _ROOM.findall(flat)}
+    truths = {name: _TRUTH.findall(members) for name, members in _STRUCT.findall(header)}
+    parts, proofs = [HEAD.format(name=protocol.name, upper=protocol.name.upper()), _PUT], []
+    for function, prefix, kind, struct, arguments in _ENCODERS.findall(flat):
+        measure = _body(source, f"{prefix}_measure")
+        greatest = rooms[f"{prefix.upper()}_PAYLOAD_MAX"]
+        if greatest > GREATEST:
+            continue
+        values = ["Frama_C_make_unknown((char *)&message, sizeof message);"]
+        values += [f"message.{name} = any != 0;" for name in truths[struct]]
+        for count in sorted(set(_COUNT.findall(measure))):
+            values += [f"//@ split message.{count};", ";"]
+        given = {
+            "function": function,
+            "struct": struct,
+            "parts": "".join(f"({type_})any, " for type_ in _parts_of(arguments)),
+            "values": "".join(f"    {value}\n" for value in values),
+        }
+        if kind == "send":
+            parts.append(_STREAM.format(**given))
+        else:
+            room = greatest if kind == "encode" else rooms[f"{prefix.upper()}_FRAME_ROOM"]
+            [asks] = _ASKS.findall(_body(source, function)) or [str(room)]
+            payload = f"{prefix}_measure(&message)" if measure else str(greatest)
+            sizes = {"room": room, "greatest": greatest, "asks": asks, "payload": payload}
+            parts.append(_BUFFER.format(**sizes, **given))
+        proofs.append(function)
+    # Each byte that is stuffed can take either way: states are kept apart by its place alone.
+    wraps = re.findall(r"^static size_t (\w+_wrap)\(", source, re.MULTILINE)
+    depths = ",".join(f"{name}:0" for name in wraps)
+    options = (STATES, "-eva-split-return=full", f"-eva-slevel-function={depths}")
+    return replace(program(parts, proofs), options=options)
+
+
+def unrolled(source: str) -> str:
+    """Generated C with comments that have EVA go over stuffed bytes one by one."""
+    return _WRAP.sub(
+        lambda loop: f"{loop[1]}//@ loop unroll {2 * GREATEST};\n{loop.group()}", source
+    )
+
+
+def _body(source: str, name: str) -> str:
+    found = re.search(_BODY.format(name=name), source, re.MULTILINE)
+    return found.group() if found else ""
+
+
+def _parts_of(arguments: str) -> list[str]:
+    """Types of the parts that are given, in front of the buffer or of what takes the bytes."""
+    found: list[str] = []
+    for argument in arguments.split(", "):
+        part = _PART.fullmatch(argument)
+        if part is None or part[2] == "put":
+            break
+        found.append(part[1])
+    return found
