@@ -31,6 +31,13 @@ def is_plain(plan: FramePlan) -> bool:
     return taken and not (is_odd or needs_more or plan.bounded)
 
 
+def is_put_together(plan: FramePlan) -> bool:
+    """True if such a frame can be put together around its payload, whatever it is."""
+    counts_wire = plan.length is not None and plan.length.over_wire
+    needs_more = len(plan.checksums) > 1 or plan.frame.limit is not None
+    return is_plain(plan) and not (counts_wire or needs_more)
+
+
 def _is_simple(part: Part) -> bool:
     """True if a part is no number, or one of whole bytes that has any value."""
     if not isinstance(part, TypedPart):

@@ -301,6 +301,16 @@ function hostFrame() {
       const id = view.getUint8(0);
       return f.event({ id }, f.group(id), 1, end, place + 1);
     },
+    put: (f, w, given, counts) => {
+      for (const _ in given) return null;
+      const id = f.identity(0);
+      const end = w.size;
+      w.room(1);
+      const { bytes } = w;
+      bytes[0] = id;
+      bytes[end] = 13;
+      return f.stuffed(w, end);
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -373,6 +383,16 @@ function robotFrame() {
       if (place + 1 > size || data[place] !== 13) return null;
       const id = view.getUint8(0);
       return f.event({ id }, f.group(id), 1, end, place + 1);
+    },
+    put: (f, w, given, counts) => {
+      for (const _ in given) return null;
+      const id = f.identity(0);
+      const end = w.size;
+      w.room(1);
+      const { bytes } = w;
+      bytes[0] = id;
+      bytes[end] = 13;
+      return f.stuffed(w, end);
     },
     slots: 1,
     identity: [0],

@@ -370,11 +370,24 @@ function pcFrame() {
       const command = view.getUint8(3);
       return f.event({ counter, command }, f.group(command), 4, end, place);
     },
-    stuff: (w, end) => {
+    put: (f, w, given, counts) => {
+      for (const name in given) if (name !== "counter") return null;
+      const length = f.length(w.size);
+      if (length < 0) return null;
+      const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
+      if (counter < 0) return null;
+      const command = f.identity(0);
+      const end = w.size;
+      w.room(1);
       const { bytes } = w;
+      bytes[0] = 85;
+      bytes[1] = length;
+      bytes[2] = counter;
+      bytes[3] = command;
       const wire = w.wire(2 * w.size);
-      let at = 1;
-      let i = 1;
+      let at = 0;
+      let i = 0;
+      for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
       for (; i < end + 1; i++) {
         if (i === end) bytes[end] = -sum;
@@ -384,7 +397,7 @@ function pcFrame() {
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
         else wire[at++] = byte;
       }
-      return at;
+      return wire.slice(0, at);
     },
     slots: 3,
     identity: [1],
@@ -472,11 +485,24 @@ function espFrame() {
       const command = view.getUint8(3);
       return f.event({ counter, command }, f.group(command), 4, end, place);
     },
-    stuff: (w, end) => {
+    put: (f, w, given, counts) => {
+      for (const name in given) if (name !== "counter") return null;
+      const length = f.length(w.size);
+      if (length < 0) return null;
+      const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
+      if (counter < 0) return null;
+      const command = f.identity(0);
+      const end = w.size;
+      w.room(1);
       const { bytes } = w;
+      bytes[0] = 85;
+      bytes[1] = length;
+      bytes[2] = counter;
+      bytes[3] = command;
       const wire = w.wire(2 * w.size);
-      let at = 1;
-      let i = 1;
+      let at = 0;
+      let i = 0;
+      for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
       for (; i < end + 1; i++) {
         if (i === end) bytes[end] = -sum;
@@ -486,7 +512,7 @@ function espFrame() {
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
         else wire[at++] = byte;
       }
-      return at;
+      return wire.slice(0, at);
     },
     slots: 3,
     identity: [1],

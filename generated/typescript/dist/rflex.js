@@ -484,11 +484,29 @@ function linuxFrame() {
       const subclass = view.getUint8(4);
       return f.event({ class: class_, number: number_, subclass }, f.group(256 * (class_) + subclass), 6, end, place + 2);
     },
-    stuff: (w, end) => {
+    put: (f, w, given, counts) => {
+      for (const name in given) if (name !== "number") return null;
+      const class_ = f.identity(0);
+      const number_ = f.number(given["number"] ?? f.usual(0, counts), 0, 255);
+      if (number_ < 0) return null;
+      const subclass = f.identity(1);
+      const length = f.length(w.size);
+      if (length < 0) return null;
+      const end = w.size;
+      w.room(3);
       const { bytes } = w;
+      bytes[0] = 27;
+      bytes[1] = 2;
+      bytes[2] = class_;
+      bytes[3] = number_;
+      bytes[4] = subclass;
+      bytes[5] = length;
+      bytes[end + 1] = 27;
+      bytes[end + 2] = 3;
       const wire = w.wire(3 * w.size);
-      let at = 2;
-      let i = 2;
+      let at = 0;
+      let i = 0;
+      for (; i < 2; i++) wire[at++] = bytes[i] ?? 0;
       for (; i < 6; i++) {
         const byte = bytes[i] ?? 0;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
@@ -504,7 +522,8 @@ function linuxFrame() {
         else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
         else wire[at++] = byte;
       }
-      return at;
+      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
+      return wire.slice(0, at);
     },
     slots: 4,
     identity: [0, 2],
@@ -604,11 +623,29 @@ function flexFrame() {
       const subclass = view.getUint8(4);
       return f.event({ class: class_, number: number_, subclass }, f.group(256 * (class_) + subclass), 6, end, place + 2);
     },
-    stuff: (w, end) => {
+    put: (f, w, given, counts) => {
+      for (const name in given) if (name !== "number") return null;
+      const class_ = f.identity(0);
+      const number_ = f.number(given["number"] ?? f.usual(0, counts), 0, 255);
+      if (number_ < 0) return null;
+      const subclass = f.identity(1);
+      const length = f.length(w.size);
+      if (length < 0) return null;
+      const end = w.size;
+      w.room(3);
       const { bytes } = w;
+      bytes[0] = 27;
+      bytes[1] = 2;
+      bytes[2] = class_;
+      bytes[3] = number_;
+      bytes[4] = subclass;
+      bytes[5] = length;
+      bytes[end + 1] = 27;
+      bytes[end + 2] = 3;
       const wire = w.wire(3 * w.size);
-      let at = 2;
-      let i = 2;
+      let at = 0;
+      let i = 0;
+      for (; i < 2; i++) wire[at++] = bytes[i] ?? 0;
       for (; i < 6; i++) {
         const byte = bytes[i] ?? 0;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
@@ -624,7 +661,8 @@ function flexFrame() {
         else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
         else wire[at++] = byte;
       }
-      return at;
+      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
+      return wire.slice(0, at);
     },
     slots: 4,
     identity: [0, 2],

@@ -369,6 +369,16 @@ function hostFrame() {
       if (!f.isSevenBit(at + 1, end)) return null;
       return f.event({ start }, group, at + 1, end, end + 1);
     },
+    put: (f, w, given, counts) => {
+      for (const _ in given) return null;
+      const start = f.identity(0);
+      const end = w.size;
+      w.room(1);
+      const { bytes } = w;
+      bytes[0] = start;
+      bytes[end] = 255;
+      return w.taken();
+    },
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -422,6 +432,15 @@ function brainFrame() {
       if (end > size) return null;
       if (!f.isSevenBit(at + 1, end)) return null;
       return f.event({ start }, group, at + 1, end, end);
+    },
+    put: (f, w, given, counts) => {
+      for (const _ in given) return null;
+      const start = f.identity(0);
+      const end = w.size;
+      w.room(0);
+      const { bytes } = w;
+      bytes[0] = start;
+      return w.taken();
     },
     slots: 1,
     identity: [0],

@@ -28,7 +28,7 @@ from protogen.targets.typescript.literals import (
     call,
 )
 from protogen.targets.typescript.names import locals_table
-from protogen.targets.typescript.stuffing import adding
+from protogen.targets.typescript.put_together import adding
 
 
 def is_taken_at_once(plan: FramePlan) -> bool:

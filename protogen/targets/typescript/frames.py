@@ -29,6 +29,7 @@ from protogen.model.parts import (
     ValuePart,
     VirtualPart,
 )
+from protogen.model.plain_frames import is_put_together
 from protogen.model.protocol import Sender
 from protogen.model.transparency import Base16, Cobs, Escape, Insertion, Substitution
 from protogen.targets.typescript.at_once import AtOnce, is_taken_at_once
@@ -45,7 +46,7 @@ from protogen.targets.typescript.literals import (
     told,
 )
 from protogen.targets.typescript.names import Names
-from protogen.targets.typescript.stuffing import stuffing
+from protogen.targets.typescript.put_together import PutTogether
 
 _STARTS = {
     StartRule.LITERAL: "word",
@@ -91,7 +92,7 @@ class FramePrinter:
             "parts": _lines(map(self._part, content)),
             "payloadIndex": content.index(frame.payload),
             "whole": AtOnce(self._sender, self._keys).text() if is_taken_at_once(plan) else None,
-            "stuff": stuffing(plan),
+            "put": PutTogether(plan).text() if is_put_together(plan) else None,
             "slots": len(self._slots),
             "identity": [self._slots[item.name] for item in frame.identity],
             "lastIdentity": self._slots[sent[-1].name] if sent else -1,

@@ -39,9 +39,13 @@ export declare class FrameMaker {
     private readonly isDoubtful;
     /** Bytes of every frame, where all have as many and none are stuffed; else 0. */
     private readonly size;
-    /** What puts a frame together that nothing rare is in; null where there always is. */
-    private readonly plain;
+    /** What makes a frame in one go, if all that has to be known is in it. */
+    private readonly put;
     private readonly headSize;
+    /** What the length is without a payload, and its bounds in frames of one. */
+    private readonly base;
+    private readonly least;
+    private readonly greatest;
     constructor(assembly: Assembly, message: MessagePlan);
     get sender(): Sender;
     /**
@@ -52,6 +56,18 @@ export declare class FrameMaker {
     make(value: unknown, given: GivenParts, strict: boolean, counts?: Counts | null): Uint8Array;
     /** The frame around a payload, by the description of the frame. Throws an EncodeError. */
     private described;
+    /** An identity. */
+    identity(index: number): number;
+    /** The length of a frame whose payload ends there; -1 where it can't be. */
+    length(end: number): number;
+    /** The value of a part where callers give none. */
+    usual(index: number, counts: Counts | null): Value | null;
+    /** A value that is a number in these bounds; -1 of another one. */
+    number(value: unknown, least: number, greatest: number): number;
+    /** The checksum of some bytes. */
+    sum(bytes: Uint8Array, from: number, to: number): number;
+    /** The frame of content whose payload ends there, with its region stuffed. */
+    stuffed(writer: Writer, end: number): Uint8Array;
     /** True if a decoder could take a frame of a given identity for another one. */
     private checkIdentity;
 }

@@ -4,7 +4,6 @@ import { Cut, verdictOn } from "./candidate.js";
 import { EncodeError } from "./errors.js";
 import { GivenPart, givenTo } from "./given.js";
 import { Layout } from "./layout.js";
-import { PlainFrame } from "./plain_frame.js";
 import { areAmong, ownOf } from "./plan.js";
 import { writeMessage, writerOf } from "./sender.js";
 /** What makes the frames of a sender, one after another. */
@@ -111,9 +110,12 @@ export class FrameMaker {
         this.isDoubtful = cutAmbiguous || !sender.group(values);
         const isFixed = least === greatest && !transparency && kept === null;
         this.size = isFixed ? least + (least ? assembly.full : assembly.empty).size : 0;
+        this.put = this.isDoubtful || message.held.length ? null : sender.frame.put;
         this.headSize = sender.frame.headSize;
-        const isPlain = !this.isDoubtful && !message.held.length;
-        this.plain = isPlain ? PlainFrame.of(sender, assembly.parts, this.values) : null;
+        const { length } = sender;
+        this.base = length ? length.base : 0;
+        this.least = length ? length.least : 0;
+        this.greatest = length ? Math.min(length.greatest, this.base + sender.frame.greatestPayload) : 0;
     }
     get sender() {
         return this.assembly.sender;
@@ -124,12 +126,12 @@ export class FrameMaker {
      * Counters that they do not give are those of `counts`, which go on. Throws an EncodeError.
      */
     make(value, given, strict, counts = null) {
-        const { assembly, headSize, plain } = this;
+        const { assembly, headSize, put } = this;
         const writer = writerOf(strict, headSize, this.size);
         writeMessage(this.message, writer, value);
         const size = assembly.sender.trimmed(writer.bytes, headSize, writer.size - headSize);
         writer.size = headSize + size;
-        const found = plain && plain.around(writer, given, counts);
+        const found = put && put(this, writer, given, counts);
         const wire = found ?? this.described(writer, size, given, strict, counts);
         if (counts)
             for (const part of assembly.parts)
@@ -147,6 +149,36 @@ export class FrameMaker {
         if (isDoubtful)
             assembly.check(wire, writer.bytes.slice(headSize, headSize + size));
         return wire;
+    }
+    // --- what printed functions ask -----------------------------------------------------------------
+    /** An identity. */
+    identity(index) {
+        return this.values[index];
+    }
+    /** The length of a frame whose payload ends there; -1 where it can't be. */
+    length(end) {
+        const value = this.base + end - this.headSize;
+        return value >= this.least && value <= this.greatest ? value : -1;
+    }
+    /** The value of a part where callers give none. */
+    usual(index, counts) {
+        return this.assembly.parts[index].usual(counts);
+    }
+    /** A value that is a number in these bounds; -1 of another one. */
+    number(value, least, greatest) {
+        const isIn = typeof value === "number" && value >= least && value <= greatest;
+        return isIn && Number.isInteger(value) ? value : -1;
+    }
+    /** The checksum of some bytes. */
+    sum(bytes, from, to) {
+        return this.assembly.sender.frame.sums[0].algorithm.compute(bytes, from, to);
+    }
+    /** The frame of content whose payload ends there, with its region stuffed. */
+    stuffed(writer, end) {
+        const { frame, offsets } = this.assembly.sender;
+        const behind = offsets[frame.lastStuffed + 1] - frame.headSize;
+        const from = offsets[frame.firstStuffed];
+        return frame.transparency.put(writer.bytes, writer.size, from, end + behind);
     }
     /** True if a decoder could take a frame of a given identity for another one. */
     checkIdentity() {

@@ -6,9 +6,8 @@ import { EncodeError } from "./errors.js";
 import { GivenPart, givenTo, type Counts, type GivenParts } from "./given.js";
 import { Layout, type Values } from "./layout.js";
 import type { Value } from "./numbers.js";
-import { PlainFrame } from "./plain_frame.js";
 import { areAmong, ownOf } from "./plan.js";
-import type { HeldParts, MessagePlan } from "./plan.js";
+import type { HeldParts, MessagePlan, PutTogether } from "./plan.js";
 import { writeMessage, writerOf, type Sender } from "./sender.js";
 import type { Writer } from "./writer.js";
 
@@ -119,9 +118,13 @@ export class FrameMaker {
   private readonly isDoubtful: boolean;
   /** Bytes of every frame, where all have as many and none are stuffed; else 0. */
   private readonly size: number;
-  /** What puts a frame together that nothing rare is in; null where there always is. */
-  private readonly plain: PlainFrame | null;
+  /** What makes a frame in one go, if all that has to be known is in it. */
+  private readonly put: PutTogether | null;
   private readonly headSize: number;
+  /** What the length is without a payload, and its bounds in frames of one. */
+  private readonly base: number;
+  private readonly least: number;
+  private readonly greatest: number;
 
   constructor(
     private readonly assembly: Assembly,
@@ -135,9 +138,12 @@ export class FrameMaker {
     this.isDoubtful = cutAmbiguous || !sender.group(values);
     const isFixed = least === greatest && !transparency && kept === null;
     this.size = isFixed ? least + (least ? assembly.full : assembly.empty).size : 0;
+    this.put = this.isDoubtful || message.held.length ? null : sender.frame.put;
     this.headSize = sender.frame.headSize;
-    const isPlain = !this.isDoubtful && !message.held.length;
-    this.plain = isPlain ? PlainFrame.of(sender, assembly.parts, this.values) : null;
+    const { length } = sender;
+    this.base = length ? length.base : 0;
+    this.least = length ? length.least : 0;
+    this.greatest = length ? Math.min(length.greatest, this.base + sender.frame.greatestPayload) : 0;
   }
 
   get sender(): Sender {
@@ -155,12 +161,12 @@ export class FrameMaker {
     strict: boolean,
     counts: Counts | null = null,
   ): Uint8Array {
-    const { assembly, headSize, plain } = this;
+    const { assembly, headSize, put } = this;
     const writer = writerOf(strict, headSize, this.size);
     writeMessage(this.message, writer, value);
     const size = assembly.sender.trimmed(writer.bytes, headSize, writer.size - headSize);
     writer.size = headSize + size;
-    const found = plain && plain.around(writer, given, counts);
+    const found = put && put(this, writer, given, counts);
     const wire = found ?? this.described(writer, size, given, strict, counts);
     if (counts) for (const part of assembly.parts) part.count(given, counts);
     return wire;
@@ -181,6 +187,43 @@ export class FrameMaker {
     const wire = assembly.wire(writer, size);
     if (isDoubtful) assembly.check(wire, writer.bytes.slice(headSize, headSize + size));
     return wire;
+  }
+
+  // --- what printed functions ask -----------------------------------------------------------------
+
+  /** An identity. */
+  identity(index: number): number {
+    return this.values[index] as number;
+  }
+
+  /** The length of a frame whose payload ends there; -1 where it can't be. */
+  length(end: number): number {
+    const value = this.base + end - this.headSize;
+    return value >= this.least && value <= this.greatest ? value : -1;
+  }
+
+  /** The value of a part where callers give none. */
+  usual(index: number, counts: Counts | null): Value | null {
+    return this.assembly.parts[index]!.usual(counts);
+  }
+
+  /** A value that is a number in these bounds; -1 of another one. */
+  number(value: unknown, least: number, greatest: number): number {
+    const isIn = typeof value === "number" && value >= least && value <= greatest;
+    return isIn && Number.isInteger(value) ? value : -1;
+  }
+
+  /** The checksum of some bytes. */
+  sum(bytes: Uint8Array, from: number, to: number): number {
+    return this.assembly.sender.frame.sums[0]!.algorithm.compute(bytes, from, to) as number;
+  }
+
+  /** The frame of content whose payload ends there, with its region stuffed. */
+  stuffed(writer: Writer, end: number): Uint8Array {
+    const { frame, offsets } = this.assembly.sender;
+    const behind = offsets[frame.lastStuffed + 1]! - frame.headSize;
+    const from = offsets[frame.firstStuffed]!;
+    return frame.transparency!.put(writer.bytes, writer.size, from, end + behind);
   }
 
   /** True if a decoder could take a frame of a given identity for another one. */

@@ -1,7 +1,9 @@
 /** What a generated module says of a sender: its frame, as the compiler worked it out. */
+import type { FrameMaker } from "./assembly.js";
 import type { AtOnce } from "./at_once.js";
 import type { Checksum } from "./checksums.js";
 import type { Framed, PartValues } from "./events.js";
+import type { Counts, GivenParts } from "./given.js";
 import type { PartNumber, Value } from "./numbers.js";
 import type { Reader } from "./reader.js";
 import type { Transparency } from "./transparency.js";
@@ -211,12 +213,8 @@ export declare function group(messages: readonly MessagePlan[], more?: {
 }): Group;
 /** Takes the frame that stands at a place; null where it is not plainly one. Throws a Fault. */
 export type TakeWhole = (frames: AtOnce, at: number) => Framed | null;
-/**
- * Stuffs the region of a frame whose payload ends there, with its checksum; the place behind it.
- *
- * It sums up on the way. On the wire the region begins where it does in the content.
- */
-export type Stuff = (writer: Writer, end: number) => number;
+/** Puts a frame around the payload that was written; null where it is not plainly one. */
+export type PutTogether = (maker: FrameMaker, writer: Writer, given: GivenParts, counts: Counts | null) => Uint8Array | null;
 /** A sender's frame. Sizes are in bytes; content is what is there before any stuffing. */
 export interface Frame {
     /** The endpoint. */
@@ -271,8 +269,8 @@ export interface Frame {
     readonly takesWhole: boolean;
     /** What takes a frame that is there as a whole; null where nothing is generated for that. */
     readonly whole: TakeWhole | null;
-    /** What stuffs its region in one go; null where nothing is generated for that. */
-    readonly stuff: Stuff | null;
+    /** What makes a frame in one go; null where nothing is generated for that. */
+    readonly put: PutTogether | null;
     readonly cutAmbiguous: boolean;
     readonly isBounded: boolean;
     /** Bytes that stay, at least, where zeros at the payload's end are left out; else null. */
@@ -294,7 +292,7 @@ declare const USUAL: {
     rescans: boolean;
     takesWhole: boolean;
     whole: null;
-    stuff: null;
+    put: null;
     cutAmbiguous: boolean;
     isBounded: boolean;
     isCut: boolean;

@@ -39,7 +39,7 @@ const USUAL = {
     rescans: false,
     takesWhole: false,
     whole: null,
-    stuff: null,
+    put: null,
     cutAmbiguous: false,
     isBounded: false,
     isCut: false,

@@ -1,0 +1,135 @@
+"""Functions that put a frame together around its payload, with its places as constants.
+
+One is printed for frames without rare things. It refuses what is odd in any way, as the runtime has
+a description of the frame for that. A checksum of bytes is summed up where these are stuffed, so
+that nothing is looked at twice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from protogen.model.checksums import ChecksumSpec
+from protogen.model.frame_places import Place, Run, Side
+from protogen.model.frame_plan import FramePlan
+from protogen.model.part_plans import StuffedRegion
+from protogen.model.parts import (
+    ChecksumPart,
+    IdentityPart,
+    LengthPart,
+    LiteralPart,
+    Part,
+    TypedPart,
+)
+from protogen.model.plain_frames import folded_run
+from protogen.targets.braces import BracedLines
+from protogen.targets.naming import Thing
+from protogen.targets.typescript.literals import Code, literal
+from protogen.targets.typescript.names import locals_table
+
+
+class PutTogether:
+    """Prints the function for a frame."""
+
+    def __init__(self, plan: FramePlan) -> None:
+        self._plan = plan
+        self._lines = BracedLines(2, 2)
+        self._names = locals_table()
+
+    def text(self) -> Code:
+        """The function, of the runtime's `PutTogether`."""
+        plan, add, run = self._plan, self._lines.add, folded_run(self._plan)
+        known = [f"name !== {literal(part.name)}" for part in plan.frame.caller_parts]
+        others = f"const name in given) if ({' && '.join(known)})" if known else "const _ in given)"
+        add(f"for ({others} return null;")
+        parts = [(item.place, item.part) for item in plan.placed]
+        stored = [(place, self._bytes(part)) for place, part in parts if part.size]
+        add("const end = w.size;", f"w.room({plan.tail_size + len(plan.end_bytes)});")
+        add("const { bytes } = w;")
+        for place, values in (*stored, (Place(Side.TAIL, plan.tail_size), plan.end_bytes)):
+            for offset, value in enumerate(values, place.offset):
+                add(f"bytes[{_at(Place(place.side, offset))}] = {value};")
+        if run is None and plan.checksums:
+            self._sum()
+        if plan.region is None:
+            add("return w.taken();")
+        elif run is None:
+            add("return f.stuffed(w, end);")
+        else:
+            self._stuff(plan.region, run)
+        return Code("\n".join(["(f, w, given, counts) => {", *self._lines.lines, "  }"]))
+
+    def _bytes(self, part: Part) -> Iterable[object]:
+        """The bytes of a part; print its variable, which is negative where something is odd."""
+        if isinstance(part, LiteralPart):
+            return part.bytes
+        if isinstance(part, ChecksumPart) or not isinstance(part, TypedPart):
+            return ()
+        frame = self._plan.frame
+        name = self._names.add(part.name, Thing("variable", ("local", part.name)))
+        if isinstance(part, IdentityPart):
+            self._lines.add(f"const {name} = f.identity({frame.identity.index(part)});")
+            return _shifted(part, name)
+        value = "f.length(w.size)"
+        if not isinstance(part, LengthPart):
+            usual = f"f.usual({frame.caller_parts.index(part)}, counts)"
+            own = f"given[{literal(part.name)}] ?? {usual}"
+            value = f"f.number({own}, {part.least}, {part.greatest})"
+        self._lines.add(f"const {name} = {value};", f"if ({name} < 0) return null;")
+        return _shifted(part, name)
+
+    def _sum(self) -> None:
+        """Print what sums up, and stores it."""
+        (found,) = self._plan.checksums
+        (run,) = found.covers
+        assert isinstance(run, Run)
+        self._lines.add(f"const sum = f.sum(bytes, {_at(run.first)}, {_at(run.end)});")
+        side, first = found.placed.place.side, found.placed.place.offset
+        for offset, value in enumerate(_shifted(found.part, "sum"), first):
+            self._lines.add(f"bytes[{_at(Place(side, offset))}] = {value};")
+
+    def _stuff(self, region: StuffedRegion, run: Run) -> None:
+        """Print what copies all bytes, those of a region as they are stuffed and summed up."""
+        add, first, spec = self._lines.add, run.first.offset, self._plan.checksums[0].part.algorithm
+        add(f"const wire = w.wire({region.longest} * w.size);", "let at = 0;", "let i = 0;")
+        if region.before:
+            add(f"for (; i < {region.before}; i++) wire[at++] = bytes[i] ?? 0;")
+        if first > region.before:
+            self._loop(region, str(first))
+        add(f"let sum = {spec.init};")
+        done = f"if (i === end) bytes[end] = {'-' * spec.negated}sum;"
+        self._loop(region, "end + 1", done, adding(spec))
+        if self._plan.end_bytes:
+            add("for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;")
+        add("return wire.slice(0, at);")
+
+    def _loop(self, region: StuffedRegion, stop: str, *summing: str) -> None:
+        """Print what stuffs the bytes up to a place."""
+        with self._lines.block(f"for (; i < {stop}; i++)"):
+            # No byte is missing, but types don't know that.
+            self._lines.add(*summing[:1], "const byte = bytes[i] ?? 0;", *summing[1:])
+            word = ""
+            for byte, sequence in region.codes:
+                put = " ".join(f"wire[at++] = {item};" for item in sequence)
+                self._lines.add(f"{word}if (byte === {byte}) {{ {put} }}")
+                word = "else "
+            self._lines.add(f"{word}wire[at++] = byte;")
+
+
+def adding(spec: ChecksumSpec) -> str:
+    """The statement that takes a byte into a sum or an exclusive or."""
+    return f"sum {'^' if spec.kind == 'xor' else '+'}= byte;"
+
+
+def _shifted(part: TypedPart, name: str) -> list[str]:
+    """The bytes of the number that a variable has."""
+    shifts = [f" >> {shift}" if shift else "" for shift in range(0, 8 * part.size, 8)]
+    in_order = shifts if part.type.byte_order == "little" else shifts[::-1]
+    return [f"{name}{shift}" for shift in in_order]
+
+
+def _at(place: Place) -> str:
+    """A place in the content, of which the payload reaches up to `end`."""
+    if not place.is_tail:
+        return str(place.offset)
+    return f"end + {place.offset}" if place.offset else "end"
