@@ -9,7 +9,7 @@ from __future__ import annotations
 from protogen.model.frame_places import Place, Run, Side
 from protogen.model.frame_plan import FramePlan
 from protogen.model.part_plans import ChecksumPlan, StuffedRegion
-from protogen.model.parts import BitsPart, ChoicePart, Part, TypedPart
+from protogen.model.parts import BitsPart, ChoicePart, LengthPart, Part, TypedPart
 from protogen.model.transparency import Escape, Substitution
 
 _BITS = (8, 16, 32)
@@ -53,6 +53,13 @@ def _sums_one_run(plan: ChecksumPlan) -> bool:
     return is_run and not plan.part.over_wire
 
 
+def summed_run(plan: ChecksumPlan) -> Run:
+    """What a checksum of a plain frame runs over."""
+    (run,) = plan.covers
+    assert isinstance(run, Run)
+    return run
+
+
 def is_listed(region: StuffedRegion) -> bool:
     """True if a few sequences are all that a region has besides plain bytes."""
     is_few = isinstance(region.encoding, Substitution | Escape) and len(region.codes) <= _FEW
@@ -71,6 +78,21 @@ def folded_run(plan: FramePlan) -> Run | None:
     is_behind = item.end == plan.checksums[0].placed.place == Place(Side.TAIL, 0)
     is_in = plan.region.before <= item.first.offset <= plan.head_size
     return item if is_behind and is_in else None
+
+
+def run_that_gives_0(plan: FramePlan) -> Run | None:
+    """Such a run, where all from the region's start or the payload's and its sum come to 0."""
+    region, run = plan.region, folded_run(plan)
+    if region is None or run is None or run.first.offset not in (region.before, plan.head_size):
+        return None
+    spec = plan.checksums[0].part.algorithm
+    return run if spec.negated == (spec.kind == "sum") else None
+
+
+def length_bounds(plan: FramePlan, part: LengthPart, greatest_payload: int) -> tuple[int, int]:
+    """The least and the greatest value that a length can have in a frame."""
+    length = plan.counted(part)
+    return max(part.least, length.base), min(length.greatest, length.base + greatest_payload)
 
 
 def shows_marks(plan: FramePlan) -> bool:

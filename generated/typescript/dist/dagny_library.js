@@ -266,13 +266,15 @@ function hostFrame() {
     greatest: 1027,
     givenUpAt: 1027,
     takesWhole: true,
+    payloadIndex: 1,
+    firstStuffed: 0,
+    lastStuffed: 1,
     start: "after_end",
     end: rt.hex("0d"),
     parts: [
       rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 1,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 2 > size) return null;
@@ -319,8 +321,6 @@ function hostFrame() {
     ],
     partsOf: (v) => ({ id: v[0] }),
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
-    firstStuffed: 0,
-    lastStuffed: 1,
     behindRegion: 0,
     greatestPayload: 512,
     groups: [
@@ -349,13 +349,15 @@ function robotFrame() {
     greatest: 1027,
     givenUpAt: 1027,
     takesWhole: true,
+    payloadIndex: 1,
+    firstStuffed: 0,
+    lastStuffed: 1,
     start: "after_end",
     end: rt.hex("0d"),
     parts: [
       rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 1,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 2 > size) return null;
@@ -402,8 +404,6 @@ function robotFrame() {
     ],
     partsOf: (v) => ({ id: v[0] }),
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
-    firstStuffed: 0,
-    lastStuffed: 1,
     behindRegion: 0,
     greatestPayload: 512,
     groups: [

@@ -241,6 +241,9 @@ function pcFrame() {
     greatest: 250,
     givenUpAt: 250,
     takesWhole: true,
+    payloadIndex: 4,
+    firstStuffed: 1,
+    lastStuffed: 5,
     start: "word",
     end: rt.hex(""),
     parts: [
@@ -251,7 +254,6 @@ function pcFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
-    payloadIndex: 4,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 5 > size || data[at] !== 85) return null;
@@ -323,8 +325,6 @@ function pcFrame() {
       { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
-    firstStuffed: 1,
-    lastStuffed: 5,
     behindRegion: 0,
     greatestPayload: 121,
     groups: [
@@ -354,6 +354,9 @@ function espFrame() {
     greatest: 250,
     givenUpAt: 250,
     takesWhole: true,
+    payloadIndex: 4,
+    firstStuffed: 1,
+    lastStuffed: 5,
     start: "word",
     end: rt.hex(""),
     parts: [
@@ -364,7 +367,6 @@ function espFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
-    payloadIndex: 4,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 5 > size || data[at] !== 85) return null;
@@ -436,8 +438,6 @@ function espFrame() {
       { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
-    firstStuffed: 1,
-    lastStuffed: 5,
     behindRegion: 0,
     greatestPayload: 121,
     groups: [

@@ -329,6 +329,9 @@ function pcFrame() {
     greatest: 252,
     givenUpAt: 252,
     takesWhole: true,
+    payloadIndex: 4,
+    firstStuffed: 1,
+    lastStuffed: 5,
     start: "word",
     end: rt.hex(""),
     parts: [
@@ -339,7 +342,6 @@ function pcFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
-    payloadIndex: 4,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 5 > size || data[at] !== 85) return null;
@@ -411,8 +413,6 @@ function pcFrame() {
       { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
-    firstStuffed: 1,
-    lastStuffed: 5,
     behindRegion: 0,
     greatestPayload: 122,
     groups: [
@@ -444,6 +444,9 @@ function espFrame() {
     greatest: 252,
     givenUpAt: 252,
     takesWhole: true,
+    payloadIndex: 4,
+    firstStuffed: 1,
+    lastStuffed: 5,
     start: "word",
     end: rt.hex(""),
     parts: [
@@ -454,7 +457,6 @@ function espFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
-    payloadIndex: 4,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 5 > size || data[at] !== 85) return null;
@@ -526,8 +528,6 @@ function espFrame() {
       { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
-    firstStuffed: 1,
-    lastStuffed: 5,
     behindRegion: 0,
     greatestPayload: 122,
     groups: [

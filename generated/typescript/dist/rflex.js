@@ -434,6 +434,9 @@ function linuxFrame() {
     greatest: 782,
     givenUpAt: 782,
     takesWhole: true,
+    payloadIndex: 5,
+    firstStuffed: 1,
+    lastStuffed: 6,
     start: "word",
     end: rt.hex("1b03"),
     parts: [
@@ -445,7 +448,6 @@ function linuxFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
-    payloadIndex: 5,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 9 > size || data[at] !== 27 || data[at + 1] !== 2) return null;
@@ -538,8 +540,6 @@ function linuxFrame() {
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
-    firstStuffed: 1,
-    lastStuffed: 6,
     behindRegion: 0,
     greatestPayload: 255,
     groups: [
@@ -573,6 +573,9 @@ function flexFrame() {
     greatest: 782,
     givenUpAt: 782,
     takesWhole: true,
+    payloadIndex: 5,
+    firstStuffed: 1,
+    lastStuffed: 6,
     start: "word",
     end: rt.hex("1b03"),
     parts: [
@@ -584,7 +587,6 @@ function flexFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
-    payloadIndex: 5,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 16 > size || data[at] !== 27 || data[at + 1] !== 2) return null;
@@ -677,8 +679,6 @@ function flexFrame() {
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
-    firstStuffed: 1,
-    lastStuffed: 6,
     behindRegion: 0,
     greatestPayload: 255,
     groups: [

@@ -511,6 +511,9 @@ function linuxFrame() {
     greatest: 780,
     givenUpAt: 780,
     takesWhole: true,
+    payloadIndex: 5,
+    firstStuffed: 1,
+    lastStuffed: 6,
     start: "word",
     end: rt.hex("1b03"),
     parts: [
@@ -522,7 +525,6 @@ function linuxFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
-    payloadIndex: 5,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 9 > size || data[at] !== 27 || data[at + 1] !== 2) return null;
@@ -608,8 +610,6 @@ function linuxFrame() {
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
-    firstStuffed: 1,
-    lastStuffed: 6,
     behindRegion: 0,
     greatestPayload: 255,
     groups: [
@@ -645,6 +645,9 @@ function flexFrame() {
     greatest: 780,
     givenUpAt: 780,
     takesWhole: true,
+    payloadIndex: 5,
+    firstStuffed: 1,
+    lastStuffed: 6,
     start: "word",
     end: rt.hex("1b03"),
     parts: [
@@ -656,7 +659,6 @@ function flexFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
-    payloadIndex: 5,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 10 > size || data[at] !== 27 || data[at + 1] !== 2) return null;
@@ -742,8 +744,6 @@ function flexFrame() {
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
-    firstStuffed: 1,
-    lastStuffed: 6,
     behindRegion: 0,
     greatestPayload: 255,
     groups: [

@@ -541,13 +541,15 @@ function hostFrame(): rt.Frame {
     greatest: 1027,
     givenUpAt: 1027,
     takesWhole: true,
+    payloadIndex: 1,
+    firstStuffed: 0,
+    lastStuffed: 1,
     start: "after_end",
     end: rt.hex("0d"),
     parts: [
       rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 1,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 2 > size) return null;
@@ -594,8 +596,6 @@ function hostFrame(): rt.Frame {
     ],
     partsOf: (v) => ({ id: v[0] }),
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
-    firstStuffed: 0,
-    lastStuffed: 1,
     behindRegion: 0,
     greatestPayload: 512,
     groups: [
@@ -624,13 +624,15 @@ function robotFrame(): rt.Frame {
     greatest: 1027,
     givenUpAt: 1027,
     takesWhole: true,
+    payloadIndex: 1,
+    firstStuffed: 0,
+    lastStuffed: 1,
     start: "after_end",
     end: rt.hex("0d"),
     parts: [
       rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 1,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 2 > size) return null;
@@ -677,8 +679,6 @@ function robotFrame(): rt.Frame {
     ],
     partsOf: (v) => ({ id: v[0] }),
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
-    firstStuffed: 0,
-    lastStuffed: 1,
     behindRegion: 0,
     greatestPayload: 512,
     groups: [

@@ -791,6 +791,9 @@ function linuxFrame(): rt.Frame {
     greatest: 782,
     givenUpAt: 782,
     takesWhole: true,
+    payloadIndex: 5,
+    firstStuffed: 1,
+    lastStuffed: 6,
     start: "word",
     end: rt.hex("1b03"),
     parts: [
@@ -802,7 +805,6 @@ function linuxFrame(): rt.Frame {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
-    payloadIndex: 5,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 9 > size || data[at] !== 27 || data[at + 1] !== 2) return null;
@@ -895,8 +897,6 @@ function linuxFrame(): rt.Frame {
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
-    firstStuffed: 1,
-    lastStuffed: 6,
     behindRegion: 0,
     greatestPayload: 255,
     groups: [
@@ -930,6 +930,9 @@ function flexFrame(): rt.Frame {
     greatest: 782,
     givenUpAt: 782,
     takesWhole: true,
+    payloadIndex: 5,
+    firstStuffed: 1,
+    lastStuffed: 6,
     start: "word",
     end: rt.hex("1b03"),
     parts: [
@@ -941,7 +944,6 @@ function flexFrame(): rt.Frame {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
-    payloadIndex: 5,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 16 > size || data[at] !== 27 || data[at + 1] !== 2) return null;
@@ -1034,8 +1036,6 @@ function flexFrame(): rt.Frame {
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
-    firstStuffed: 1,
-    lastStuffed: 6,
     behindRegion: 0,
     greatestPayload: 255,
     groups: [

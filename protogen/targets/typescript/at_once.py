@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 
-from protogen.model.frame_places import Place, PlacedPart, Run
+from protogen.model.checksums import ChecksumSpec
+from protogen.model.frame_places import Place, PlacedPart
 from protogen.model.frame_plan import FramePlan
 from protogen.model.part_plans import StuffedRegion
 from protogen.model.parts import (
@@ -17,7 +18,13 @@ from protogen.model.parts import (
     LiteralPart,
     NumberPart,
 )
-from protogen.model.plain_frames import folded_run, is_plain, shows_marks
+from protogen.model.plain_frames import (
+    is_plain,
+    length_bounds,
+    run_that_gives_0,
+    shows_marks,
+    summed_run,
+)
 from protogen.model.protocol import Sender
 from protogen.model.types import Integer
 from protogen.targets.braces import BracedLines
@@ -28,7 +35,6 @@ from protogen.targets.typescript.literals import (
     call,
 )
 from protogen.targets.typescript.names import locals_table
-from protogen.targets.typescript.put_together import adding
 
 
 def is_taken_at_once(plan: FramePlan) -> bool:
@@ -45,7 +51,7 @@ class AtOnce:
         self._shown = shown
         self._lines = BracedLines(2, 2)
         self._locals = locals_table()
-        self._folded = _folded(self._plan)
+        self._folded = run_that_gives_0(self._plan)
         self._values: dict[str, Code] = {}
         """Variables, by the parts whose values they have."""
 
@@ -81,11 +87,11 @@ class AtOnce:
         plan = self._plan
         size, start = self._sizes()
         self._lines.add(f"const end = {self._place(start, size)};")
-        behind = _behind("end", plan.tail_size)
-        room = _behind("end", plan.tail_size + len(plan.end_bytes))
-        tests = [f"{room} > size", *_differ("data", behind, plan.end_bytes)]
+        last = behind("end", plan.tail_size)
+        room = behind("end", plan.tail_size + len(plan.end_bytes))
+        tests = [f"{room} > size", *_differ("data", last, plan.end_bytes)]
         if shows_marks(plan):
-            tests.append(f"!f.isClear({self._place(plan.start_size)}, {behind})")
+            tests.append(f"!f.isClear({self._place(plan.start_size)}, {last})")
         self._refuse(*tests)
 
     def _sizes(self) -> tuple[str, int]:
@@ -104,7 +110,7 @@ class AtOnce:
         plan, add, run = self._plan, self._lines.add, self._folded
         spec = plan.checksums[0].part.algorithm if run else None
         taken, head = len(plan.start_bytes), plan.head_size
-        add(f"let place = {_behind('at', taken)};", f"let filled = {taken};", f"let due = {head};")
+        add(f"let place = {behind('at', taken)};", f"let filled = {taken};", f"let due = {head};")
         if region.before > taken:
             add(f"while (filled < {region.before}) content[filled++] = data[place++] ?? 0;")
         if spec:
@@ -119,8 +125,8 @@ class AtOnce:
                 if spec and run and run.first.offset == head:
                     add(f"sum = {spec.init};")
                 self._measure()
-        add(f"const end = {_behind('due', -plan.tail_size)};")
-        stop = _behind("place", len(plan.end_bytes))
+        add(f"const end = {behind('due', -plan.tail_size)};")
+        stop = behind("place", len(plan.end_bytes))
         is_wrong = ["sum & 255"] if spec else []
         self._refuse(f"{stop} > size", *_differ("data", "place", plan.end_bytes), *is_wrong)
 
@@ -130,7 +136,7 @@ class AtOnce:
         names = {item.name for item in plan.identity} if length is None else {length.part.name}
         self._numbers(item for item in plan.head if item.name in names)
         size, start = self._sizes()
-        self._lines.add(f"due = {_behind(size, start + plan.tail_size)};")
+        self._lines.add(f"due = {behind(size, start + plan.tail_size)};")
 
     def _replace(self, codes: Sequence[tuple[int, bytes]]) -> None:
         """Print what sequences stand for; a byte that is always replaced by one is refused."""
@@ -173,9 +179,7 @@ class AtOnce:
 
     def _wrong(self, part: LengthPart, name: str) -> Iterator[str]:
         """What is true of a length that no frame has."""
-        length = self._plan.counted(part)
-        least = max(part.least, length.base)
-        greatest = min(length.greatest, length.base + self._greatest)
+        least, greatest = length_bounds(self._plan, part, self._greatest)
         if least > 0:
             yield f"{name} < {least}"
         if greatest < part.type.greatest:
@@ -186,8 +190,7 @@ class AtOnce:
         plan = self._plan
         tests = [f"!f.isSevenBit({self._place(plan.head_size)}, end)"] if plan.seven_bit else []
         for index, item in enumerate(() if self._folded else plan.checksums):
-            (run,) = item.covers
-            assert isinstance(run, Run)
+            run = summed_run(item)
             found = _plain(item.part.type, self._at(item.placed.place))
             due = call("f.sum", index, self._at(run.first), self._at(run.end))
             tests.append(f"{found} !== {due}")
@@ -199,8 +202,8 @@ class AtOnce:
         parts = {key: self._values[name] for name, key in self._shown.items()}
         is_found = plan.region is None and plan.length is None
         group = Code("group") if is_found else self._group()
-        last = _behind("end", plan.tail_size) if plan.region is None else "place"
-        places = self._place(plan.head_size), Code("end"), _behind(last, len(plan.end_bytes))
+        last = behind("end", plan.tail_size) if plan.region is None else "place"
+        places = self._place(plan.head_size), Code("end"), behind(last, len(plan.end_bytes))
         self._lines.add(f"return {call('f.event', parts, group, *places)};")
 
     def _group(self) -> Code:
@@ -214,23 +217,14 @@ class AtOnce:
     def _place(self, offset: int, *more: str) -> Code:
         """A place so many bytes behind the first one."""
         base = [] if self._plan.region else ["at"]
-        return _behind(" + ".join([*base, *more]), offset)
+        return behind(" + ".join([*base, *more]), offset)
 
     def _at(self, place: Place) -> Code:
-        return _behind("end", place.offset) if place.is_tail else self._place(place.offset)
+        return behind("end", place.offset) if place.is_tail else self._place(place.offset)
 
     def _refuse(self, *tests: str) -> None:
         if tests:
             self._lines.add(f"if ({' || '.join(tests)}) return null;")
-
-
-def _folded(plan: FramePlan) -> Run | None:
-    """What is summed up together with its checksum while stuffing is taken off, which gives 0."""
-    region, run = plan.region, folded_run(plan)
-    if region is None or run is None or run.first.offset not in (region.before, plan.head_size):
-        return None
-    spec = plan.checksums[0].part.algorithm
-    return run if spec.negated == (spec.kind == "sum") else None
 
 
 def _plain(type_: Integer, place: str) -> Code:
@@ -242,10 +236,15 @@ def _plain(type_: Integer, place: str) -> Code:
 def _differ(name: str, place: str, due: bytes) -> Iterator[str]:
     """What is true of each byte that is not what it has to be."""
     for offset, byte in enumerate(due):
-        yield f"{name}[{_behind(place, offset)}] !== {byte}"
+        yield f"{name}[{behind(place, offset)}] !== {byte}"
 
 
-def _behind(place: str, offset: int) -> Code:
+def adding(spec: ChecksumSpec) -> str:
+    """The statement that takes a byte into a sum or an exclusive or."""
+    return f"sum {'^' if spec.kind == 'xor' else '+'}= byte;"
+
+
+def behind(place: str, offset: int) -> Code:
     """A place so many bytes behind another one; without one, behind the first byte."""
     if not place:
         return Code(str(offset))

@@ -9,21 +9,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame_places import Place, Run, Side
 from protogen.model.frame_plan import FramePlan
 from protogen.model.part_plans import StuffedRegion
 from protogen.model.parts import (
-    ChecksumPart,
     IdentityPart,
     LengthPart,
     LiteralPart,
+    NumberPart,
     Part,
     TypedPart,
 )
-from protogen.model.plain_frames import folded_run
+from protogen.model.plain_frames import folded_run, summed_run
 from protogen.targets.braces import BracedLines
 from protogen.targets.naming import Thing
+from protogen.targets.typescript.at_once import adding, behind
 from protogen.targets.typescript.literals import Code, literal
 from protogen.targets.typescript.names import locals_table
 
@@ -40,8 +40,8 @@ class PutTogether:
         """The function, of the runtime's `PutTogether`."""
         plan, add, run = self._plan, self._lines.add, folded_run(self._plan)
         known = [f"name !== {literal(part.name)}" for part in plan.frame.caller_parts]
-        others = f"const name in given) if ({' && '.join(known)})" if known else "const _ in given)"
-        add(f"for ({others} return null;")
+        other = f"name in given) if ({' && '.join(known)})" if known else "_ in given)"
+        add(f"for (const {other} return null;")
         parts = [(item.place, item.part) for item in plan.placed]
         stored = [(place, self._bytes(part)) for place, part in parts if part.size]
         add("const end = w.size;", f"w.room({plan.tail_size + len(plan.end_bytes)});")
@@ -61,10 +61,8 @@ class PutTogether:
 
     def _bytes(self, part: Part) -> Iterable[object]:
         """The bytes of a part; print its variable, which is negative where something is odd."""
-        if isinstance(part, LiteralPart):
-            return part.bytes
-        if isinstance(part, ChecksumPart) or not isinstance(part, TypedPart):
-            return ()
+        if not isinstance(part, NumberPart):
+            return part.bytes if isinstance(part, LiteralPart) else ()
         frame = self._plan.frame
         name = self._names.add(part.name, Thing("variable", ("local", part.name)))
         if isinstance(part, IdentityPart):
@@ -81,8 +79,7 @@ class PutTogether:
     def _sum(self) -> None:
         """Print what sums up, and stores it."""
         (found,) = self._plan.checksums
-        (run,) = found.covers
-        assert isinstance(run, Run)
+        run = summed_run(found)
         self._lines.add(f"const sum = f.sum(bytes, {_at(run.first)}, {_at(run.end)});")
         side, first = found.placed.place.side, found.placed.place.offset
         for offset, value in enumerate(_shifted(found.part, "sum"), first):
@@ -116,11 +113,6 @@ class PutTogether:
             self._lines.add(f"{word}wire[at++] = byte;")
 
 
-def adding(spec: ChecksumSpec) -> str:
-    """The statement that takes a byte into a sum or an exclusive or."""
-    return f"sum {'^' if spec.kind == 'xor' else '+'}= byte;"
-
-
 def _shifted(part: TypedPart, name: str) -> list[str]:
     """The bytes of the number that a variable has."""
     shifts = [f" >> {shift}" if shift else "" for shift in range(0, 8 * part.size, 8)]
@@ -130,6 +122,4 @@ def _shifted(part: TypedPart, name: str) -> list[str]:
 
 def _at(place: Place) -> str:
     """A place in the content, of which the payload reaches up to `end`."""
-    if not place.is_tail:
-        return str(place.offset)
-    return f"end + {place.offset}" if place.offset else "end"
+    return behind("end" if place.is_tail else "", place.offset)
