@@ -359,16 +359,16 @@ and what reads the payload of one message.
 """
 
 NOTES = """\
-What costs more than by hand: each event has eight members and an object of the frame's parts, so
-there is more to allocate and to collect. Frames that are there as a whole are taken by a printed
+What costs more than by hand: each event has an object of the frame's parts besides, so there is
+more to allocate and to collect. Frames that are there as a whole are taken by a printed
 function, which takes stuffing off and sums up in one loop, as code by hand does; then the message
-is looked up by its identity, and its function called. A frame in pieces is tried by that function
-first, and then goes by a description of the frame. In small portions this counts less, because
-code by hand copies what is left and begins the frame anew, and protogen goes on where it was.
-Encoders put plain frames together by a printed function, which sums
-up and stuffs in one loop; the payload is written before, as only then its size is known, where code
-by hand does all of it in one pass. They look the message up by its name, and see to it that callers
-give no part that there is none of.
+is looked up by its identity, and its function called. A frame in pieces goes by a description of
+the frame, and is tried by that function again once much more of it has come. In small portions this
+counts less, because code by hand copies what is left and begins the frame anew each time.
+Encoders sum up and stuff by a printed function, in one loop; the payload is written before, as only
+then its size is known, where code by hand does all of it in one pass. The runtime puts the rest of
+plain frames together, from what is always the same for a message. Encoders look the message up by
+its name, and see to it that callers give no part that there is none of.
 """
 
 

@@ -58,6 +58,13 @@ class ChecksumSpec(msgspec.Struct, frozen=True):
         """True if a sum or an exclusive or is sent as it is, or negated."""
         return self.mask is None and not self.xorout and not self.add
 
+    @property
+    def parameters(self) -> dict[str, object]:
+        """Those of its parameters that are not as usual, by their names."""
+        optional = [item for item in msgspec.structs.fields(self) if not item.required]
+        found = {item.name: (getattr(self, item.name), item.default) for item in optional}
+        return {name: value for name, (value, usual) in found.items() if value != usual}
+
     def result(self, register: int) -> int:
         """The checksum of a sum or an exclusive or that has come to `register`."""
         result = (-register if self.negated else register) ^ self.xorout

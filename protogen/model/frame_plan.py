@@ -241,6 +241,26 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return self.frame.parts[: len(self.frame.parts) - len(self.end_literals)]
 
     @property
+    def payload_index(self) -> int:
+        """The place of the payload among them."""
+        return self.content.index(self.frame.payload)
+
+    @cached_property
+    def _stuffed(self) -> list[int]:
+        names = self.frame.stuffed
+        return [index for index, item in enumerate(self.content) if item.name in names]
+
+    @property
+    def first_stuffed(self) -> int:
+        """The place of the first one that is stuffed; -1 where none is."""
+        return min(self._stuffed, default=-1)
+
+    @property
+    def last_stuffed(self) -> int:
+        """The place of the last one."""
+        return max(self._stuffed, default=-1)
+
+    @property
     def placed(self) -> tuple[PlacedPart, ...]:
         """The parts of the head and the tail in wire order."""
         return (*self.head, *self.tail)

@@ -272,6 +272,9 @@ function hostFrame() {
     rescans: true,
     takesWhole: true,
     cutAmbiguous: true,
+    payloadIndex: 1,
+    firstStuffed: -1,
+    lastStuffed: -1,
     start: "after_end",
     end: rt.hex("0a"),
     parts: [
@@ -279,7 +282,6 @@ function hostFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
-    payloadIndex: 1,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -290,8 +292,6 @@ function hostFrame() {
     sums: [
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    firstStuffed: -1,
-    lastStuffed: -1,
     behindRegion: 0,
     greatestPayload: 512,
     groups: [
@@ -324,6 +324,9 @@ function robotFrame() {
     rescans: true,
     takesWhole: true,
     cutAmbiguous: true,
+    payloadIndex: 1,
+    firstStuffed: -1,
+    lastStuffed: -1,
     start: "after_end",
     end: rt.hex("0a"),
     parts: [
@@ -331,7 +334,6 @@ function robotFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
-    payloadIndex: 1,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -342,8 +344,6 @@ function robotFrame() {
     sums: [
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    firstStuffed: -1,
-    lastStuffed: -1,
     behindRegion: 0,
     greatestPayload: 512,
     groups: [

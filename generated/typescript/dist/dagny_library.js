@@ -266,13 +266,15 @@ function hostFrame() {
     greatest: 1027,
     givenUpAt: 1027,
     takesWhole: true,
+    payloadIndex: 1,
+    firstStuffed: 0,
+    lastStuffed: 1,
     start: "after_end",
     end: rt.hex("0d"),
     parts: [
       rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 1,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 2 > size) return null;
@@ -280,10 +282,8 @@ function hostFrame() {
       let filled = 0;
       let due = 1;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 27) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 22) byte = 13;
           else if (byte === 0) byte = 27;
@@ -311,17 +311,7 @@ function hostFrame() {
       const { bytes } = w;
       bytes[0] = id;
       bytes[end] = 13;
-      const wire = w.wire(2 * w.size);
-      let at = 0;
-      let i = 0;
-      for (; i < end; i++) {
-        const byte = bytes[i] ?? 0;
-        if (byte === 13) { wire[at++] = 27; wire[at++] = 22; }
-        else if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
-        else wire[at++] = byte;
-      }
-      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
-      return wire.slice(0, at);
+      return f.stuffed(w, end);
     },
     slots: 1,
     identity: [0],
@@ -331,8 +321,6 @@ function hostFrame() {
     ],
     partsOf: (v) => ({ id: v[0] }),
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
-    firstStuffed: 0,
-    lastStuffed: 1,
     behindRegion: 0,
     greatestPayload: 512,
     groups: [
@@ -361,13 +349,15 @@ function robotFrame() {
     greatest: 1027,
     givenUpAt: 1027,
     takesWhole: true,
+    payloadIndex: 1,
+    firstStuffed: 0,
+    lastStuffed: 1,
     start: "after_end",
     end: rt.hex("0d"),
     parts: [
       rt.single({ kind: "identity", name: "id", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 1,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 2 > size) return null;
@@ -375,10 +365,8 @@ function robotFrame() {
       let filled = 0;
       let due = 1;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 27) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 22) byte = 13;
           else if (byte === 0) byte = 27;
@@ -406,17 +394,7 @@ function robotFrame() {
       const { bytes } = w;
       bytes[0] = id;
       bytes[end] = 13;
-      const wire = w.wire(2 * w.size);
-      let at = 0;
-      let i = 0;
-      for (; i < end; i++) {
-        const byte = bytes[i] ?? 0;
-        if (byte === 13) { wire[at++] = 27; wire[at++] = 22; }
-        else if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
-        else wire[at++] = byte;
-      }
-      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
-      return wire.slice(0, at);
+      return f.stuffed(w, end);
     },
     slots: 1,
     identity: [0],
@@ -426,8 +404,6 @@ function robotFrame() {
     ],
     partsOf: (v) => ({ id: v[0] }),
     transparency: rt.escape(27, 27, [[13, rt.hex("1b16")], [27, rt.hex("1b00")]]),
-    firstStuffed: 0,
-    lastStuffed: 1,
     behindRegion: 0,
     greatestPayload: 512,
     groups: [

@@ -241,6 +241,9 @@ function pcFrame() {
     greatest: 250,
     givenUpAt: 250,
     takesWhole: true,
+    payloadIndex: 4,
+    firstStuffed: 1,
+    lastStuffed: 5,
     start: "word",
     end: rt.hex(""),
     parts: [
@@ -251,7 +254,6 @@ function pcFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
-    payloadIndex: 4,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 5 > size || data[at] !== 85) return null;
@@ -260,10 +262,8 @@ function pcFrame() {
       let due = 4;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 86) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 170) byte = 85;
           else if (byte === 169) byte = 86;
@@ -279,7 +279,7 @@ function pcFrame() {
         }
       }
       const end = due - 1;
-      if (sum & 255) return null;
+      if (place > size || sum & 255) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
       return f.event({ counter, command }, f.group(command), 4, end, place);
@@ -287,9 +287,10 @@ function pcFrame() {
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "counter") return null;
       const length = f.length(w.size);
+      if (length < 0) return null;
       const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
+      if (counter < 0) return null;
       const command = f.identity(0);
-      if (length < 0 || counter < 0) return null;
       const end = w.size;
       w.room(1);
       const { bytes } = w;
@@ -302,16 +303,10 @@ function pcFrame() {
       let i = 0;
       for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = -sum;
         const byte = bytes[i] ?? 0;
         sum += byte;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
-        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
-        else wire[at++] = byte;
-      }
-      bytes[end] = -sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
         if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
         else wire[at++] = byte;
@@ -330,8 +325,6 @@ function pcFrame() {
       { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
-    firstStuffed: 1,
-    lastStuffed: 5,
     behindRegion: 0,
     greatestPayload: 121,
     groups: [
@@ -361,6 +354,9 @@ function espFrame() {
     greatest: 250,
     givenUpAt: 250,
     takesWhole: true,
+    payloadIndex: 4,
+    firstStuffed: 1,
+    lastStuffed: 5,
     start: "word",
     end: rt.hex(""),
     parts: [
@@ -371,7 +367,6 @@ function espFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
-    payloadIndex: 4,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 5 > size || data[at] !== 85) return null;
@@ -380,10 +375,8 @@ function espFrame() {
       let due = 4;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 86) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 170) byte = 85;
           else if (byte === 169) byte = 86;
@@ -399,7 +392,7 @@ function espFrame() {
         }
       }
       const end = due - 1;
-      if (sum & 255) return null;
+      if (place > size || sum & 255) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
       return f.event({ counter, command }, f.group(command), 4, end, place);
@@ -407,9 +400,10 @@ function espFrame() {
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "counter") return null;
       const length = f.length(w.size);
+      if (length < 0) return null;
       const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
+      if (counter < 0) return null;
       const command = f.identity(0);
-      if (length < 0 || counter < 0) return null;
       const end = w.size;
       w.room(1);
       const { bytes } = w;
@@ -422,16 +416,10 @@ function espFrame() {
       let i = 0;
       for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = -sum;
         const byte = bytes[i] ?? 0;
         sum += byte;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
-        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
-        else wire[at++] = byte;
-      }
-      bytes[end] = -sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
         if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
         else wire[at++] = byte;
@@ -450,8 +438,6 @@ function espFrame() {
       { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
-    firstStuffed: 1,
-    lastStuffed: 5,
     behindRegion: 0,
     greatestPayload: 121,
     groups: [

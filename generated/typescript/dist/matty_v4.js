@@ -329,6 +329,9 @@ function pcFrame() {
     greatest: 252,
     givenUpAt: 252,
     takesWhole: true,
+    payloadIndex: 4,
+    firstStuffed: 1,
+    lastStuffed: 5,
     start: "word",
     end: rt.hex(""),
     parts: [
@@ -339,7 +342,6 @@ function pcFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
-    payloadIndex: 4,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 5 > size || data[at] !== 85) return null;
@@ -348,10 +350,8 @@ function pcFrame() {
       let due = 4;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 86) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 170) byte = 85;
           else if (byte === 169) byte = 86;
@@ -367,7 +367,7 @@ function pcFrame() {
         }
       }
       const end = due - 1;
-      if (sum & 255) return null;
+      if (place > size || sum & 255) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
       return f.event({ counter, command }, f.group(command), 4, end, place);
@@ -375,9 +375,10 @@ function pcFrame() {
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "counter") return null;
       const length = f.length(w.size);
+      if (length < 0) return null;
       const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
+      if (counter < 0) return null;
       const command = f.identity(0);
-      if (length < 0 || counter < 0) return null;
       const end = w.size;
       w.room(1);
       const { bytes } = w;
@@ -390,16 +391,10 @@ function pcFrame() {
       let i = 0;
       for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = -sum;
         const byte = bytes[i] ?? 0;
         sum += byte;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
-        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
-        else wire[at++] = byte;
-      }
-      bytes[end] = -sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
         if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
         else wire[at++] = byte;
@@ -418,8 +413,6 @@ function pcFrame() {
       { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
-    firstStuffed: 1,
-    lastStuffed: 5,
     behindRegion: 0,
     greatestPayload: 122,
     groups: [
@@ -451,6 +444,9 @@ function espFrame() {
     greatest: 252,
     givenUpAt: 252,
     takesWhole: true,
+    payloadIndex: 4,
+    firstStuffed: 1,
+    lastStuffed: 5,
     start: "word",
     end: rt.hex(""),
     parts: [
@@ -461,7 +457,6 @@ function espFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
-    payloadIndex: 4,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 5 > size || data[at] !== 85) return null;
@@ -470,10 +465,8 @@ function espFrame() {
       let due = 4;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 86) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 170) byte = 85;
           else if (byte === 169) byte = 86;
@@ -489,7 +482,7 @@ function espFrame() {
         }
       }
       const end = due - 1;
-      if (sum & 255) return null;
+      if (place > size || sum & 255) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
       return f.event({ counter, command }, f.group(command), 4, end, place);
@@ -497,9 +490,10 @@ function espFrame() {
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "counter") return null;
       const length = f.length(w.size);
+      if (length < 0) return null;
       const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
+      if (counter < 0) return null;
       const command = f.identity(0);
-      if (length < 0 || counter < 0) return null;
       const end = w.size;
       w.room(1);
       const { bytes } = w;
@@ -512,16 +506,10 @@ function espFrame() {
       let i = 0;
       for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = -sum;
         const byte = bytes[i] ?? 0;
         sum += byte;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
-        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
-        else wire[at++] = byte;
-      }
-      bytes[end] = -sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
         if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
         else wire[at++] = byte;
@@ -540,8 +528,6 @@ function espFrame() {
       { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
-    firstStuffed: 1,
-    lastStuffed: 5,
     behindRegion: 0,
     greatestPayload: 122,
     groups: [

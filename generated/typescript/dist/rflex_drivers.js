@@ -511,6 +511,9 @@ function linuxFrame() {
     greatest: 780,
     givenUpAt: 780,
     takesWhole: true,
+    payloadIndex: 5,
+    firstStuffed: 1,
+    lastStuffed: 6,
     start: "word",
     end: rt.hex("1b03"),
     parts: [
@@ -522,7 +525,6 @@ function linuxFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
-    payloadIndex: 5,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 9 > size || data[at] !== 27 || data[at + 1] !== 2) return null;
@@ -531,19 +533,15 @@ function linuxFrame() {
       let due = 6;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 27) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 0) byte = 27;
           else return null;
         }
         else if (byte === 124) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 27) {
-            if (place === size) return null;
             byte = data[place++] ?? 0;
             if (byte === 1) byte = 124;
             else return null;
@@ -558,7 +556,7 @@ function linuxFrame() {
         }
       }
       const end = due - 1;
-      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum) return null;
+      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum & 255) return null;
       const class_ = view.getUint8(2);
       const number_ = view.getUint8(3);
       const subclass = view.getUint8(4);
@@ -568,9 +566,10 @@ function linuxFrame() {
       for (const name in given) if (name !== "number") return null;
       const class_ = f.identity(0);
       const number_ = f.number(given["number"] ?? f.usual(0, counts), 0, 255);
+      if (number_ < 0) return null;
       const subclass = f.identity(1);
       const length = f.length(w.size);
-      if (number_ < 0 || length < 0) return null;
+      if (length < 0) return null;
       const end = w.size;
       w.room(3);
       const { bytes } = w;
@@ -587,16 +586,10 @@ function linuxFrame() {
       let i = 0;
       for (; i < 2; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = sum;
         const byte = bytes[i] ?? 0;
         sum ^= byte;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
-        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
-        else wire[at++] = byte;
-      }
-      bytes[end] = sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
         else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
         else wire[at++] = byte;
@@ -617,8 +610,6 @@ function linuxFrame() {
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
-    firstStuffed: 1,
-    lastStuffed: 6,
     behindRegion: 0,
     greatestPayload: 255,
     groups: [
@@ -654,6 +645,9 @@ function flexFrame() {
     greatest: 780,
     givenUpAt: 780,
     takesWhole: true,
+    payloadIndex: 5,
+    firstStuffed: 1,
+    lastStuffed: 6,
     start: "word",
     end: rt.hex("1b03"),
     parts: [
@@ -665,7 +659,6 @@ function flexFrame() {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
-    payloadIndex: 5,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 10 > size || data[at] !== 27 || data[at + 1] !== 2) return null;
@@ -674,19 +667,15 @@ function flexFrame() {
       let due = 6;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 27) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 0) byte = 27;
           else return null;
         }
         else if (byte === 124) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 27) {
-            if (place === size) return null;
             byte = data[place++] ?? 0;
             if (byte === 1) byte = 124;
             else return null;
@@ -701,7 +690,7 @@ function flexFrame() {
         }
       }
       const end = due - 1;
-      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum) return null;
+      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum & 255) return null;
       const class_ = view.getUint8(2);
       const number_ = view.getUint8(3);
       const subclass = view.getUint8(4);
@@ -711,9 +700,10 @@ function flexFrame() {
       for (const name in given) if (name !== "number") return null;
       const class_ = f.identity(0);
       const number_ = f.number(given["number"] ?? f.usual(0, counts), 0, 255);
+      if (number_ < 0) return null;
       const subclass = f.identity(1);
       const length = f.length(w.size);
-      if (number_ < 0 || length < 0) return null;
+      if (length < 0) return null;
       const end = w.size;
       w.room(3);
       const { bytes } = w;
@@ -730,16 +720,10 @@ function flexFrame() {
       let i = 0;
       for (; i < 2; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = sum;
         const byte = bytes[i] ?? 0;
         sum ^= byte;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
-        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
-        else wire[at++] = byte;
-      }
-      bytes[end] = sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
         else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
         else wire[at++] = byte;
@@ -760,8 +744,6 @@ function flexFrame() {
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 2, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
-    firstStuffed: 1,
-    lastStuffed: 6,
     behindRegion: 0,
     greatestPayload: 255,
     groups: [

@@ -352,13 +352,15 @@ function hostFrame() {
     givenUpAt: 7,
     sevenBit: true,
     takesWhole: true,
+    payloadIndex: 1,
+    firstStuffed: -1,
+    lastStuffed: -1,
     start: "word",
     end: rt.hex("ff"),
     parts: [
       rt.single({ kind: "identity", name: "start", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 1,
     whole: (f, at) => {
       const { data, size, view } = f;
       if (at + 3 > size) return null;
@@ -387,8 +389,6 @@ function hostFrame() {
       { name: "start", key: "start" },
     ],
     partsOf: (v) => ({ start: v[0] }),
-    firstStuffed: -1,
-    lastStuffed: -1,
     behindRegion: 0,
     greatestPayload: 5,
     groups: [
@@ -417,13 +417,15 @@ function brainFrame() {
     givenUpAt: 722,
     sevenBit: true,
     takesWhole: true,
+    payloadIndex: 1,
+    firstStuffed: -1,
+    lastStuffed: -1,
     start: "word",
     end: rt.hex(""),
     parts: [
       rt.single({ kind: "identity", name: "start", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 1,
     whole: (f, at) => {
       const { data, size, view } = f;
       if (at + 3 > size) return null;
@@ -451,8 +453,6 @@ function brainFrame() {
       { name: "start", key: "start" },
     ],
     partsOf: (v) => ({ start: v[0] }),
-    firstStuffed: -1,
-    lastStuffed: -1,
     behindRegion: 0,
     greatestPayload: 721,
     groups: [

@@ -146,6 +146,9 @@ function daemonFrame() {
     greatest: 512,
     givenUpAt: 512,
     takesWhole: true,
+    payloadIndex: 3,
+    firstStuffed: 1,
+    lastStuffed: 3,
     start: "word",
     end: rt.hex("65"),
     parts: [
@@ -154,7 +157,6 @@ function daemonFrame() {
       rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
@@ -163,8 +165,6 @@ function daemonFrame() {
     ],
     partsOf: (v) => ({ type: v[0] }),
     transparency: rt.base16(),
-    firstStuffed: 1,
-    lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 253,
     groups: [
@@ -191,6 +191,9 @@ function boardFrame() {
     greatest: 512,
     givenUpAt: 512,
     takesWhole: true,
+    payloadIndex: 3,
+    firstStuffed: 1,
+    lastStuffed: 3,
     start: "word",
     end: rt.hex("65"),
     parts: [
@@ -199,7 +202,6 @@ function boardFrame() {
       rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
@@ -208,8 +210,6 @@ function boardFrame() {
     ],
     partsOf: (v) => ({ type: v[0] }),
     transparency: rt.base16(),
-    firstStuffed: 1,
-    lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 253,
     groups: [

@@ -134,6 +134,9 @@ function daemonFrame() {
     greatest: 512,
     givenUpAt: 512,
     takesWhole: true,
+    payloadIndex: 3,
+    firstStuffed: 1,
+    lastStuffed: 3,
     start: "word",
     end: rt.hex("0a"),
     parts: [
@@ -142,7 +145,6 @@ function daemonFrame() {
       rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
@@ -151,8 +153,6 @@ function daemonFrame() {
     ],
     partsOf: (v) => ({ type: v[0] }),
     transparency: rt.base16(),
-    firstStuffed: 1,
-    lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 253,
     groups: [
@@ -177,6 +177,9 @@ function boardFrame() {
     greatest: 517,
     givenUpAt: 517,
     takesWhole: true,
+    payloadIndex: 3,
+    firstStuffed: 1,
+    lastStuffed: 3,
     start: "word",
     end: rt.hex("0d0a"),
     parts: [
@@ -185,7 +188,6 @@ function boardFrame() {
       rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 1, base: 0, optional: 0, greatest: 255, least: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
@@ -194,8 +196,6 @@ function boardFrame() {
     ],
     partsOf: (v) => ({ type: v[0] }),
     transparency: rt.base16(),
-    firstStuffed: 1,
-    lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 255,
     groups: [

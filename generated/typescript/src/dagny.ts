@@ -474,6 +474,9 @@ function hostFrame(): rt.Frame {
     rescans: true,
     takesWhole: true,
     cutAmbiguous: true,
+    payloadIndex: 1,
+    firstStuffed: -1,
+    lastStuffed: -1,
     start: "after_end",
     end: rt.hex("0a"),
     parts: [
@@ -481,7 +484,6 @@ function hostFrame(): rt.Frame {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
-    payloadIndex: 1,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -492,8 +494,6 @@ function hostFrame(): rt.Frame {
     sums: [
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    firstStuffed: -1,
-    lastStuffed: -1,
     behindRegion: 0,
     greatestPayload: 512,
     groups: [
@@ -526,6 +526,9 @@ function robotFrame(): rt.Frame {
     rescans: true,
     takesWhole: true,
     cutAmbiguous: true,
+    payloadIndex: 1,
+    firstStuffed: -1,
+    lastStuffed: -1,
     start: "after_end",
     end: rt.hex("0a"),
     parts: [
@@ -533,7 +536,6 @@ function robotFrame(): rt.Frame {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, isOptional: true, sum: 0 },
     ],
-    payloadIndex: 1,
     slots: 1,
     identity: [0],
     lastIdentity: 0,
@@ -544,8 +546,6 @@ function robotFrame(): rt.Frame {
     sums: [
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 0, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], isOptional: true, lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
-    firstStuffed: -1,
-    lastStuffed: -1,
     behindRegion: 0,
     greatestPayload: 512,
     groups: [

@@ -536,6 +536,9 @@ function pcFrame(): rt.Frame {
     greatest: 252,
     givenUpAt: 252,
     takesWhole: true,
+    payloadIndex: 4,
+    firstStuffed: 1,
+    lastStuffed: 5,
     start: "word",
     end: rt.hex(""),
     parts: [
@@ -546,7 +549,6 @@ function pcFrame(): rt.Frame {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
-    payloadIndex: 4,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 5 > size || data[at] !== 85) return null;
@@ -555,10 +557,8 @@ function pcFrame(): rt.Frame {
       let due = 4;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 86) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 170) byte = 85;
           else if (byte === 169) byte = 86;
@@ -574,7 +574,7 @@ function pcFrame(): rt.Frame {
         }
       }
       const end = due - 1;
-      if (sum & 255) return null;
+      if (place > size || sum & 255) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
       return f.event({ counter, command }, f.group(command), 4, end, place);
@@ -582,9 +582,10 @@ function pcFrame(): rt.Frame {
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "counter") return null;
       const length = f.length(w.size);
+      if (length < 0) return null;
       const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
+      if (counter < 0) return null;
       const command = f.identity(0);
-      if (length < 0 || counter < 0) return null;
       const end = w.size;
       w.room(1);
       const { bytes } = w;
@@ -597,16 +598,10 @@ function pcFrame(): rt.Frame {
       let i = 0;
       for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = -sum;
         const byte = bytes[i] ?? 0;
         sum += byte;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
-        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
-        else wire[at++] = byte;
-      }
-      bytes[end] = -sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
         if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
         else wire[at++] = byte;
@@ -625,8 +620,6 @@ function pcFrame(): rt.Frame {
       { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
-    firstStuffed: 1,
-    lastStuffed: 5,
     behindRegion: 0,
     greatestPayload: 122,
     groups: [
@@ -658,6 +651,9 @@ function espFrame(): rt.Frame {
     greatest: 252,
     givenUpAt: 252,
     takesWhole: true,
+    payloadIndex: 4,
+    firstStuffed: 1,
+    lastStuffed: 5,
     start: "word",
     end: rt.hex(""),
     parts: [
@@ -668,7 +664,6 @@ function espFrame(): rt.Frame {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "crc", size: 1, sum: 0 },
     ],
-    payloadIndex: 4,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 5 > size || data[at] !== 85) return null;
@@ -677,10 +672,8 @@ function espFrame(): rt.Frame {
       let due = 4;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 86) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 170) byte = 85;
           else if (byte === 169) byte = 86;
@@ -696,7 +689,7 @@ function espFrame(): rt.Frame {
         }
       }
       const end = due - 1;
-      if (sum & 255) return null;
+      if (place > size || sum & 255) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
       return f.event({ counter, command }, f.group(command), 4, end, place);
@@ -704,9 +697,10 @@ function espFrame(): rt.Frame {
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "counter") return null;
       const length = f.length(w.size);
+      if (length < 0) return null;
       const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
+      if (counter < 0) return null;
       const command = f.identity(0);
-      if (length < 0 || counter < 0) return null;
       const end = w.size;
       w.room(1);
       const { bytes } = w;
@@ -719,16 +713,10 @@ function espFrame(): rt.Frame {
       let i = 0;
       for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = -sum;
         const byte = bytes[i] ?? 0;
         sum += byte;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
-        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
-        else wire[at++] = byte;
-      }
-      bytes[end] = -sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
         if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
         else wire[at++] = byte;
@@ -747,8 +735,6 @@ function espFrame(): rt.Frame {
       { name: "crc", number: rt.number(8), algorithm: rt.sum(8, { negated: true }), covers: [{ from: { isTail: false, offset: 1, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.escape(86, 255, [[85, rt.hex("56aa")], [86, rt.hex("56a9")]]),
-    firstStuffed: 1,
-    lastStuffed: 5,
     behindRegion: 0,
     greatestPayload: 122,
     groups: [

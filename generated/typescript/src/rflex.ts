@@ -791,6 +791,9 @@ function linuxFrame(): rt.Frame {
     greatest: 782,
     givenUpAt: 782,
     takesWhole: true,
+    payloadIndex: 5,
+    firstStuffed: 1,
+    lastStuffed: 6,
     start: "word",
     end: rt.hex("1b03"),
     parts: [
@@ -802,7 +805,6 @@ function linuxFrame(): rt.Frame {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
-    payloadIndex: 5,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 9 > size || data[at] !== 27 || data[at + 1] !== 2) return null;
@@ -811,19 +813,15 @@ function linuxFrame(): rt.Frame {
       let due = 6;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 27) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 0) byte = 27;
           else return null;
         }
         else if (byte === 124) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 27) {
-            if (place === size) return null;
             byte = data[place++] ?? 0;
             if (byte === 1) byte = 124;
             else return null;
@@ -831,14 +829,15 @@ function linuxFrame(): rt.Frame {
           else return null;
         }
         content[filled++] = byte;
-        if (filled > 6) sum ^= byte;
+        sum ^= byte;
         if (filled === 6) {
+          sum = 0;
           const length = view.getUint8(5);
           due = length + 7;
         }
       }
       const end = due - 1;
-      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum) return null;
+      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum & 255) return null;
       const class_ = view.getUint8(2);
       const number_ = view.getUint8(3);
       const subclass = view.getUint8(4);
@@ -848,9 +847,10 @@ function linuxFrame(): rt.Frame {
       for (const name in given) if (name !== "number") return null;
       const class_ = f.identity(0);
       const number_ = f.number(given["number"] ?? f.usual(0, counts), 0, 255);
+      if (number_ < 0) return null;
       const subclass = f.identity(1);
       const length = f.length(w.size);
-      if (number_ < 0 || length < 0) return null;
+      if (length < 0) return null;
       const end = w.size;
       w.room(3);
       const { bytes } = w;
@@ -873,16 +873,10 @@ function linuxFrame(): rt.Frame {
         else wire[at++] = byte;
       }
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = sum;
         const byte = bytes[i] ?? 0;
         sum ^= byte;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
-        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
-        else wire[at++] = byte;
-      }
-      bytes[end] = sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
         else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
         else wire[at++] = byte;
@@ -903,8 +897,6 @@ function linuxFrame(): rt.Frame {
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
-    firstStuffed: 1,
-    lastStuffed: 6,
     behindRegion: 0,
     greatestPayload: 255,
     groups: [
@@ -938,6 +930,9 @@ function flexFrame(): rt.Frame {
     greatest: 782,
     givenUpAt: 782,
     takesWhole: true,
+    payloadIndex: 5,
+    firstStuffed: 1,
+    lastStuffed: 6,
     start: "word",
     end: rt.hex("1b03"),
     parts: [
@@ -949,7 +944,6 @@ function flexFrame(): rt.Frame {
       { kind: "payload", name: "payload", size: 0 },
       { kind: "sum", name: "checksum", size: 1, sum: 0 },
     ],
-    payloadIndex: 5,
     whole: (f, at) => {
       const { data, size, content, view } = f;
       if (at + 16 > size || data[at] !== 27 || data[at + 1] !== 2) return null;
@@ -958,19 +952,15 @@ function flexFrame(): rt.Frame {
       let due = 6;
       let sum = 0;
       while (filled < due) {
-        if (place === size) return null;
         let byte = data[place++] ?? 0;
         if (byte === 27) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 0) byte = 27;
           else return null;
         }
         else if (byte === 124) {
-          if (place === size) return null;
           byte = data[place++] ?? 0;
           if (byte === 27) {
-            if (place === size) return null;
             byte = data[place++] ?? 0;
             if (byte === 1) byte = 124;
             else return null;
@@ -978,14 +968,15 @@ function flexFrame(): rt.Frame {
           else return null;
         }
         content[filled++] = byte;
-        if (filled > 6) sum ^= byte;
+        sum ^= byte;
         if (filled === 6) {
+          sum = 0;
           const length = view.getUint8(5);
           due = length + 7;
         }
       }
       const end = due - 1;
-      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum) return null;
+      if (place + 2 > size || data[place] !== 27 || data[place + 1] !== 3 || sum & 255) return null;
       const class_ = view.getUint8(2);
       const number_ = view.getUint8(3);
       const subclass = view.getUint8(4);
@@ -995,9 +986,10 @@ function flexFrame(): rt.Frame {
       for (const name in given) if (name !== "number") return null;
       const class_ = f.identity(0);
       const number_ = f.number(given["number"] ?? f.usual(0, counts), 0, 255);
+      if (number_ < 0) return null;
       const subclass = f.identity(1);
       const length = f.length(w.size);
-      if (number_ < 0 || length < 0) return null;
+      if (length < 0) return null;
       const end = w.size;
       w.room(3);
       const { bytes } = w;
@@ -1020,16 +1012,10 @@ function flexFrame(): rt.Frame {
         else wire[at++] = byte;
       }
       let sum = 0;
-      for (; i < end; i++) {
+      for (; i < end + 1; i++) {
+        if (i === end) bytes[end] = sum;
         const byte = bytes[i] ?? 0;
         sum ^= byte;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
-        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
-        else wire[at++] = byte;
-      }
-      bytes[end] = sum;
-      for (; i < end + 1; i++) {
-        const byte = bytes[i] ?? 0;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
         else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
         else wire[at++] = byte;
@@ -1050,8 +1036,6 @@ function flexFrame(): rt.Frame {
       { name: "checksum", number: rt.number(8), algorithm: rt.xor(8), covers: [{ from: { isTail: false, offset: 6, absent: 0 }, to: { isTail: true, offset: 0, absent: 0 }, stuffed: false }], lowest: 0, place: { isTail: true, offset: 0, absent: 0 }, size: 1, greatest: 255 },
     ],
     transparency: rt.substitution([[27, rt.hex("1b00")], [124, rt.hex("7c1b01")]]),
-    firstStuffed: 1,
-    lastStuffed: 6,
     behindRegion: 0,
     greatestPayload: 255,
     groups: [

@@ -563,13 +563,15 @@ function hostFrame(): rt.Frame {
     givenUpAt: 9,
     sevenBit: true,
     takesWhole: true,
+    payloadIndex: 1,
+    firstStuffed: -1,
+    lastStuffed: -1,
     start: "word",
     end: rt.hex("ff"),
     parts: [
       rt.single({ kind: "identity", name: "start", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 1,
     whole: (f, at) => {
       const { data, size, view } = f;
       if (at + 4 > size) return null;
@@ -598,8 +600,6 @@ function hostFrame(): rt.Frame {
       { name: "start", key: "start" },
     ],
     partsOf: (v) => ({ start: v[0] }),
-    firstStuffed: -1,
-    lastStuffed: -1,
     behindRegion: 0,
     greatestPayload: 7,
     groups: [
@@ -627,13 +627,15 @@ function brainFrame(): rt.Frame {
     givenUpAt: 722,
     sevenBit: true,
     takesWhole: true,
+    payloadIndex: 1,
+    firstStuffed: -1,
+    lastStuffed: -1,
     start: "word",
     end: rt.hex(""),
     parts: [
       rt.single({ kind: "identity", name: "start", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 1,
     whole: (f, at) => {
       const { data, size, view } = f;
       if (at + 6 > size) return null;
@@ -661,8 +663,6 @@ function brainFrame(): rt.Frame {
       { name: "start", key: "start" },
     ],
     partsOf: (v) => ({ start: v[0] }),
-    firstStuffed: -1,
-    lastStuffed: -1,
     behindRegion: 0,
     greatestPayload: 721,
     groups: [

@@ -223,6 +223,9 @@ function daemonFrame(): rt.Frame {
     greatest: 512,
     givenUpAt: 512,
     takesWhole: true,
+    payloadIndex: 3,
+    firstStuffed: 1,
+    lastStuffed: 3,
     start: "word",
     end: rt.hex("65"),
     parts: [
@@ -231,7 +234,6 @@ function daemonFrame(): rt.Frame {
       rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
@@ -240,8 +242,6 @@ function daemonFrame(): rt.Frame {
     ],
     partsOf: (v) => ({ type: v[0] }),
     transparency: rt.base16(),
-    firstStuffed: 1,
-    lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 253,
     groups: [
@@ -268,6 +268,9 @@ function boardFrame(): rt.Frame {
     greatest: 512,
     givenUpAt: 512,
     takesWhole: true,
+    payloadIndex: 3,
+    firstStuffed: 1,
+    lastStuffed: 3,
     start: "word",
     end: rt.hex("65"),
     parts: [
@@ -276,7 +279,6 @@ function boardFrame(): rt.Frame {
       rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
@@ -285,8 +287,6 @@ function boardFrame(): rt.Frame {
     ],
     partsOf: (v) => ({ type: v[0] }),
     transparency: rt.base16(),
-    firstStuffed: 1,
-    lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 253,
     groups: [

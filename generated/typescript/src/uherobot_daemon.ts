@@ -221,6 +221,9 @@ function daemonFrame(): rt.Frame {
     greatest: 512,
     givenUpAt: 512,
     takesWhole: true,
+    payloadIndex: 3,
+    firstStuffed: 1,
+    lastStuffed: 3,
     start: "word",
     end: rt.hex("0a"),
     parts: [
@@ -229,7 +232,6 @@ function daemonFrame(): rt.Frame {
       rt.single({ kind: "identity", name: "type", number: rt.number(8), slot: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
@@ -238,8 +240,6 @@ function daemonFrame(): rt.Frame {
     ],
     partsOf: (v) => ({ type: v[0] }),
     transparency: rt.base16(),
-    firstStuffed: 1,
-    lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 253,
     groups: [
@@ -264,6 +264,9 @@ function boardFrame(): rt.Frame {
     greatest: 517,
     givenUpAt: 517,
     takesWhole: true,
+    payloadIndex: 3,
+    firstStuffed: 1,
+    lastStuffed: 3,
     start: "word",
     end: rt.hex("0d0a"),
     parts: [
@@ -272,7 +275,6 @@ function boardFrame(): rt.Frame {
       rt.single({ kind: "length", name: "length", number: rt.number(8), slot: 1, base: 0, optional: 0, greatest: 255, least: 0 }),
       { kind: "payload", name: "payload", size: 0 },
     ],
-    payloadIndex: 3,
     slots: 2,
     identity: [0],
     lastIdentity: 0,
@@ -281,8 +283,6 @@ function boardFrame(): rt.Frame {
     ],
     partsOf: (v) => ({ type: v[0] }),
     transparency: rt.base16(),
-    firstStuffed: 1,
-    lastStuffed: 3,
     behindRegion: 0,
     greatestPayload: 255,
     groups: [

@@ -8,22 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
-from typing import NamedTuple
 
-from protogen.model.frame_places import Place, PlacedPart, Run
+from protogen.model.checksums import ChecksumSpec
+from protogen.model.frame_places import Place, PlacedPart
 from protogen.model.frame_plan import FramePlan
-from protogen.model.part_plans import ChecksumPlan, StuffedRegion
+from protogen.model.part_plans import StuffedRegion
 from protogen.model.parts import (
-    BitsPart,
-    ChoicePart,
     LengthPart,
     LiteralPart,
     NumberPart,
-    Part,
-    TypedPart,
+)
+from protogen.model.plain_frames import (
+    is_plain,
+    length_bounds,
+    run_that_gives_0,
+    shows_marks,
+    summed_run,
 )
 from protogen.model.protocol import Sender
-from protogen.model.transparency import Escape, Substitution
 from protogen.model.types import Integer
 from protogen.targets.braces import BracedLines
 from protogen.targets.naming import Thing
@@ -31,50 +33,13 @@ from protogen.targets.typescript.literals import (
     GREATEST_BITS,
     Code,
     call,
-    integer,
-    is_big,
-    literal,
 )
 from protogen.targets.typescript.names import locals_table
-
-_VIEWED = {8: "Uint8", 16: "Uint16", 32: "Uint32", 64: "BigUint64"}
-"""What a `DataView` reads, by the bits."""
-_FEW = 8
-"""So many bytes that are stuffed are compared one by one."""
 
 
 def is_taken_at_once(plan: FramePlan) -> bool:
     """True if a function is printed for such frames."""
-    parts, region = [item.part for item in (*plan.head, *plan.tail)], plan.region
-    is_odd = any(part.is_optional or not _is_simple(part) for part in parts)
-    is_fitted = plan.is_cut or plan.frame.payload.kept is not None
-    needs_more = plan.virtual or plan.further_lengths or plan.shares_delimiter or is_fitted
-    sums_one = all(map(_sums_one_run, plan.checksums))
-    fixed = any(sizes.fixed is not None for group in plan.groups for sizes in group.sizes)
-    tells_size = plan.length is not None or fixed
-    is_numbered = plan.identity_bits <= GREATEST_BITS
-    plain = plan.takes_whole and sums_one and tells_size and is_numbered
-    is_listed = region is None or (_is_listed(region) and region.before < plan.head_size)
-    return plain and is_listed and not (is_odd or needs_more)
-
-
-def _is_listed(region: StuffedRegion) -> bool:
-    """True if a few sequences are all that a region has besides plain bytes."""
-    is_listed = isinstance(region.encoding, Substitution | Escape) and len(region.codes) <= _FEW
-    return is_listed and not (region.lenient or region.behind)
-
-
-def _is_simple(part: Part) -> bool:
-    """True if a part is no number, or one of whole bytes."""
-    if not isinstance(part, TypedPart):
-        return True
-    return not isinstance(part, BitsPart) and _plain(part.type, "") is not None
-
-
-def _sums_one_run(plan: ChecksumPlan) -> bool:
-    """True if a checksum runs over one run of content."""
-    is_run = len(plan.covers) == 1 and isinstance(plan.covers[0], Run)
-    return is_run and not plan.part.over_wire
+    return is_plain(plan) and plan.identity_bits <= GREATEST_BITS
 
 
 class AtOnce:
@@ -86,7 +51,7 @@ class AtOnce:
         self._shown = shown
         self._lines = BracedLines(2, 2)
         self._locals = locals_table()
-        self._folding = _folding(self._plan)
+        self._folded = run_that_gives_0(self._plan)
         self._values: dict[str, Code] = {}
         """Variables, by the parts whose values they have."""
 
@@ -112,7 +77,7 @@ class AtOnce:
         if plan.region:
             yield "content"
         has_numbers = any(isinstance(item.part, NumberPart) for item in plan.head)
-        if has_numbers or (plan.checksums and not self._folding):
+        if has_numbers or (plan.checksums and not self._folded):
             yield "view"
 
     # --- content that is not stuffed --------------------------------------------------------------
@@ -122,15 +87,11 @@ class AtOnce:
         plan = self._plan
         size, start = self._sizes()
         self._lines.add(f"const end = {self._place(start, size)};")
-        behind = _behind("end", plan.tail_size)
-        room = _behind("end", plan.tail_size + len(plan.end_bytes))
-        tests = [f"{room} > size", *_differ("data", behind, plan.end_bytes)]
-        marks = [word[-1] for word in plan.start_words if plan.start_is_unique]
-        marks += plan.end_bytes[-1:] if plan.end_is_unique else b""
-        is_payload = plan.start_size == plan.head_size and not plan.tail_size
-        is_known = plan.seven_bit and is_payload and min(marks, default=128) > 127
-        if marks and not is_known:
-            tests.append(f"!f.isClear({self._place(plan.start_size)}, {behind})")
+        last = behind("end", plan.tail_size)
+        room = behind("end", plan.tail_size + len(plan.end_bytes))
+        tests = [f"{room} > size", *_differ("data", last, plan.end_bytes)]
+        if shows_marks(plan):
+            tests.append(f"!f.isClear({self._place(plan.start_size)}, {last})")
         self._refuse(*tests)
 
     def _sizes(self) -> tuple[str, int]:
@@ -146,26 +107,28 @@ class AtOnce:
 
     def _unstuff(self, region: StuffedRegion) -> None:
         """Print the loop that takes the stuffing off, and sums up on the way if it can."""
-        plan, add, folding = self._plan, self._lines.add, self._folding
+        plan, add, run = self._plan, self._lines.add, self._folded
+        spec = plan.checksums[0].part.algorithm if run else None
         taken, head = len(plan.start_bytes), plan.head_size
-        add(f"let place = {_behind('at', taken)};", f"let filled = {taken};", f"let due = {head};")
+        add(f"let place = {behind('at', taken)};", f"let filled = {taken};", f"let due = {head};")
         if region.before > taken:
             add(f"while (filled < {region.before}) content[filled++] = data[place++] ?? 0;")
-        if folding:
-            add(f"let sum = {folding.first};")
+        if spec:
+            add(f"let sum = {spec.init};")
         with self._lines.block("while (filled < due)"):
-            self._refuse("place === size")
             add("let byte = data[place++] ?? 0;")
             self._replace(region.codes)
             add("content[filled++] = byte;")
-            if folding:
-                add(folding.step)
+            if spec:
+                add(adding(spec))
             with self._lines.block(f"if (filled === {head})"):
+                if spec and run and run.first.offset == head:
+                    add(f"sum = {spec.init};")
                 self._measure()
-        add(f"const end = {_behind('due', -plan.tail_size)};")
-        room = [f"{_behind('place', len(plan.end_bytes))} > size"] if plan.end_bytes else []
-        sum_ = [folding.wrong] if folding else []
-        self._refuse(*room, *_differ("data", "place", plan.end_bytes), *sum_)
+        add(f"const end = {behind('due', -plan.tail_size)};")
+        stop = behind("place", len(plan.end_bytes))
+        is_wrong = ["sum & 255"] if spec else []
+        self._refuse(f"{stop} > size", *_differ("data", "place", plan.end_bytes), *is_wrong)
 
     def _measure(self) -> None:
         """Print what the head says of the bytes of content that are due."""
@@ -173,7 +136,7 @@ class AtOnce:
         names = {item.name for item in plan.identity} if length is None else {length.part.name}
         self._numbers(item for item in plan.head if item.name in names)
         size, start = self._sizes()
-        self._lines.add(f"due = {_behind(size, start + plan.tail_size)};")
+        self._lines.add(f"due = {behind(size, start + plan.tail_size)};")
 
     def _replace(self, codes: Sequence[tuple[int, bytes]]) -> None:
         """Print what sequences stand for; a byte that is always replaced by one is refused."""
@@ -194,7 +157,6 @@ class AtOnce:
                 self._lines.add(f"{head} byte = {byte};")
                 continue
             with self._lines.block(head):
-                self._refuse("place === size")
                 self._lines.add("byte = data[place++] ?? 0;")
                 self._sequences(ends)
                 self._lines.add("else return null;")
@@ -212,34 +174,23 @@ class AtOnce:
                 name = self._locals.add(part.name, Thing("variable", ("local", part.name)))
                 self._values[part.name] = Code(name)
                 self._lines.add(f"const {name} = {_plain(part.type, place)};")
-                self._refuse(*self._wrong(item, name))
+                if isinstance(part, LengthPart):
+                    self._refuse(*self._wrong(part, name))
 
-    def _wrong(self, item: PlacedPart, name: str) -> Iterator[str]:
-        """What is true of a value that the part can't have."""
-        part = item.part
-        assert isinstance(part, NumberPart)
-        if isinstance(part, ChoicePart):
-            yield " && ".join(f"{name} !== {_spelled(part, value)}" for value in part.values)
-            return
-        least, greatest = part.least, part.greatest
-        if isinstance(part, LengthPart):
-            length = self._plan.counted(part)
-            least = max(least, length.base)
-            greatest = min(length.greatest, length.base + self._greatest)
-        elif item not in self._plan.bounded:
-            return
+    def _wrong(self, part: LengthPart, name: str) -> Iterator[str]:
+        """What is true of a length that no frame has."""
+        least, greatest = length_bounds(self._plan, part, self._greatest)
         if least > 0:
-            yield f"{name} < {_spelled(part, least)}"
+            yield f"{name} < {least}"
         if greatest < part.type.greatest:
-            yield f"{name} > {_spelled(part, greatest)}"
+            yield f"{name} > {greatest}"
 
     def _check(self) -> None:
         """Print what holds the payload and the checksums against what they have to be."""
         plan = self._plan
         tests = [f"!f.isSevenBit({self._place(plan.head_size)}, end)"] if plan.seven_bit else []
-        for index, item in enumerate(() if self._folding else plan.checksums):
-            (run,) = item.covers
-            assert isinstance(run, Run)
+        for index, item in enumerate(() if self._folded else plan.checksums):
+            run = summed_run(item)
             found = _plain(item.part.type, self._at(item.placed.place))
             due = call("f.sum", index, self._at(run.first), self._at(run.end))
             tests.append(f"{found} !== {due}")
@@ -251,8 +202,8 @@ class AtOnce:
         parts = {key: self._values[name] for name, key in self._shown.items()}
         is_found = plan.region is None and plan.length is None
         group = Code("group") if is_found else self._group()
-        last = _behind("end", plan.tail_size) if plan.region is None else "place"
-        places = self._place(plan.head_size), Code("end"), _behind(last, len(plan.end_bytes))
+        last = behind("end", plan.tail_size) if plan.region is None else "place"
+        places = self._place(plan.head_size), Code("end"), behind(last, len(plan.end_bytes))
         self._lines.add(f"return {call('f.event', parts, group, *places)};")
 
     def _group(self) -> Code:
@@ -266,67 +217,36 @@ class AtOnce:
     def _place(self, offset: int, *more: str) -> Code:
         """A place so many bytes behind the first one."""
         base = [] if self._plan.region else ["at"]
-        return _behind(" + ".join([*base, *more]), offset)
+        return behind(" + ".join([*base, *more]), offset)
 
     def _at(self, place: Place) -> Code:
-        return _behind("end", place.offset) if place.is_tail else self._place(place.offset)
+        return behind("end", place.offset) if place.is_tail else self._place(place.offset)
 
     def _refuse(self, *tests: str) -> None:
         if tests:
             self._lines.add(f"if ({' || '.join(tests)}) return null;")
 
 
-class _Folding(NamedTuple):
-    """A checksum that is taken in the loop that takes stuffing off, itself included."""
-
-    first: int
-    """What it begins with."""
-    step: str
-    wrong: str
-
-
-def _folding(plan: FramePlan) -> _Folding | None:
-    """How the checksum is taken together with the bytes; None where that is too much."""
-    if plan.region is None or plan.tail_size != 1 or len(plan.checksums) != 1:
-        return None
-    (item,) = plan.checksums
-    (run,) = item.covers
-    spec = item.part.algorithm
-    assert isinstance(run, Run)
-    is_whole = plan.region.before <= run.first.offset <= plan.head_size and not run.end.offset
-    if not (spec.is_folded_byte and is_whole and run.end.is_tail) or run.first.is_tail:
-        return None
-    is_all = run.first.offset == plan.region.before
-    test = "" if is_all else f"if (filled > {run.first.offset}) "
-    if spec.kind == "xor" and spec.is_bare:
-        return _Folding(spec.init, f"{test}sum ^= byte;", "sum")
-    if spec.kind == "sum" and spec.is_bare and spec.negated:
-        return _Folding(spec.init, f"{test}sum += byte;", "sum & 255")
-    return None
-
-
-def _plain(type_: Integer, place: str) -> Code | None:
-    """The expression of a number of whole bytes; None of another one."""
-    if type_.byte_bits == 7 or type_.is_text or type_.text or type_.bits not in _VIEWED:
-        return None
+def _plain(type_: Integer, place: str) -> Code:
+    """The expression of a number of whole bytes."""
     is_little = type_.size > 1 and type_.byte_order == "little"
-    return call(f"view.get{_VIEWED[type_.bits]}", Code(place), is_little or None)
+    return call(f"view.getUint{type_.bits}", Code(place), is_little or None)
 
 
 def _differ(name: str, place: str, due: bytes) -> Iterator[str]:
     """What is true of each byte that is not what it has to be."""
     for offset, byte in enumerate(due):
-        yield f"{name}[{_behind(place, offset)}] !== {byte}"
+        yield f"{name}[{behind(place, offset)}] !== {byte}"
 
 
-def _behind(place: str, offset: int) -> Code:
+def adding(spec: ChecksumSpec) -> str:
+    """The statement that takes a byte into a sum or an exclusive or."""
+    return f"sum {'^' if spec.kind == 'xor' else '+'}= byte;"
+
+
+def behind(place: str, offset: int) -> Code:
     """A place so many bytes behind another one; without one, behind the first byte."""
     if not place:
         return Code(str(offset))
     sign = "-" if offset < 0 else "+"
     return Code(f"{place} {sign} {abs(offset)}" if offset else place)
-
-
-def _spelled(part: NumberPart, value: int) -> Code:
-    shown = part.shown(value)
-    return literal(shown if isinstance(shown, str) else integer(shown, big=is_big(part.type.bits)))

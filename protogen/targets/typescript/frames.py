@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from msgspec.structs import fields
-
 from protogen.model.checksums import ChecksumSpec
 from protogen.model.frame_places import Place, PlacedPart, Run
 from protogen.model.frame_plan import FramePlan, StartRule
@@ -29,6 +27,7 @@ from protogen.model.parts import (
     ValuePart,
     VirtualPart,
 )
+from protogen.model.plain_frames import is_put_together
 from protogen.model.protocol import Sender
 from protogen.model.transparency import Base16, Cobs, Escape, Insertion, Substitution
 from protogen.targets.typescript.at_once import AtOnce, is_taken_at_once
@@ -45,7 +44,7 @@ from protogen.targets.typescript.literals import (
     told,
 )
 from protogen.targets.typescript.names import Names
-from protogen.targets.typescript.put_together import PutTogether, is_put_together
+from protogen.targets.typescript.put_together import PutTogether
 
 _STARTS = {
     StartRule.LITERAL: "word",
@@ -56,7 +55,7 @@ _STARTS = {
 _FACTS = """
 head_size tail_size tail_size_empty identity_is_early start_words start_bytes start_is_unique
 end_is_unique shares_delimiter mark_size ends_idle least greatest given_up_at seven_bit
-rescans takes_whole cut_ambiguous is_cut
+rescans takes_whole cut_ambiguous is_cut payload_index first_stuffed last_stuffed
 """
 """What the runtime takes as the plan has it."""
 
@@ -79,8 +78,6 @@ class FramePrinter:
     def text(self) -> Code:
         """The object, one member a line."""
         plan, frame = self._plan, self._sender.frame
-        content = plan.content
-        stuffed = [index for index, item in enumerate(content) if item.name in frame.stuffed]
         sent, region = plan.sent_identity, plan.region
         facts = {
             "sender": self._sender.endpoint,
@@ -88,9 +85,8 @@ class FramePrinter:
             **told(plan, _FACTS),
             "start": _STARTS[plan.start],
             "end": plan.end_bytes,
-            "parts": _lines(map(self._part, content)),
-            "payloadIndex": content.index(frame.payload),
-            "whole": self._whole(),
+            "parts": _lines(map(self._part, plan.content)),
+            "whole": AtOnce(self._sender, self._keys).text() if is_taken_at_once(plan) else None,
             "put": PutTogether(plan).text() if is_put_together(plan) else None,
             "slots": len(self._slots),
             "identity": [self._slots[item.name] for item in frame.identity],
@@ -101,8 +97,6 @@ class FramePrinter:
             "partsOf": self._parts_of(),
             "sums": _lines(map(self._sum, plan.checksums)),
             "transparency": None if region is None else self._transparency(),
-            "firstStuffed": min(stuffed, default=-1),
-            "lastStuffed": max(stuffed, default=-1),
             "behindRegion": 0 if region is None else region.behind,
             "greatestPayload": self._sender.framing.payload.greatest,
             "isBounded": frame.limit is not None,
@@ -111,11 +105,6 @@ class FramePrinter:
             "encodeOnly": _lines(map(self._plan_name, self._sender.encode_only)),
         }
         return call("rt.frame", lines({k: it for k, it in facts.items() if not _is_usual(it)}))
-
-    def _whole(self) -> Code | None:
-        if not is_taken_at_once(self._plan):
-            return None
-        return AtOnce(self._sender, self._keys).text()
 
     def _plan_name(self, message: Message) -> Code:
         return Code(self._names.functions[message.name][2])
@@ -321,9 +310,6 @@ def algorithm(spec: ChecksumSpec) -> Code:
     if spec.kind == "fletcher":
         return call("rt.fletcher16", spec.modulus)
     is_crc = spec.kind == "crc"
-    parameters = {
-        item.name: integer(value) if is_crc and type(value) is int else value
-        for item in fields(spec)
-        if not item.required and (value := getattr(spec, item.name)) != item.default
-    }
+    found = spec.parameters.items()
+    parameters = {n: integer(it) if is_crc and type(it) is int else it for n, it in found}
     return call(f"rt.{spec.kind}", spec.width, parameters or None)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-from math import inf, nextafter
-
+from protogen.model.floats import float_within
 from protogen.model.numbers import FreeNumeral
 from protogen.model.payload_plan import FloatStep, IntegerStep, PartStep
 from protogen.model.types import Array, Constant, Float, Integer, Octets, Switch, Text, Type
@@ -75,7 +73,7 @@ def _seven(type_: Integer) -> str:
 
 def closed(by: str, type_: Integer, found: str, at: str, scope: Scope) -> Code:
     """The expression, of which a closed enum refuses some values; `by` reads or writes."""
-    if type_.enum is None or not type_.enum.closed:
+    if not type_.is_closed:
         return Code(found)
     return Code(f"{by}.one({found}, {values_of(type_, scope)}, {at})")
 
@@ -157,12 +155,12 @@ def _call(by: str, type_: Integer | Float, *around: Code) -> Code:
 
 def is_checked(step: IntegerStep | FloatStep) -> bool:
     """True if what writes a value checks all of it."""
+    if step.field.ranged or isinstance(step, PartStep):
+        return False
     type_ = step.type
-    if isinstance(type_, Integer) and type_.role != "bool":
-        is_closed = type_.enum is not None and type_.enum.closed
-        if type_.text is not None or is_bigint(type_) or is_closed:
-            return False
-    return not step.field.ranged and not isinstance(step, PartStep)
+    if isinstance(type_, Float) or type_.role == "bool":
+        return True
+    return type_.text is None and not is_bigint(type_) and not type_.is_closed
 
 
 def check_number(step: IntegerStep | FloatStep, value: str, at: Code, scope: Scope) -> Code:
@@ -172,8 +170,8 @@ def check_number(step: IntegerStep | FloatStep, value: str, at: Code, scope: Sco
         found = call("w.real", own, type_.bits, at)
         if not field.ranged:
             return found
-        least = None if field.least is None else _float(field.least, inf)
-        greatest = None if field.greatest is None else _float(field.greatest, -inf)
+        least = None if field.least is None else float_within(field.least, 64, up=True)
+        greatest = None if field.greatest is None else float_within(field.greatest, 64, up=False)
         return call("w.ranged", found, literal(least), literal(greatest), (), at)
     if type_.role == "bool":
         return call("w.truth", own, at)
@@ -186,10 +184,3 @@ def check_number(step: IntegerStep | FloatStep, value: str, at: Code, scope: Sco
         special = [integer(item.value, big=big) for item in field.special]
         found = call("w.ranged", found, *bounds, special, at)
     return closed("w", type_, found, at, scope)
-
-
-def _float(bound: Fraction, inside: float) -> float:
-    """The float nearest to a bound that is not beyond it; `inside` is the end behind it."""
-    found = float(bound)
-    is_beyond = Fraction(found) < bound if inside > 0 else Fraction(found) > bound
-    return nextafter(found, inside) if is_beyond else found

@@ -4,12 +4,12 @@
  * It has the places and bounds of a frame as constants, and takes none that is odd in any way: for
  * these, and for frames in pieces, there are others.
  */
-import { Framed, type PartValues } from "./events.js";
+import { Framed, Source, type PartValues } from "./events.js";
 import type { Group, TakeWhole } from "./plan.js";
 import type { Sender } from "./sender.js";
 /** A place in some input, for a generated function. Its methods say if all is well so far. */
 export declare class AtOnce {
-    private readonly sender;
+    readonly sender: Sender;
     private readonly whole;
     /** What came in. */
     data: Uint8Array;
@@ -20,16 +20,18 @@ export declare class AtOnce {
     /** The same, for numbers of several bytes. */
     view: DataView;
     private at;
-    private offset;
+    private source;
     private readonly isStuffed;
     private readonly reader;
     private readonly frame;
-    private readonly groups;
+    /** Groups by the numbers of identities: those of small ones, and those of others. */
+    private readonly near;
+    private readonly far;
     /** Bytes that may end a start or an end inside the frame. */
     private readonly marks;
     constructor(sender: Sender, whole: TakeWhole);
     /** Take frames from a start on, one behind another; the place behind the last one. */
-    take(data: Uint8Array, size: number, start: number, offset: number, events: unknown[]): number;
+    take(source: Source, size: number, start: number, events: unknown[]): number;
     /** True if nothing stands there that may begin another frame or end this one. */
     isClear(from: number, to: number): boolean;
     /** True if the bytes have their most significant bits clear. */

@@ -18,6 +18,8 @@ export declare class Decoder<Message = unknown, Parts = unknown> {
     private readonly atOnce;
     private readonly shares;
     private readonly greatest;
+    /** Zeros behind the bytes that came in, as a generated function may look beyond these. */
+    private readonly ahead;
     private readonly isAnywhere;
     /** True if noise has to go where it and a candidate are longer than a frame. */
     private readonly keepsOne;
@@ -27,12 +29,15 @@ export declare class Decoder<Message = unknown, Parts = unknown> {
     private size;
     /** Offset of the first of these bytes in the input. */
     private offset;
+    private source;
     /** All in front of it is delivered. */
     private done;
     /** No frame starts between `done` and here. */
     private scan;
     /** The candidate has taken all in front of it. */
     private pushed;
+    /** Bytes of the frame there that were tried at once. */
+    private tried;
     private candidate;
     /** The candidate's, until the next start is known. */
     private failure;
@@ -73,6 +78,8 @@ export declare class Decoder<Message = unknown, Parts = unknown> {
     private nextStart;
     /** Begin at a possible start. */
     private open;
+    /** Take more of a frame, of which most often the rest has come. */
+    private goOn;
     /** Take the frames that are there, one behind another. False: there is none. */
     private takeAtOnce;
     /** Take the frame there if it is plainly one, or as much of it as has come. */
@@ -86,6 +93,8 @@ export declare class Decoder<Message = unknown, Parts = unknown> {
     /** Go on behind the candidate's first byte, where the next frame may start. */
     private resume;
     private giveUp;
+    /** The bytes that are kept, for events. */
+    private sourceOf;
     /** Deliver noise up to `end` by greatest frames, and if it is complete the rest as well. */
     private noise;
     private invalid;

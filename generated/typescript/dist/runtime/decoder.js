@@ -2,7 +2,7 @@
 import { AtOnce } from "./at_once.js";
 import { Cut, Failure } from "./candidate.js";
 import { Fault } from "./errors.js";
-import { framed, Framed, Invalid } from "./events.js";
+import { framed, Framed, Invalid, Source } from "./events.js";
 import { Search } from "./search.js";
 import { WholeFrames } from "./whole.js";
 const LEAST_ROOM = 4096;
@@ -22,6 +22,7 @@ export class Decoder {
         this.size = 0;
         /** Offset of the first of these bytes in the input. */
         this.offset = 0;
+        this.source = null;
         // Places in these bytes:
         /** All in front of it is delivered. */
         this.done = 0;
@@ -29,6 +30,8 @@ export class Decoder {
         this.scan = 0;
         /** The candidate has taken all in front of it. */
         this.pushed = 0;
+        /** Bytes of the frame there that were tried at once. */
+        this.tried = 0;
         this.candidate = null;
         /** The candidate's, until the next start is known. */
         this.failure = null;
@@ -45,6 +48,7 @@ export class Decoder {
         this.atOnce = whole && senders.length === 1 ? new AtOnce(first, whole) : null;
         this.shares = first.frame.sharesDelimiter;
         this.greatest = Math.max(...senders.map((sender) => sender.frame.greatest));
+        this.ahead = this.atOnce ? 2 * this.greatest : 0;
         this.isAnywhere = first.frame.start === "anywhere";
         this.keepsOne = this.isAnywhere && !first.frame.endsIdle;
     }
@@ -98,7 +102,7 @@ export class Decoder {
     }
     /** Keep the bytes, behind those that are there. */
     append(chunk) {
-        if (this.size + chunk.length > this.data.length)
+        if (this.size + chunk.length > this.data.length - this.ahead)
             this.move(chunk.length);
         this.data.set(chunk, this.size);
         this.size += chunk.length;
@@ -108,7 +112,7 @@ export class Decoder {
         // The bytes stay where they are, for the events.
         const passed = Math.max(0, this.done - this.search.starts.context);
         const left = this.data.subarray(passed, this.size);
-        this.data = new Uint8Array(Math.max(LEAST_ROOM, 2 * left.length + more));
+        this.data = new Uint8Array(Math.max(LEAST_ROOM, 2 * left.length + more) + this.ahead);
         this.data.set(left);
         this.size = left.length;
         this.offset += passed;
@@ -130,7 +134,7 @@ export class Decoder {
             else if (this.candidate)
                 goesOn = this.take(this.candidate, final);
             else if (this.whole?.isWaiting)
-                goesOn = this.takeWhole(this.whole, final);
+                goesOn = this.goOn(this.whole, final);
             else
                 goesOn = this.seek(final);
         }
@@ -158,6 +162,7 @@ export class Decoder {
         if (!this.isAnywhere)
             this.noise(start, true);
         this.scan = this.pushed = start;
+        this.tried = this.size - start;
         if (this.atOnce && this.takeAtOnce(this.atOnce))
             return true;
         if (this.whole) {
@@ -167,15 +172,28 @@ export class Decoder {
         this.candidate = this.begin(this.beganFresh);
         return true;
     }
+    /** Take more of a frame, of which most often the rest has come. */
+    goOn(whole, final) {
+        const there = this.size - this.scan;
+        // One that comes in small pieces is not begun anew with each of them.
+        if (this.atOnce && there >= 2 * this.tried) {
+            this.tried = there;
+            if (this.takeAtOnce(this.atOnce)) {
+                whole.isWaiting = false;
+                return true;
+            }
+        }
+        return this.takeWhole(whole, final);
+    }
     /** Take the frames that are there, one behind another. False: there is none. */
     takeAtOnce(atOnce) {
-        const { data, size, scan, offset, events } = this;
-        this.done = this.scan = atOnce.take(data, size, scan, offset, events);
+        const { size, scan, events } = this;
+        this.done = this.scan = atOnce.take(this.sourceOf(atOnce.sender), size, scan, events);
         return this.scan > scan;
     }
     /** Take the frame there if it is plainly one, or as much of it as has come. */
     takeWhole(whole, final) {
-        const event = whole.take(this.data, this.size, this.scan, this.offset);
+        const event = whole.take(this.sourceOf(whole.sender), this.size, this.scan);
         if (event) {
             this.events.push(event);
             this.done = this.scan += event.size;
@@ -228,7 +246,7 @@ export class Decoder {
         let event;
         const start = this.scan;
         try {
-            event = framed(sender, cut, this.offset + start, this.data, start, cut.size);
+            event = framed(this.sourceOf(sender), this.offset + start, cut);
         }
         catch (error) {
             if (!(error instanceof Fault))
@@ -273,6 +291,13 @@ export class Decoder {
         this.scan = scan;
     }
     // --- events --------------------------------------------------------------------------------
+    /** The bytes that are kept, for events. */
+    sourceOf(sender) {
+        const { data, source } = this;
+        if (source?.data === data && source.codec === sender)
+            return source;
+        return (this.source = new Source(sender, data, this.offset));
+    }
     /** Deliver noise up to `end` by greatest frames, and if it is complete the rest as well. */
     noise(end, isComplete) {
         while (end - this.done >= this.greatest)
@@ -284,6 +309,7 @@ export class Decoder {
         const { done } = this;
         const size = end - done;
         this.done = end;
-        this.events.push(new Invalid(this.offset + done, size, this.data, done, this.name, reason, problem));
+        const source = this.sourceOf(this.search.senders[0]);
+        this.events.push(new Invalid(this.offset + done, size, source, this.name, reason, problem));
     }
 }

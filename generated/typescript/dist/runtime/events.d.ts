@@ -2,7 +2,7 @@
 import type { Cut } from "./candidate.js";
 import type { Reason } from "./errors.js";
 import type { Value } from "./numbers.js";
-import type { MessagePlan } from "./plan.js";
+import type { NamedMessage } from "./plan.js";
 import type { Sender } from "./sender.js";
 /** A valid frame of a known message. */
 export interface MessageEvent<Message = unknown, Parts = unknown> {
@@ -46,48 +46,56 @@ export interface InvalidEvent {
 }
 /** What a decoder yields. */
 export type Event<Message = unknown, Parts = unknown> = MessageEvent<Message, Parts> | UnknownEvent<Parts> | InvalidEvent;
-/** Base of events. The bytes are looked up where they came in, which nobody changes. */
-declare class Span {
+/** Bytes that came in, which nobody changes, and what reads them. Many events have the same. */
+export declare class Source {
+    /** What knows the frames. */
+    readonly codec: Sender;
+    readonly data: Uint8Array;
+    /** Of the first of these bytes, counted from the start of the input. */
     readonly offset: number;
-    readonly size: number;
-    private readonly data;
-    private readonly start;
-    constructor(offset: number, size: number, data: Uint8Array, start: number);
-    get raw(): Uint8Array;
+    constructor(
+    /** What knows the frames. */
+    codec: Sender, data: Uint8Array, 
+    /** Of the first of these bytes, counted from the start of the input. */
+    offset: number);
+    /** The bytes that an event covers. */
+    raw({ offset, size }: {
+        readonly offset: number;
+        readonly size: number;
+    }): Uint8Array;
 }
 /** Values of the parts of a frame that events show. */
 export type PartValues = Readonly<Record<string, Value | undefined>>;
-/** A valid frame. What is seldom asked for is made then. */
-export declare class Framed extends Span {
-    /** What knows the frame. */
-    readonly codec: Sender;
+/** A valid frame. What is seldom asked for is looked up then, so that there is less of each. */
+export declare class Framed {
+    readonly offset: number;
+    readonly size: number;
+    readonly source: Source;
     readonly parts: PartValues;
-    readonly message: unknown;
-    /** The message's; null of an unknown one. */
-    readonly plan: MessagePlan | null;
-    constructor(offset: number, size: number, data: Uint8Array, start: number, 
-    /** What knows the frame. */
-    codec: Sender, parts: PartValues, message: unknown, 
-    /** The message's; null of an unknown one. */
-    plan: MessagePlan | null);
+    readonly message: NamedMessage | null;
+    constructor(offset: number, size: number, source: Source, parts: PartValues, message: NamedMessage | null);
     get kind(): "message" | "unknown";
+    get raw(): Uint8Array;
     get sender(): string;
     get form(): string;
 }
 /** A valid frame whose identity belongs to no message. */
 export declare class UnknownFrame extends Framed {
     readonly payload: Uint8Array;
-    constructor(offset: number, size: number, data: Uint8Array, start: number, codec: Sender, parts: PartValues, payload: Uint8Array);
+    constructor(offset: number, size: number, source: Source, parts: PartValues, payload: Uint8Array);
 }
 /** Bytes that are no frame. */
-export declare class Invalid extends Span {
+export declare class Invalid {
+    readonly offset: number;
+    readonly size: number;
+    private readonly source;
     readonly sender: string;
     readonly reason: Reason;
     readonly problem: string;
     readonly kind = "invalid";
-    constructor(offset: number, size: number, data: Uint8Array, start: number, sender: string, reason: Reason, problem: string);
+    constructor(offset: number, size: number, source: Source, sender: string, reason: Reason, problem: string);
+    get raw(): Uint8Array;
 }
 export type AnyEvent = Framed | Invalid;
 /** The event of a complete frame, with the message of its payload. Throws a Fault. */
-export declare function framed(codec: Sender, cut: Cut, offset: number, data: Uint8Array, start: number, size: number): Framed;
-export {};
+export declare function framed(source: Source, offset: number, { size, values, payload }: Cut): Framed;

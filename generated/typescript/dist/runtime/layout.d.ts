@@ -15,16 +15,11 @@ export declare class Layout {
     /** What stands in front of the payload, and behind it up to the end of the frame. */
     private readonly head;
     private readonly tail;
-    /** The slot of each byte of the head that is the value of one; -1 of others. */
-    private readonly slots;
     /** Where each part begins, and where the last one ends. */
     private readonly spots;
     /** What is stuffed; null where nothing is. */
     private readonly region;
     private readonly steps;
-    /** A length that is a byte in front of the payload, ahead of all steps, and its place. */
-    private sent;
-    private sentAt;
     /** The length that a receiver is told. */
     private readonly told;
     private readonly isPlanned;

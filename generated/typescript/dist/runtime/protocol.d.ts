@@ -1,7 +1,7 @@
 /** The codec of a protocol: encode, decode, and an encoder that counts. */
-import { type GivenParts } from "./assembly.js";
 import { type Framed } from "./events.js";
-import type { Frame } from "./plan.js";
+import { type GivenParts } from "./given.js";
+import type { Frame, NamedMessage } from "./plan.js";
 import { Sender } from "./sender.js";
 import { type Telling } from "./told.js";
 /** Choices of an encoder. */
@@ -21,10 +21,6 @@ export interface DecodeOptions<Name extends string = string> {
     readonly sender?: Name | undefined;
     /** Identities that are not sent, by the names of their parts. */
     readonly told?: Readonly<Record<string, Telling | undefined>> | undefined;
-}
-/** A message: an object with its name. */
-export interface NamedMessage {
-    readonly message: string;
 }
 /** The senders of a protocol. */
 export declare class Protocol {

@@ -3,7 +3,7 @@
 import type { Cut } from "./candidate.js";
 import type { Reason } from "./errors.js";
 import type { Value } from "./numbers.js";
-import type { MessagePlan } from "./plan.js";
+import type { NamedMessage } from "./plan.js";
 import type { Sender } from "./sender.js";
 
 /** A valid frame of a known message. */
@@ -55,50 +55,50 @@ export type Event<Message = unknown, Parts = unknown> =
   | UnknownEvent<Parts>
   | InvalidEvent;
 
-/** Base of events. The bytes are looked up where they came in, which nobody changes. */
-class Span {
+/** Bytes that came in, which nobody changes, and what reads them. Many events have the same. */
+export class Source {
   constructor(
+    /** What knows the frames. */
+    readonly codec: Sender,
+    readonly data: Uint8Array,
+    /** Of the first of these bytes, counted from the start of the input. */
     readonly offset: number,
-    readonly size: number,
-    private readonly data: Uint8Array,
-    private readonly start: number,
   ) {}
 
-  get raw(): Uint8Array {
-    return this.data.subarray(this.start, this.start + this.size);
+  /** The bytes that an event covers. */
+  raw({ offset, size }: { readonly offset: number; readonly size: number }): Uint8Array {
+    const start = offset - this.offset;
+    return this.data.subarray(start, start + size);
   }
 }
 
 /** Values of the parts of a frame that events show. */
 export type PartValues = Readonly<Record<string, Value | undefined>>;
 
-/** A valid frame. What is seldom asked for is made then. */
-export class Framed extends Span {
+/** A valid frame. What is seldom asked for is looked up then, so that there is less of each. */
+export class Framed {
   constructor(
-    offset: number,
-    size: number,
-    data: Uint8Array,
-    start: number,
-    /** What knows the frame. */
-    readonly codec: Sender,
+    readonly offset: number,
+    readonly size: number,
+    readonly source: Source,
     readonly parts: PartValues,
-    readonly message: unknown,
-    /** The message's; null of an unknown one. */
-    readonly plan: MessagePlan | null,
-  ) {
-    super(offset, size, data, start);
-  }
+    readonly message: NamedMessage | null,
+  ) {}
 
   get kind(): "message" | "unknown" {
-    return this.plan ? "message" : "unknown";
+    return this.message ? "message" : "unknown";
+  }
+
+  get raw(): Uint8Array {
+    return this.source.raw(this);
   }
 
   get sender(): string {
-    return this.codec.frame.sender;
+    return this.source.codec.frame.sender;
   }
 
   get form(): string {
-    return this.codec.frame.form;
+    return this.source.codec.frame.form;
   }
 }
 
@@ -107,48 +107,39 @@ export class UnknownFrame extends Framed {
   constructor(
     offset: number,
     size: number,
-    data: Uint8Array,
-    start: number,
-    codec: Sender,
+    source: Source,
     parts: PartValues,
     readonly payload: Uint8Array,
   ) {
-    super(offset, size, data, start, codec, parts, null, null);
+    super(offset, size, source, parts, null);
   }
 }
 
 /** Bytes that are no frame. */
-export class Invalid extends Span {
+export class Invalid {
   readonly kind = "invalid";
 
   constructor(
-    offset: number,
-    size: number,
-    data: Uint8Array,
-    start: number,
+    readonly offset: number,
+    readonly size: number,
+    private readonly source: Source,
     readonly sender: string,
     readonly reason: Reason,
     readonly problem: string,
-  ) {
-    super(offset, size, data, start);
+  ) {}
+
+  get raw(): Uint8Array {
+    return this.source.raw(this);
   }
 }
 
 export type AnyEvent = Framed | Invalid;
 
 /** The event of a complete frame, with the message of its payload. Throws a Fault. */
-export function framed(
-  codec: Sender,
-  cut: Cut,
-  offset: number,
-  data: Uint8Array,
-  start: number,
-  size: number,
-): Framed {
-  const { values, payload } = cut;
+export function framed(source: Source, offset: number, { size, values, payload }: Cut): Framed {
+  const { codec } = source;
   const parts = codec.frame.partsOf(values);
   const group = codec.group(values);
-  if (!group) return new UnknownFrame(offset, size, data, start, codec, parts, payload);
-  const [plan, message] = codec.read(group, payload, values);
-  return new Framed(offset, size, data, start, codec, parts, message, plan);
+  if (!group) return new UnknownFrame(offset, size, source, parts, payload);
+  return new Framed(offset, size, source, parts, codec.read(group, payload, values));
 }

@@ -1,6 +1,6 @@
 /** What generated modules, and those who use them, need. */
 
-export type { GivenParts } from "./assembly.js";
+export type { GivenParts } from "./given.js";
 export { hex, toHex } from "./bytes.js";
 export { crc, fletcher16, sum, xor } from "./checksums.js";
 export { Decoder } from "./decoder.js";
@@ -20,13 +20,13 @@ export {
 } from "./numerals.js";
 export { bitsNumber, characters, digits, number, type Value } from "./numbers.js";
 export { nearest, physical } from "./physical.js";
-export { frame, group, plan, single, type Frame, type HeldParts, type MessagePlan } from "./plan.js";
+export { frame, group, plan, single } from "./plan.js";
+export type { Frame, HeldParts, MessagePlan, NamedMessage } from "./plan.js";
 export {
   Encoder,
   Protocol,
   type DecodeOptions,
   type EncodeOptions,
-  type NamedMessage,
 } from "./protocol.js";
 export { readRun, writeRun } from "./runs.js";
 export { readPayload, writePayload } from "./sender.js";

@@ -2,7 +2,6 @@
 
 import { concatenated } from "./bytes.js";
 import { dueOf } from "./candidate.js";
-import type { Checksum } from "./checksums.js";
 import { EncodeError } from "./errors.js";
 import type { PartNumber, Value } from "./numbers.js";
 import type { Bits, Covered, LengthNumber, Mirror, Part, Place, Single } from "./plan.js";
@@ -36,10 +35,6 @@ export function inside(error: unknown, name: string): unknown {
   return error instanceof EncodeError ? new EncodeError(name, error.problem) : error;
 }
 
-function isByte(number: PartNumber): boolean {
-  return number.isPlain && number.size === 1;
-}
-
 /** Write the number of a part. Throws an EncodeError. */
 export function put(
   number: PartNumber,
@@ -55,15 +50,8 @@ export function put(
   }
 }
 
-/** A checksum over one run of content. */
-interface RunSum {
-  readonly algorithm: Checksum;
-  readonly from: Spot;
-  readonly to: Spot;
-}
-
 /**
- * What gives a value: a slot, a length, a checksum, or anything else.
+ * What gives a value: a slot, a length, or anything else.
  *
  * They are of one class, as a machine is faster where it knows what it calls.
  */
@@ -71,26 +59,18 @@ class Source {
   constructor(
     readonly slot: number,
     readonly length: Length | null = null,
-    private readonly sum: RunSum | null = null,
     private readonly other: ValueOf | null = null,
   ) {}
 
   value(content: Uint8Array, payload: number, values: Values): Value {
-    const { slot, length, sum } = this;
+    const { slot, length } = this;
     if (slot >= 0) return values[slot]!;
-    if (length) return length.of(payload);
-    if (!sum) return this.other!(content, payload, values);
-    const { algorithm, from, to } = sum;
-    return algorithm.compute(
-      content,
-      from.offset + from.moves * payload,
-      to.offset + to.moves * payload,
-    );
+    return length ? length.of(payload) : this.other!(content, payload, values);
   }
 }
 
 function other(value: ValueOf): Source {
-  return new Source(-1, null, null, value);
+  return new Source(-1, null, value);
 }
 
 /** A length in a layout: so many bytes more than the payload. */
@@ -115,23 +95,16 @@ class Length {
 
 /** A part that is put into each frame. */
 class Step {
-  private readonly isByte: boolean;
-
   constructor(
     private readonly name: string,
     private readonly number: PartNumber,
     private readonly source: Source,
     private readonly spot: Spot,
-  ) {
-    this.isByte = isByte(number);
-  }
+  ) {}
 
   make(content: Uint8Array, payload: number, values: Values): void {
-    const { offset, moves } = this.spot;
-    const at = offset + moves * payload;
     const value = this.source.value(content, payload, values);
-    if (this.isByte && typeof value === "number" && value === (value & 0xff)) content[at] = value;
-    else put(this.number, value, content, at, this.name);
+    put(this.number, value, content, spotIn(this.spot, payload), this.name);
   }
 }
 
@@ -140,16 +113,11 @@ export class Layout {
   /** What stands in front of the payload, and behind it up to the end of the frame. */
   private readonly head: Uint8Array;
   private readonly tail: Uint8Array;
-  /** The slot of each byte of the head that is the value of one; -1 of others. */
-  private readonly slots: Int16Array;
   /** Where each part begins, and where the last one ends. */
   private readonly spots: readonly Spot[];
   /** What is stuffed; null where nothing is. */
   private readonly region: readonly [Spot, Spot] | null;
   private readonly steps: Step[] = [];
-  /** A length that is a byte in front of the payload, ahead of all steps, and its place. */
-  private sent: Length | null = null;
-  private sentAt = 0;
   /** The length that a receiver is told. */
   private readonly told: Length | null;
   private readonly isPlanned: boolean[] = [];
@@ -167,7 +135,6 @@ export class Layout {
     }));
     const fixed = concatenated([new Uint8Array(offsets[parts.length]!), end]);
     this.head = fixed.subarray(0, headSize);
-    this.slots = new Int16Array(headSize).fill(-1);
     this.tail = fixed.subarray(headSize);
     this.region = this.regionOf();
     this.told = sender.toldLength && new Length(sender.toldLength, isEmpty);
@@ -184,7 +151,7 @@ export class Layout {
 
   /** The frame around the payload that was written. Throws an EncodeError. */
   wire(writer: Writer, payload: number, values: Values): Uint8Array {
-    const { head, tail, slots, region, steps } = this;
+    const { head, tail, region, steps } = this;
     const { frame, length } = this.sender;
     if (payload > frame.greatestPayload && (length !== null || frame.isBounded)) {
       const problem = `has ${payload} bytes, at most ${frame.greatestPayload} fit`;
@@ -195,11 +162,7 @@ export class Layout {
     writer.room(tail.length);
     const { bytes } = writer;
     this.told?.of(payload);
-    for (let index = 0; index < head.length; index++) {
-      const slot = slots[index]!;
-      bytes[index] = slot < 0 ? head[index]! : (values[slot] as number);
-    }
-    if (this.sent) bytes[this.sentAt] = this.sent.of(payload);
+    for (let index = 0; index < head.length; index++) bytes[index] = head[index]!;
     for (let index = 0; index < tail.length; index++) bytes[behind + index] = tail[index]!;
     for (let index = 0; index < steps.length; index++) {
       steps[index]!.make(bytes, payload, values);
@@ -235,13 +198,7 @@ export class Layout {
     this.isPlanned[index] = true;
     if (part.kind === "literal" || part.kind === "payload") return;
     const [{ name, number }, source] = this.numbered(part);
-    const spot = this.spots[index]!;
-    const isInHead = isByte(number) && !spot.moves;
-    if (isInHead && source.slot >= 0) this.slots[spot.offset] = source.slot;
-    else if (isInHead && source.length && !this.sent && !this.steps.length) {
-      this.sent = source.length;
-      this.sentAt = spot.offset;
-    } else this.steps.push(new Step(name, number, source, spot));
+    this.steps.push(new Step(name, number, source, this.spots[index]!));
   }
 
   /** Plan all parts of a run of content. */
@@ -319,11 +276,6 @@ export class Layout {
 
   private sum(sum: Sum): Source {
     const { algorithm, covers } = sum;
-    const [first] = covers;
-    if (covers.length === 1 && first && "from" in first && !first.stuffed && !sum.isBits) {
-      const [from, to] = this.run(first);
-      return new Source(-1, null, { algorithm, from, to });
-    }
     const pieces = covers.map((covered) => this.covered(covered, sum.name));
     return other((content, payload, values) => {
       const joined = concatenated(pieces.map((piece) => piece(content, payload, values)));

@@ -5,10 +5,9 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from ctypes import c_float
 from fractions import Fraction
 from functools import lru_cache
-from math import copysign, inf, isfinite, nextafter
+from math import copysign, inf, isfinite
 
 import msgspec
 
@@ -23,6 +22,7 @@ from protogen.c_language.numbers import (
 )
 from protogen.copying import replace
 from protogen.model.expressions import ArithmeticOperator
+from protogen.model.floats import float_within
 from protogen.model.payload_plan import FloatStep
 from protogen.model.types import Float, NumberType, is_text, storage_bits
 from protogen.targets.c.lines import Lines, function
@@ -269,8 +269,8 @@ class Helpers:
         body = _FLOAT64_ORDER.format(bits=self.bits_of_float(type_), top=hexadecimal(1 << 63))
         value = f"{self.float_type(type_)} value"
         order = self.helper("float64_order", "uint64_t", (value,), body)
-        low = -inf if least is None else _nearest(least, 64, up=True)
-        high = inf if greatest is None else _nearest(greatest, 64, up=False)
+        low = -inf if least is None else float_within(least, 64, up=True)
+        high = inf if greatest is None else float_within(greatest, 64, up=False)
         bounds = _order_of(low or -0.0), _order_of(high or 0.0)
         return [
             f"{order}({expression}) {sign} {hexadecimal(bound, 16)}"
@@ -388,31 +388,12 @@ def _written(type_: NumberType, call: str) -> Iterator[str]:
 # --- floats ---------------------------------------------------------------------------------------
 
 
-def _nearest(bound: Fraction, bits: int, *, up: bool) -> float:
-    """The float that is nearest to a bound, but not beyond it."""
-    value = float(bound) if bits == 64 else c_float(float(bound)).value
-    while isfinite(value) and (value < bound if up else value > bound):
-        value = _next(value, bits, inf if up else -inf)
-    return value
-
-
-def _next(value: float, bits: int, towards: float) -> float:
-    if bits == 64:
-        return nextafter(value, towards)
-    if value == 0:
-        return copysign(2.0**-149, towards)
-    pattern = struct.unpack("<i", struct.pack("<f", value))[0]
-    pattern += 1 if (value > 0) == (towards > 0) else -1
-    found: float = struct.unpack("<f", struct.pack("<i", pattern))[0]
-    return found
-
-
 def _float_literal(bound: Fraction, *, up: bool) -> str:
     """The number that a float is compared with.
 
     The cast makes it a float also where constants have more digits than their type.
     """
-    value = _nearest(bound, 32, up=up)
+    value = float_within(bound, 32, up=up)
     if not isfinite(value):
         value = copysign((2 - 2**-23) * 2.0**127, value)
     text = f"{value:.9g}"

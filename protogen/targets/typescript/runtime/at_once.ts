@@ -7,7 +7,7 @@
 
 import { hasHighBit, NO_BYTES } from "./bytes.js";
 import { Fault } from "./errors.js";
-import { Framed, type PartValues } from "./events.js";
+import { Framed, Source, type PartValues } from "./events.js";
 import { holds } from "./plan.js";
 import type { Frame, Group, Runs, TakeWhole } from "./plan.js";
 import { Reader } from "./reader.js";
@@ -24,31 +24,42 @@ export class AtOnce {
   /** The same, for numbers of several bytes. */
   view: DataView;
   private at = 0;
-  private offset = 0;
+  private source: Source;
   private readonly isStuffed: boolean;
   private readonly reader = new Reader(NO_BYTES);
   private readonly frame: Frame;
-  private readonly groups: ReadonlyMap<number, Group>;
+  /** Groups by the numbers of identities: those of small ones, and those of others. */
+  private readonly near: (Group | undefined)[] = [];
+  private readonly far = new Map<number, Group>();
   /** Bytes that may end a start or an end inside the frame. */
   private readonly marks: Uint8Array;
 
   constructor(
-    private readonly sender: Sender,
+    readonly sender: Sender,
     private readonly whole: TakeWhole,
   ) {
     const { frame } = sender;
     this.frame = frame;
+    this.source = new Source(sender, NO_BYTES, 0);
     this.isStuffed = frame.transparency !== null;
     this.content = new Uint8Array(frame.greatest + 1);
     this.content.set(frame.startBytes);
     this.view = new DataView(this.content.buffer);
-    this.groups = plainGroups(sender);
+    for (const [identity, group] of plainGroups(sender)) {
+      if (identity >= NEAR) this.far.set(identity, group);
+      else {
+        while (this.near.length < identity) this.near.push(undefined);
+        this.near[identity] = group;
+      }
+    }
     this.marks = marksOf(sender);
   }
 
   /** Take frames from a start on, one behind another; the place behind the last one. */
-  take(data: Uint8Array, size: number, start: number, offset: number, events: unknown[]): number {
-    if (this.data !== data) {
+  take(source: Source, size: number, start: number, events: unknown[]): number {
+    if (this.source !== source) {
+      const { data } = source;
+      this.source = source;
       this.data = data;
       if (!this.isStuffed) {
         this.content = data;
@@ -56,7 +67,6 @@ export class AtOnce {
       }
     }
     this.size = size;
-    this.offset = offset;
     this.at = start;
     try {
       for (let event; this.at < size && (event = this.whole(this, this.at)); ) {
@@ -90,7 +100,7 @@ export class AtOnce {
 
   /** The messages of an identity, which is the number of all its parts; undefined: look further. */
   group(identity: number): Group | undefined {
-    return this.groups.get(identity);
+    return identity < this.near.length ? this.near[identity] : this.far.get(identity);
   }
 
   /** The event of the frame up to a place, with such a payload. Throws a Fault. */
@@ -101,15 +111,17 @@ export class AtOnce {
     to: number,
     behind: number,
   ): Framed | null {
-    const { at, reader } = this;
+    const { at, reader, source } = this;
     const size = behind - at;
     if (!group || size > this.frame.givenUpAt || !holds(group.carried[0]!, to - from)) return null;
-    const plan = group.messages[0]!;
-    const message = plan.read(reader.restart(this.content, from, to));
+    const message = group.messages[0]!.read(reader.restart(this.content, from, to));
     reader.finish();
-    return new Framed(this.offset + at, size, this.data, at, this.sender, parts, message, plan);
+    return new Framed(source.offset + at, size, source, parts, message);
   }
 }
+
+/** Identities below it are looked up in an array, which is faster. */
+const NEAR = 4096;
 
 /** As many identities of a message are listed at most. */
 const LISTED = 256;

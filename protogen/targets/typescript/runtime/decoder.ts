@@ -3,7 +3,7 @@
 import { AtOnce } from "./at_once.js";
 import { Cut, Failure, type Verdict } from "./candidate.js";
 import { Fault, type Reason } from "./errors.js";
-import { framed, Framed, Invalid, type AnyEvent, type Event } from "./events.js";
+import { framed, Framed, Invalid, Source, type AnyEvent, type Event } from "./events.js";
 import { Search, type Judge } from "./search.js";
 import type { Sender } from "./sender.js";
 import type { Telling } from "./told.js";
@@ -27,6 +27,8 @@ export class Decoder<Message = unknown, Parts = unknown> {
   private readonly atOnce: AtOnce | null;
   private readonly shares: boolean;
   private readonly greatest: number;
+  /** Zeros behind the bytes that came in, as a generated function may look beyond these. */
+  private readonly ahead: number;
   private readonly isAnywhere: boolean;
   /** True if noise has to go where it and a candidate are longer than a frame. */
   private readonly keepsOne: boolean;
@@ -36,6 +38,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
   private size = 0;
   /** Offset of the first of these bytes in the input. */
   private offset = 0;
+  private source: Source | null = null;
   // Places in these bytes:
   /** All in front of it is delivered. */
   private done = 0;
@@ -43,6 +46,8 @@ export class Decoder<Message = unknown, Parts = unknown> {
   private scan = 0;
   /** The candidate has taken all in front of it. */
   private pushed = 0;
+  /** Bytes of the frame there that were tried at once. */
+  private tried = 0;
   private candidate: Judge | null = null;
   /** The candidate's, until the next start is known. */
   private failure: Failure | null = null;
@@ -62,6 +67,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
     this.atOnce = whole && senders.length === 1 ? new AtOnce(first, whole) : null;
     this.shares = first.frame.sharesDelimiter;
     this.greatest = Math.max(...senders.map((sender) => sender.frame.greatest));
+    this.ahead = this.atOnce ? 2 * this.greatest : 0;
     this.isAnywhere = first.frame.start === "anywhere";
     this.keepsOne = this.isAnywhere && !first.frame.endsIdle;
   }
@@ -121,7 +127,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
 
   /** Keep the bytes, behind those that are there. */
   private append(chunk: Uint8Array): void {
-    if (this.size + chunk.length > this.data.length) this.move(chunk.length);
+    if (this.size + chunk.length > this.data.length - this.ahead) this.move(chunk.length);
     this.data.set(chunk, this.size);
     this.size += chunk.length;
   }
@@ -131,7 +137,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
     // The bytes stay where they are, for the events.
     const passed = Math.max(0, this.done - this.search.starts.context);
     const left = this.data.subarray(passed, this.size);
-    this.data = new Uint8Array(Math.max(LEAST_ROOM, 2 * left.length + more));
+    this.data = new Uint8Array(Math.max(LEAST_ROOM, 2 * left.length + more) + this.ahead);
     this.data.set(left);
     this.size = left.length;
     this.offset += passed;
@@ -153,7 +159,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
     while (goesOn) {
       if (this.failure) goesOn = this.resume(this.failure, final);
       else if (this.candidate) goesOn = this.take(this.candidate, final);
-      else if (this.whole?.isWaiting) goesOn = this.takeWhole(this.whole, final);
+      else if (this.whole?.isWaiting) goesOn = this.goOn(this.whole, final);
       else goesOn = this.seek(final);
     }
   }
@@ -180,6 +186,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
     this.isFresh = false;
     if (!this.isAnywhere) this.noise(start, true);
     this.scan = this.pushed = start;
+    this.tried = this.size - start;
     if (this.atOnce && this.takeAtOnce(this.atOnce)) return true;
     if (this.whole) {
       this.whole.begin();
@@ -189,16 +196,30 @@ export class Decoder<Message = unknown, Parts = unknown> {
     return true;
   }
 
+  /** Take more of a frame, of which most often the rest has come. */
+  private goOn(whole: WholeFrames, final: boolean): boolean {
+    const there = this.size - this.scan;
+    // One that comes in small pieces is not begun anew with each of them.
+    if (this.atOnce && there >= 2 * this.tried) {
+      this.tried = there;
+      if (this.takeAtOnce(this.atOnce)) {
+        whole.isWaiting = false;
+        return true;
+      }
+    }
+    return this.takeWhole(whole, final);
+  }
+
   /** Take the frames that are there, one behind another. False: there is none. */
   private takeAtOnce(atOnce: AtOnce): boolean {
-    const { data, size, scan, offset, events } = this;
-    this.done = this.scan = atOnce.take(data, size, scan, offset, events);
+    const { size, scan, events } = this;
+    this.done = this.scan = atOnce.take(this.sourceOf(atOnce.sender), size, scan, events);
     return this.scan > scan;
   }
 
   /** Take the frame there if it is plainly one, or as much of it as has come. */
   private takeWhole(whole: WholeFrames, final: boolean): boolean {
-    const event = whole.take(this.data, this.size, this.scan, this.offset);
+    const event = whole.take(this.sourceOf(whole.sender), this.size, this.scan);
     if (event) {
       this.events.push(event);
       this.done = this.scan += event.size;
@@ -249,7 +270,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
     let event: Framed;
     const start = this.scan;
     try {
-      event = framed(sender, cut, this.offset + start, this.data, start, cut.size);
+      event = framed(this.sourceOf(sender), this.offset + start, cut);
     } catch (error) {
       if (!(error instanceof Fault)) throw error;
       return new Failure(cut.size, error);
@@ -294,6 +315,13 @@ export class Decoder<Message = unknown, Parts = unknown> {
 
   // --- events --------------------------------------------------------------------------------
 
+  /** The bytes that are kept, for events. */
+  private sourceOf(sender: Sender): Source {
+    const { data, source } = this;
+    if (source?.data === data && source.codec === sender) return source;
+    return (this.source = new Source(sender, data, this.offset));
+  }
+
   /** Deliver noise up to `end` by greatest frames, and if it is complete the rest as well. */
   private noise(end: number, isComplete: boolean): void {
     while (end - this.done >= this.greatest) this.invalid(this.done + this.greatest, "noise", "");
@@ -304,8 +332,7 @@ export class Decoder<Message = unknown, Parts = unknown> {
     const { done } = this;
     const size = end - done;
     this.done = end;
-    this.events.push(
-      new Invalid(this.offset + done, size, this.data, done, this.name, reason, problem),
-    );
+    const source = this.sourceOf(this.search.senders[0]!);
+    this.events.push(new Invalid(this.offset + done, size, source, this.name, reason, problem));
   }
 }

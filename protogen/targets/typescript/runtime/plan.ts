@@ -1,9 +1,10 @@
 /** What a generated module says of a sender: its frame, as the compiler worked it out. */
 
-import type { Counts, FrameMaker, GivenParts } from "./assembly.js";
+import type { FrameMaker } from "./assembly.js";
 import type { AtOnce } from "./at_once.js";
 import type { Checksum } from "./checksums.js";
 import type { Framed, PartValues } from "./events.js";
+import type { Counts, GivenParts } from "./given.js";
 import type { PartNumber, Value } from "./numbers.js";
 import type { Reader } from "./reader.js";
 import type { Transparency } from "./transparency.js";
@@ -191,8 +192,13 @@ export function ownOf<T>(given: Readonly<Record<string, T>>, name: string): T | 
 /** None of them. */
 export const NO_PARTS: HeldParts = {};
 
+/** A message: an object with its name. */
+export interface NamedMessage {
+  readonly message: string;
+}
+
 /** A message: how its payload is read and written. */
-export interface MessagePlan<M = unknown> {
+export interface MessagePlan<M = NamedMessage> {
   readonly name: string;
   readonly identities: Runs;
   readonly sizes: Sizes;

@@ -1,12 +1,13 @@
 /** The codec of a protocol: encode, decode, and an encoder that counts. */
 
-import { makerOf, type Counts, type GivenParts } from "./assembly.js";
+import { makerOf } from "./assembly.js";
 import { standsAt } from "./bytes.js";
 import { Candidate, Failure, verdictOn, type ToldValues } from "./candidate.js";
 import { DecodeError, EncodeError, Fault } from "./errors.js";
-import { framed, type Framed } from "./events.js";
+import { framed, Source, type Framed } from "./events.js";
+import { NONE_GIVEN, type Counts, type GivenParts } from "./given.js";
 import type { Value } from "./numbers.js";
-import type { Frame } from "./plan.js";
+import type { Frame, NamedMessage } from "./plan.js";
 import { Sender } from "./sender.js";
 import { Told, type Telling } from "./told.js";
 
@@ -28,11 +29,6 @@ export interface DecodeOptions<Name extends string = string> {
   readonly sender?: Name | undefined;
   /** Identities that are not sent, by the names of their parts. */
   readonly told?: Readonly<Record<string, Telling | undefined>> | undefined;
-}
-
-/** A message: an object with its name. */
-export interface NamedMessage {
-  readonly message: string;
 }
 
 /** Makes the frames of a message. */
@@ -80,7 +76,6 @@ class Choice {
 }
 
 const NO_OPTIONS = {};
-const NO_PARTS: GivenParts = {};
 
 /** The senders of a protocol. */
 export class Protocol {
@@ -132,13 +127,13 @@ export class Protocol {
   /** The message of exactly one frame. Throws a DecodeError. Modules know its type. */
   decode(frame: Uint8Array, options: DecodeOptions = {}): any {
     const event = this.read(frame, options);
-    if (!event.plan) throw new DecodeError("unknown", "no message has this identity");
+    if (!event.message) throw new DecodeError("unknown", "no message has this identity");
     return event.message;
   }
 
   /** The frame of a message. Throws an EncodeError. */
   encode(message: NamedMessage, options: EncodeOptions<object> = NO_OPTIONS): Uint8Array {
-    const { parts = NO_PARTS, strict = true } = options;
+    const { parts = NONE_GIVEN, strict = true } = options;
     return this.maker(message, options).make(message, parts as GivenParts, strict, null);
   }
 
@@ -201,7 +196,7 @@ function readAs(sender: Sender, data: Uint8Array, told: ToldValues): Framed {
     throw new DecodeError("size", problem, verdict.size);
   }
   try {
-    return framed(sender, verdict, 0, data.slice(), 0, data.length);
+    return framed(new Source(sender, data.slice(), 0), 0, verdict);
   } catch (error) {
     if (!(error instanceof Fault)) throw error;
     const place = Math.min(error.offset, verdict.payload.length);
@@ -247,7 +242,7 @@ export class Encoder<Message extends NamedMessage = NamedMessage, Parts = GivenP
       maker = this.maker(name, form);
       if (form === undefined) this.known.set(name, maker);
     }
-    const parts = (options.parts ?? NO_PARTS) as GivenParts;
+    const parts = (options.parts ?? NONE_GIVEN) as GivenParts;
     return maker.make(message, parts, strict, this.counts);
   }
 

@@ -5,7 +5,7 @@ import { EncodeError, Fault } from "./errors.js";
 import type { PartNumber, Value } from "./numbers.js";
 import { areAmong, holds, NO_PARTS } from "./plan.js";
 import type { Frame, Group, HeldParts, LengthNumber, MessagePlan } from "./plan.js";
-import type { NumberPart, Part, Runs, ValueNumber } from "./plan.js";
+import type { NamedMessage, NumberPart, Part, Runs, ValueNumber } from "./plan.js";
 import { Reader } from "./reader.js";
 import { Writer } from "./writer.js";
 
@@ -193,12 +193,12 @@ export class Sender {
     return this.frame.isCut && message.tellsItsEnd && size > message.sizes.least;
   }
 
-  /** The message of a frame's payload and values, and its plan. Throws a Fault. */
+  /** The message of a frame's payload and values. Throws a Fault. */
   read(
     group: Group,
     payload: Uint8Array,
     values: readonly (Value | undefined)[],
-  ): readonly [MessagePlan, unknown] {
+  ): NamedMessage {
     const [first] = group.messages as readonly [MessagePlan];
     let known = payload;
     if (this.leaves(first, payload.length)) {
@@ -208,7 +208,7 @@ export class Sender {
       known = this.fitted(payload, sizes.size === 1 ? first.known : null);
     }
     const fitting = group.messages.find((message) => holds(message.sizes, known.length)) ?? first;
-    return [fitting, readPayload(fitting, known, this.held(fitting, values))];
+    return readPayload(fitting, known, this.held(fitting, values));
   }
 
   /** The bytes of a message's payload that an encoder puts into a frame. */
@@ -226,11 +226,11 @@ export class Sender {
 }
 
 /** The message of a payload's bytes; `held` has the parts that are fields. Throws a Fault. */
-export function readPayload(
-  message: MessagePlan,
+export function readPayload<M>(
+  message: MessagePlan<M>,
   payload: Uint8Array,
   held: HeldParts = NO_PARTS,
-): unknown {
+): M {
   const size = payload.length;
   if (!holds(message.sizes, size)) {
     const problem = `${message.name} does not have ${size} bytes of payload`;

@@ -91,7 +91,7 @@ export class Told {
 
   /** Take a frame: what was told may hold no more, and it may tell something itself. */
   passFrame(event: Framed): void {
-    for (const part of event.codec.frame.told) {
+    for (const part of event.source.codec.frame.told) {
       const following = this.following.get(part.name) ?? [];
       if (following.length || part.once) {
         this.values.set(part.name, following.shift() ?? part.default);
@@ -114,8 +114,8 @@ export class Told {
 }
 
 /** The number of a part that was sent. */
-function ofPart(name: string, { codec, parts }: Framed): readonly number[] | null {
-  const { shown, told } = codec.frame;
+function ofPart(name: string, { source, parts }: Framed): readonly number[] | null {
+  const { shown, told } = source.codec.frame;
   const isTold = told.some((part) => part.name === name);
   const part = isTold ? undefined : shown.find((item) => item.name === name);
   const value = part && parts[part.key];
@@ -124,10 +124,10 @@ function ofPart(name: string, { codec, parts }: Framed): readonly number[] | nul
 
 function ofField(
   teller: { readonly message: string; readonly name: string },
-  { plan, message }: Framed,
+  { message }: Framed,
 ): readonly number[] | null {
-  if (plan?.name !== teller.message) return null;
-  const value = (message as Record<string, unknown>)[teller.name];
+  if (message?.message !== teller.message) return null;
+  const value = (message as unknown as Record<string, unknown>)[teller.name];
   if (value === null || value === undefined) return null;
   return Array.isArray(value) ? value.map(Number) : [Number(value)];
 }

@@ -10,7 +10,7 @@ import { concatenated, equal, hasHighBit, NO_BYTES, standsAt } from "./bytes.js"
 import { Cut, sumIsRight } from "./candidate.js";
 import { mayBe } from "./content.js";
 import { Fault } from "./errors.js";
-import { framed, Framed } from "./events.js";
+import { framed, Framed, type Source } from "./events.js";
 import type { Value } from "./numbers.js";
 import { at as placeAt, holds } from "./plan.js";
 import type { Covered, Frame, Group, NumberPart, Place, Sum } from "./plan.js";
@@ -69,7 +69,7 @@ export class WholeFrames {
   private values: (Value | undefined)[] = [];
   private group: Group | undefined;
 
-  private constructor(private readonly sender: Sender) {
+  private constructor(readonly sender: Sender) {
     const { frame } = sender;
     this.frame = frame;
     this.transparency = frame.transparency;
@@ -119,7 +119,8 @@ export class WholeFrames {
   }
 
   /** The event of the frame there; null: it is not all there yet, or a candidate has to look. */
-  take(data: Uint8Array, size: number, at: number, offset: number): Framed | null {
+  take(source: Source, size: number, at: number): Framed | null {
+    const { data } = source;
     this.isWaiting = false;
     try {
       const end = this.reach(data, size, at);
@@ -127,7 +128,7 @@ export class WholeFrames {
         this.isWaiting &&= size - at < this.frame.givenUpAt;
         return null;
       }
-      return end - at > this.frame.givenUpAt ? null : this.event(data, at, end, offset + at);
+      return end - at > this.frame.givenUpAt ? null : this.event(source, at, end);
     } catch (error) {
       this.isWaiting = false;
       if (error instanceof Fault) return null;
@@ -293,7 +294,9 @@ export class WholeFrames {
   // --- the complete frame --------------------------------------------------------------------
 
   /** The event of the frame; null where it is not right. Throws a Fault. */
-  private event(data: Uint8Array, at: number, end: number, offset: number): Framed | null {
+  private event(source: Source, at: number, end: number): Framed | null {
+    const { data } = source;
+    const offset = source.offset + at;
     const { group, values, sender, payload } = this;
     const { frame } = sender;
     const isPlain = !this.transparency;
@@ -308,14 +311,12 @@ export class WholeFrames {
     if (!isPlain && frame.sevenBit && hasHighBit(bytes, start, behind)) return null;
     const only = group && group.messages.length === 1 && !sender.isFitted ? group.messages[0]! : null;
     if (!only || !holds(only.sizes, payload)) {
-      const cut = new Cut(size, values, bytes.slice(start, behind));
-      return framed(sender, cut, offset, data, at, size);
+      return framed(source, offset, new Cut(size, values, bytes.slice(start, behind)));
     }
     const reader = this.reader.restart(bytes, start, behind, sender.held(only, values));
     const message = only.read(reader);
     reader.finish();
-    const parts = frame.partsOf(values);
-    return new Framed(offset, size, data, at, sender, parts, message, only);
+    return new Framed(offset, size, source, frame.partsOf(values), message);
   }
 
   private isRight(sum: Sum, run: Run | undefined, bytes: Uint8Array, base: number): boolean {

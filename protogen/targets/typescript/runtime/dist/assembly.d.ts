@@ -1,36 +1,10 @@
 /** Frames from their parts: what is always the same, and what each frame has anew. */
-import { EncodeError } from "./errors.js";
+import { GivenPart, type Counts, type GivenParts } from "./given.js";
 import { Layout, type Values } from "./layout.js";
 import type { Value } from "./numbers.js";
-import type { MessagePlan, ValueNumber } from "./plan.js";
+import type { MessagePlan } from "./plan.js";
 import { type Sender } from "./sender.js";
 import type { Writer } from "./writer.js";
-/** Values of parts by their names, as callers give them. */
-export type GivenParts = Readonly<Record<string, unknown>>;
-/** The next values of counters, by their names. */
-export type Counts = Map<string, Value>;
-/** A part whose value callers may give, or have to. */
-declare class GivenPart {
-    private readonly part;
-    readonly name: string;
-    readonly slot: number;
-    /** True if every object has something by its name. */
-    private readonly isInherited;
-    /** Bounds of the numbers that need no other check; there are none where it is no number. */
-    private readonly least;
-    private readonly greatest;
-    constructor(part: ValueNumber);
-    /** What a caller gives for it. */
-    own(given: GivenParts): unknown;
-    /** The value of what a caller gives. Throws an EncodeError. */
-    given(own: unknown, strict: boolean): Value;
-    /** The value where a caller gives none; null where there has to be one. */
-    usual(counts: Counts | null): Value | null;
-    /** The error where there is no value. */
-    error(): EncodeError;
-    /** Go on counting, where the callers gave no value. */
-    count(given: GivenParts, counts: Counts): void;
-}
 /** What makes the frames of a sender, one after another. */
 declare class Assembly {
     readonly sender: Sender;
@@ -92,6 +66,8 @@ export declare class FrameMaker {
     number(value: unknown, least: number, greatest: number): number;
     /** The checksum of some bytes. */
     sum(bytes: Uint8Array, from: number, to: number): number;
+    /** The frame of content whose payload ends there, with its region stuffed. */
+    stuffed(writer: Writer, end: number): Uint8Array;
     /** True if a decoder could take a frame of a given identity for another one. */
     private checkIdentity;
 }

@@ -6,7 +6,7 @@
  */
 import { hasHighBit, NO_BYTES } from "./bytes.js";
 import { Fault } from "./errors.js";
-import { Framed } from "./events.js";
+import { Framed, Source } from "./events.js";
 import { holds } from "./plan.js";
 import { Reader } from "./reader.js";
 /** A place in some input, for a generated function. Its methods say if all is well so far. */
@@ -19,20 +19,33 @@ export class AtOnce {
         /** The bytes of it that are there. */
         this.size = 0;
         this.at = 0;
-        this.offset = 0;
         this.reader = new Reader(NO_BYTES);
+        /** Groups by the numbers of identities: those of small ones, and those of others. */
+        this.near = [];
+        this.far = new Map();
         const { frame } = sender;
         this.frame = frame;
+        this.source = new Source(sender, NO_BYTES, 0);
         this.isStuffed = frame.transparency !== null;
         this.content = new Uint8Array(frame.greatest + 1);
         this.content.set(frame.startBytes);
         this.view = new DataView(this.content.buffer);
-        this.groups = plainGroups(sender);
+        for (const [identity, group] of plainGroups(sender)) {
+            if (identity >= NEAR)
+                this.far.set(identity, group);
+            else {
+                while (this.near.length < identity)
+                    this.near.push(undefined);
+                this.near[identity] = group;
+            }
+        }
         this.marks = marksOf(sender);
     }
     /** Take frames from a start on, one behind another; the place behind the last one. */
-    take(data, size, start, offset, events) {
-        if (this.data !== data) {
+    take(source, size, start, events) {
+        if (this.source !== source) {
+            const { data } = source;
+            this.source = source;
             this.data = data;
             if (!this.isStuffed) {
                 this.content = data;
@@ -40,7 +53,6 @@ export class AtOnce {
             }
         }
         this.size = size;
-        this.offset = offset;
         this.at = start;
         try {
             for (let event; this.at < size && (event = this.whole(this, this.at));) {
@@ -73,20 +85,21 @@ export class AtOnce {
     }
     /** The messages of an identity, which is the number of all its parts; undefined: look further. */
     group(identity) {
-        return this.groups.get(identity);
+        return identity < this.near.length ? this.near[identity] : this.far.get(identity);
     }
     /** The event of the frame up to a place, with such a payload. Throws a Fault. */
     event(parts, group, from, to, behind) {
-        const { at, reader } = this;
+        const { at, reader, source } = this;
         const size = behind - at;
         if (!group || size > this.frame.givenUpAt || !holds(group.carried[0], to - from))
             return null;
-        const plan = group.messages[0];
-        const message = plan.read(reader.restart(this.content, from, to));
+        const message = group.messages[0].read(reader.restart(this.content, from, to));
         reader.finish();
-        return new Framed(this.offset + at, size, this.data, at, this.sender, parts, message, plan);
+        return new Framed(source.offset + at, size, source, parts, message);
     }
 }
+/** Identities below it are looked up in an array, which is faster. */
+const NEAR = 4096;
 /** As many identities of a message are listed at most. */
 const LISTED = 256;
 /** The groups of one message that needs nothing but its payload, by the number of the identity. */

@@ -1,63 +1,71 @@
 /** Events of a decoder: each covers some bytes of the input, and all of them cover all of it. */
-/** Base of events. The bytes are looked up where they came in, which nobody changes. */
-class Span {
-    constructor(offset, size, data, start) {
-        this.offset = offset;
-        this.size = size;
+/** Bytes that came in, which nobody changes, and what reads them. Many events have the same. */
+export class Source {
+    constructor(
+    /** What knows the frames. */
+    codec, data, 
+    /** Of the first of these bytes, counted from the start of the input. */
+    offset) {
+        this.codec = codec;
         this.data = data;
-        this.start = start;
+        this.offset = offset;
     }
-    get raw() {
-        return this.data.subarray(this.start, this.start + this.size);
+    /** The bytes that an event covers. */
+    raw({ offset, size }) {
+        const start = offset - this.offset;
+        return this.data.subarray(start, start + size);
     }
 }
-/** A valid frame. What is seldom asked for is made then. */
-export class Framed extends Span {
-    constructor(offset, size, data, start, 
-    /** What knows the frame. */
-    codec, parts, message, 
-    /** The message's; null of an unknown one. */
-    plan) {
-        super(offset, size, data, start);
-        this.codec = codec;
+/** A valid frame. What is seldom asked for is looked up then, so that there is less of each. */
+export class Framed {
+    constructor(offset, size, source, parts, message) {
+        this.offset = offset;
+        this.size = size;
+        this.source = source;
         this.parts = parts;
         this.message = message;
-        this.plan = plan;
     }
     get kind() {
-        return this.plan ? "message" : "unknown";
+        return this.message ? "message" : "unknown";
+    }
+    get raw() {
+        return this.source.raw(this);
     }
     get sender() {
-        return this.codec.frame.sender;
+        return this.source.codec.frame.sender;
     }
     get form() {
-        return this.codec.frame.form;
+        return this.source.codec.frame.form;
     }
 }
 /** A valid frame whose identity belongs to no message. */
 export class UnknownFrame extends Framed {
-    constructor(offset, size, data, start, codec, parts, payload) {
-        super(offset, size, data, start, codec, parts, null, null);
+    constructor(offset, size, source, parts, payload) {
+        super(offset, size, source, parts, null);
         this.payload = payload;
     }
 }
 /** Bytes that are no frame. */
-export class Invalid extends Span {
-    constructor(offset, size, data, start, sender, reason, problem) {
-        super(offset, size, data, start);
+export class Invalid {
+    constructor(offset, size, source, sender, reason, problem) {
+        this.offset = offset;
+        this.size = size;
+        this.source = source;
         this.sender = sender;
         this.reason = reason;
         this.problem = problem;
         this.kind = "invalid";
     }
+    get raw() {
+        return this.source.raw(this);
+    }
 }
 /** The event of a complete frame, with the message of its payload. Throws a Fault. */
-export function framed(codec, cut, offset, data, start, size) {
-    const { values, payload } = cut;
+export function framed(source, offset, { size, values, payload }) {
+    const { codec } = source;
     const parts = codec.frame.partsOf(values);
     const group = codec.group(values);
     if (!group)
-        return new UnknownFrame(offset, size, data, start, codec, parts, payload);
-    const [plan, message] = codec.read(group, payload, values);
-    return new Framed(offset, size, data, start, codec, parts, message, plan);
+        return new UnknownFrame(offset, size, source, parts, payload);
+    return new Framed(offset, size, source, parts, codec.read(group, payload, values));
 }

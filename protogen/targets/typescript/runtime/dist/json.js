@@ -45,8 +45,8 @@ export function jsonLine(event) {
         member("size", String(found.size)),
         member("event", JSON.stringify(found.kind)),
     ];
-    if (found instanceof Framed && found.plan) {
-        members.push(member("message", JSON.stringify(found.plan.name)));
+    if (found instanceof Framed && found.message) {
+        members.push(member("message", JSON.stringify(found.message.message)));
     }
     if (found.sender)
         members.push(member("sender", JSON.stringify(found.sender)));
@@ -72,11 +72,13 @@ function fieldsOf(message) {
     return fields;
 }
 function givesBack(event) {
-    const parts = Object.fromEntries(event.codec.frame.shown.map((part) => [part.name, event.parts[part.key]]));
+    const { codec } = event.source;
+    const parts = Object.fromEntries(codec.frame.shown.map((part) => [part.name, event.parts[part.key]]));
     try {
+        const { message } = event;
         const wire = event instanceof UnknownFrame
-            ? unknownFrameOf(event.codec, event.payload, parts)
-            : makerOf(event.codec, event.plan).make(event.message, parts, false);
+            ? unknownFrameOf(codec, event.payload, parts)
+            : makerOf(codec, codec.named(message.message)).make(message, parts, false);
         return equal(wire, event.raw);
     }
     catch (error) {

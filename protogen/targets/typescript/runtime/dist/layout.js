@@ -10,9 +10,6 @@ function spotIn({ offset, moves }, payload) {
 export function inside(error, name) {
     return error instanceof EncodeError ? new EncodeError(name, error.problem) : error;
 }
-function isByte(number) {
-    return number.isPlain && number.size === 1;
-}
 /** Write the number of a part. Throws an EncodeError. */
 export function put(number, value, out, at, name) {
     try {
@@ -23,31 +20,25 @@ export function put(number, value, out, at, name) {
     }
 }
 /**
- * What gives a value: a slot, a length, a checksum, or anything else.
+ * What gives a value: a slot, a length, or anything else.
  *
  * They are of one class, as a machine is faster where it knows what it calls.
  */
 class Source {
-    constructor(slot, length = null, sum = null, other = null) {
+    constructor(slot, length = null, other = null) {
         this.slot = slot;
         this.length = length;
-        this.sum = sum;
         this.other = other;
     }
     value(content, payload, values) {
-        const { slot, length, sum } = this;
+        const { slot, length } = this;
         if (slot >= 0)
             return values[slot];
-        if (length)
-            return length.of(payload);
-        if (!sum)
-            return this.other(content, payload, values);
-        const { algorithm, from, to } = sum;
-        return algorithm.compute(content, from.offset + from.moves * payload, to.offset + to.moves * payload);
+        return length ? length.of(payload) : this.other(content, payload, values);
     }
 }
 function other(value) {
-    return new Source(-1, null, null, value);
+    return new Source(-1, null, value);
 }
 /** A length in a layout: so many bytes more than the payload. */
 class Length {
@@ -71,16 +62,10 @@ class Step {
         this.number = number;
         this.source = source;
         this.spot = spot;
-        this.isByte = isByte(number);
     }
     make(content, payload, values) {
-        const { offset, moves } = this.spot;
-        const at = offset + moves * payload;
         const value = this.source.value(content, payload, values);
-        if (this.isByte && typeof value === "number" && value === (value & 0xff))
-            content[at] = value;
-        else
-            put(this.number, value, content, at, this.name);
+        put(this.number, value, content, spotIn(this.spot, payload), this.name);
     }
 }
 /** How frames of a sender are put together, those with a payload or those with an empty one. */
@@ -89,9 +74,6 @@ export class Layout {
         this.sender = sender;
         this.isEmpty = isEmpty;
         this.steps = [];
-        /** A length that is a byte in front of the payload, ahead of all steps, and its place. */
-        this.sent = null;
-        this.sentAt = 0;
         this.isPlanned = [];
         const { frame } = sender;
         const { parts, headSize, end } = frame;
@@ -102,7 +84,6 @@ export class Layout {
         }));
         const fixed = concatenated([new Uint8Array(offsets[parts.length]), end]);
         this.head = fixed.subarray(0, headSize);
-        this.slots = new Int16Array(headSize).fill(-1);
         this.tail = fixed.subarray(headSize);
         this.region = this.regionOf();
         this.told = sender.toldLength && new Length(sender.toldLength, isEmpty);
@@ -119,7 +100,7 @@ export class Layout {
     }
     /** The frame around the payload that was written. Throws an EncodeError. */
     wire(writer, payload, values) {
-        const { head, tail, slots, region, steps } = this;
+        const { head, tail, region, steps } = this;
         const { frame, length } = this.sender;
         if (payload > frame.greatestPayload && (length !== null || frame.isBounded)) {
             const problem = `has ${payload} bytes, at most ${frame.greatestPayload} fit`;
@@ -130,12 +111,8 @@ export class Layout {
         writer.room(tail.length);
         const { bytes } = writer;
         this.told?.of(payload);
-        for (let index = 0; index < head.length; index++) {
-            const slot = slots[index];
-            bytes[index] = slot < 0 ? head[index] : values[slot];
-        }
-        if (this.sent)
-            bytes[this.sentAt] = this.sent.of(payload);
+        for (let index = 0; index < head.length; index++)
+            bytes[index] = head[index];
         for (let index = 0; index < tail.length; index++)
             bytes[behind + index] = tail[index];
         for (let index = 0; index < steps.length; index++) {
@@ -173,16 +150,7 @@ export class Layout {
         if (part.kind === "literal" || part.kind === "payload")
             return;
         const [{ name, number }, source] = this.numbered(part);
-        const spot = this.spots[index];
-        const isInHead = isByte(number) && !spot.moves;
-        if (isInHead && source.slot >= 0)
-            this.slots[spot.offset] = source.slot;
-        else if (isInHead && source.length && !this.sent && !this.steps.length) {
-            this.sent = source.length;
-            this.sentAt = spot.offset;
-        }
-        else
-            this.steps.push(new Step(name, number, source, spot));
+        this.steps.push(new Step(name, number, source, this.spots[index]));
     }
     /** Plan all parts of a run of content. */
     planRun(from, to) {
@@ -254,11 +222,6 @@ export class Layout {
     // --- checksums -----------------------------------------------------------------------------
     sum(sum) {
         const { algorithm, covers } = sum;
-        const [first] = covers;
-        if (covers.length === 1 && first && "from" in first && !first.stuffed && !sum.isBits) {
-            const [from, to] = this.run(first);
-            return new Source(-1, null, { algorithm, from, to });
-        }
         const pieces = covers.map((covered) => this.covered(covered, sum.name));
         return other((content, payload, values) => {
             const joined = concatenated(pieces.map((piece) => piece(content, payload, values)));

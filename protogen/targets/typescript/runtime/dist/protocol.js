@@ -3,7 +3,8 @@ import { makerOf } from "./assembly.js";
 import { standsAt } from "./bytes.js";
 import { Candidate, Failure, verdictOn } from "./candidate.js";
 import { DecodeError, EncodeError, Fault } from "./errors.js";
-import { framed } from "./events.js";
+import { framed, Source } from "./events.js";
+import { NONE_GIVEN } from "./given.js";
 import { Sender } from "./sender.js";
 import { Told } from "./told.js";
 /** Makes each frame in the first form that can be made. */
@@ -44,7 +45,6 @@ class Choice {
     }
 }
 const NO_OPTIONS = {};
-const NO_PARTS = {};
 /** The senders of a protocol. */
 export class Protocol {
     constructor(
@@ -94,13 +94,13 @@ export class Protocol {
     /** The message of exactly one frame. Throws a DecodeError. Modules know its type. */
     decode(frame, options = {}) {
         const event = this.read(frame, options);
-        if (!event.plan)
+        if (!event.message)
             throw new DecodeError("unknown", "no message has this identity");
         return event.message;
     }
     /** The frame of a message. Throws an EncodeError. */
     encode(message, options = NO_OPTIONS) {
-        const { parts = NO_PARTS, strict = true } = options;
+        const { parts = NONE_GIVEN, strict = true } = options;
         return this.maker(message, options).make(message, parts, strict, null);
     }
     maker(message, options) {
@@ -158,7 +158,7 @@ function readAs(sender, data, told) {
         throw new DecodeError("size", problem, verdict.size);
     }
     try {
-        return framed(sender, verdict, 0, data.slice(), 0, data.length);
+        return framed(new Source(sender, data.slice(), 0), 0, verdict);
     }
     catch (error) {
         if (!(error instanceof Fault))
@@ -204,7 +204,7 @@ export class Encoder {
             if (form === undefined)
                 this.known.set(name, maker);
         }
-        const parts = (options.parts ?? NO_PARTS);
+        const parts = (options.parts ?? NONE_GIVEN);
         return maker.make(message, parts, strict, this.counts);
     }
     maker(name, form) {

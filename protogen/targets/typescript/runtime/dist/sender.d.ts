@@ -1,7 +1,7 @@
 /** A sender: its frame, with what is looked up of it. */
 import type { PartNumber, Value } from "./numbers.js";
 import type { Frame, Group, HeldParts, LengthNumber, MessagePlan } from "./plan.js";
-import type { NumberPart, Part, ValueNumber } from "./plan.js";
+import type { NamedMessage, NumberPart, Part, ValueNumber } from "./plan.js";
 import { Writer } from "./writer.js";
 /** The numbers of parts, those that are bits of others among them. */
 export declare function numbersOf(parts: readonly Part[]): readonly NumberPart[];
@@ -58,15 +58,15 @@ export declare class Sender {
     /** What a frame has of a payload, cut or filled up to its size; null: that varies. */
     fitted(payload: Uint8Array, size: number | null): Uint8Array;
     private leaves;
-    /** The message of a frame's payload and values, and its plan. Throws a Fault. */
-    read(group: Group, payload: Uint8Array, values: readonly (Value | undefined)[]): readonly [MessagePlan, unknown];
+    /** The message of a frame's payload and values. Throws a Fault. */
+    read(group: Group, payload: Uint8Array, values: readonly (Value | undefined)[]): NamedMessage;
     /** The bytes of a message's payload that an encoder puts into a frame. */
     trimmed(bytes: Uint8Array, from: number, size: number): number;
     /** The message called `name`, if the endpoint sends one. */
     named(name: string): MessagePlan | undefined;
 }
 /** The message of a payload's bytes; `held` has the parts that are fields. Throws a Fault. */
-export declare function readPayload(message: MessagePlan, payload: Uint8Array, held?: HeldParts): unknown;
+export declare function readPayload<M>(message: MessagePlan<M>, payload: Uint8Array, held?: HeldParts): M;
 /** The payload of a message. Throws an EncodeError. */
 export declare function writePayload(message: MessagePlan, value: unknown, strict: boolean): Uint8Array;
 /**

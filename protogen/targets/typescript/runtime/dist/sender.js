@@ -157,7 +157,7 @@ export class Sender {
     leaves(message, size) {
         return this.frame.isCut && message.tellsItsEnd && size > message.sizes.least;
     }
-    /** The message of a frame's payload and values, and its plan. Throws a Fault. */
+    /** The message of a frame's payload and values. Throws a Fault. */
     read(group, payload, values) {
         const [first] = group.messages;
         let known = payload;
@@ -169,7 +169,7 @@ export class Sender {
             known = this.fitted(payload, sizes.size === 1 ? first.known : null);
         }
         const fitting = group.messages.find((message) => holds(message.sizes, known.length)) ?? first;
-        return [fitting, readPayload(fitting, known, this.held(fitting, values))];
+        return readPayload(fitting, known, this.held(fitting, values));
     }
     /** The bytes of a message's payload that an encoder puts into a frame. */
     trimmed(bytes, from, size) {

@@ -80,7 +80,7 @@ export class Told {
     }
     /** Take a frame: what was told may hold no more, and it may tell something itself. */
     passFrame(event) {
-        for (const part of event.codec.frame.told) {
+        for (const part of event.source.codec.frame.told) {
             const following = this.following.get(part.name) ?? [];
             if (following.length || part.once) {
                 this.values.set(part.name, following.shift() ?? part.default);
@@ -102,15 +102,15 @@ export class Told {
     }
 }
 /** The number of a part that was sent. */
-function ofPart(name, { codec, parts }) {
-    const { shown, told } = codec.frame;
+function ofPart(name, { source, parts }) {
+    const { shown, told } = source.codec.frame;
     const isTold = told.some((part) => part.name === name);
     const part = isTold ? undefined : shown.find((item) => item.name === name);
     const value = part && parts[part.key];
     return value === undefined || typeof value === "string" ? null : [Number(value)];
 }
-function ofField(teller, { plan, message }) {
-    if (plan?.name !== teller.message)
+function ofField(teller, { message }) {
+    if (message?.message !== teller.message)
         return null;
     const value = message[teller.name];
     if (value === null || value === undefined)

@@ -4,11 +4,11 @@
  * Whatever is not plain is left to a candidate, which looks at it byte by byte and knows the reason.
  * So what is waited for here, a candidate would wait for as well.
  */
-import { Framed } from "./events.js";
+import { Framed, type Source } from "./events.js";
 import { type Sender } from "./sender.js";
 /** Takes frames of one sender, as far as they have come in. */
 export declare class WholeFrames {
-    private readonly sender;
+    readonly sender: Sender;
     /** True if all that has come of the frame is in order, and more has to come. */
     isWaiting: boolean;
     private readonly head;
@@ -44,7 +44,7 @@ export declare class WholeFrames {
     /** Begin another frame. */
     begin(): void;
     /** The event of the frame there; null: it is not all there yet, or a candidate has to look. */
-    take(data: Uint8Array, size: number, at: number, offset: number): Framed | null;
+    take(source: Source, size: number, at: number): Framed | null;
     /** The place behind the frame; -1 where it is not all there, or not plainly one. */
     private reach;
     /** The same where the end has to tell the size. */

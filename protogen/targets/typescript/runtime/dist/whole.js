@@ -77,7 +77,8 @@ export class WholeFrames {
         this.unstuffer = this.transparency?.decoder() ?? null;
     }
     /** The event of the frame there; null: it is not all there yet, or a candidate has to look. */
-    take(data, size, at, offset) {
+    take(source, size, at) {
+        const { data } = source;
         this.isWaiting = false;
         try {
             const end = this.reach(data, size, at);
@@ -85,7 +86,7 @@ export class WholeFrames {
                 this.isWaiting && (this.isWaiting = size - at < this.frame.givenUpAt);
                 return null;
             }
-            return end - at > this.frame.givenUpAt ? null : this.event(data, at, end, offset + at);
+            return end - at > this.frame.givenUpAt ? null : this.event(source, at, end);
         }
         catch (error) {
             this.isWaiting = false;
@@ -265,7 +266,9 @@ export class WholeFrames {
     }
     // --- the complete frame --------------------------------------------------------------------
     /** The event of the frame; null where it is not right. Throws a Fault. */
-    event(data, at, end, offset) {
+    event(source, at, end) {
+        const { data } = source;
+        const offset = source.offset + at;
         const { group, values, sender, payload } = this;
         const { frame } = sender;
         const isPlain = !this.transparency;
@@ -282,14 +285,12 @@ export class WholeFrames {
             return null;
         const only = group && group.messages.length === 1 && !sender.isFitted ? group.messages[0] : null;
         if (!only || !holds(only.sizes, payload)) {
-            const cut = new Cut(size, values, bytes.slice(start, behind));
-            return framed(sender, cut, offset, data, at, size);
+            return framed(source, offset, new Cut(size, values, bytes.slice(start, behind)));
         }
         const reader = this.reader.restart(bytes, start, behind, sender.held(only, values));
         const message = only.read(reader);
         reader.finish();
-        const parts = frame.partsOf(values);
-        return new Framed(offset, size, data, at, sender, parts, message, only);
+        return new Framed(offset, size, source, frame.partsOf(values), message);
     }
     isRight(sum, run, bytes, base) {
         const { payload } = this;
