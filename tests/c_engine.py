@@ -5,10 +5,11 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from functools import cache
+from functools import cache, cached_property
 from itertools import chain, zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import ModuleType
 from typing import Any, TypeVar
 from weakref import finalize
 
@@ -24,6 +25,7 @@ from protogen.fuzzing.c_calls import Call, Calls, CEvent, Step
 from protogen.fuzzing.c_driver import Driver
 from protogen.fuzzing.c_values import Answers
 from protogen.fuzzing.trips import same
+from protogen.live.codec import module_of
 from protogen.model.protocol import Protocol
 from protogen.runtime.values import as_dict
 from protogen.targets.c.fuzz_driver.driver import driver_of
@@ -94,6 +96,11 @@ class Process:
         assert self._process.stdout is not None
         self._answers = Answers(self._process.stdout)
         finalize(self, _end, self._process)
+
+    @cached_property
+    def module(self) -> ModuleType:
+        """Python of what the driver was printed of."""
+        return module_of(self.driver.protocol)
 
     def do(self, call: Call[T]) -> T:
         """Make a call."""
@@ -211,9 +218,12 @@ def same_events(found: Sequence[CEvent], expected: Sequence[CEvent]) -> bool:
 
 
 def check_events(process: Process, module: Any, sender: str, steps: Sequence[Step]) -> None:
-    """C gives the events that Python gives, or the messages among them, each in the same step."""
-    everything = python_events(module, sender, steps)
+    """C gives the events that Python gives, or the messages among them, each in the same step.
+
+    Where messages alone are asked for, Python knows no longer frame than theirs, as C does.
+    """
     only_messages = process.options.events == "messages"
+    everything = python_events(process.module if only_messages else module, sender, steps)
     count = comparable(process.driver.protocol, everything)
     if count is not None:
         events = list(chain.from_iterable(everything))[:count]

@@ -48,6 +48,16 @@ def select(
     )
 
 
+def narrow(protocol: Protocol) -> Protocol:
+    """The protocol as one who knows its messages alone reads it.
+
+    No frame is longer than the greatest of a message, but where longer payloads are cut.
+    """
+    names = {message.name for message in protocol.messages}
+    senders = (item if item.plan.is_cut else _sender(item, names) for item in protocol.senders)
+    return replace(protocol, senders=tuple(senders))
+
+
 def _sender(sender: Sender, messages: Collection[str] | None) -> Sender:
     if messages is None:
         return sender

@@ -11,7 +11,7 @@ from jinja2 import Environment
 
 from protogen.model.frame_plan import StartRule
 from protogen.model.protocol import Protocol
-from protogen.passes.selection import select
+from protogen.passes.selection import narrow, select
 from protogen.targets.banner import C, banner
 from protogen.targets.c.cpp.view import cpp_module
 from protogen.targets.c.decoders.members import candidate_members, members_of, memory_of
@@ -61,6 +61,8 @@ def unit_of(protocol: Protocol, options: COptions) -> Unit:
     """Views of the chosen part of a protocol."""
     names = names_of(protocol)
     chosen = select(protocol, options.only, options.senders)
+    if options.events == "messages" and options.only is None:
+        chosen = narrow(chosen)
     choose_writer(names, chosen)
     helpers = Helpers(names)
     module = view(chosen, options, names, helpers)
