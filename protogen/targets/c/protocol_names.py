@@ -27,11 +27,7 @@ implemented message unknown invalid no_message no_reason size value encoding noi
 stuffing truncated seeking taking failed lost known open searching measuring empty needless before
 inside after frame stuffed fast_feed sse2 expect each has no_handlers no_weak api inline apart
 baud idle_timeout_ms protogen_version zeros names fine small_crc flash flash_8
-<<<<<<< HEAD
-flash_16 flash_32 flash_64 packed as_in_memory
-=======
-flash_16 flash_32 flash_64 hpp always_inline nodiscard
->>>>>>> cpp
+flash_16 flash_32 flash_64 packed as_in_memory hpp always_inline nodiscard
 """
 _TAGS = "result message event_kind reason writer transmission"
 _TYPES = "put offer float64"
