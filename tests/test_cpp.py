@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from collections.abc import Sequence
 from functools import cache
@@ -216,6 +217,27 @@ def test_a_handler_that_takes_nothing_does_not_compile(
     assert said in done.stderr
 
 
+def test_what_takes_all_forms_is_held_to_the_same(tmp_path: Path) -> None:
+    path = next(path for path in TESTED if path.stem == "forms")
+    written(path, ALL, tmp_path)
+    room = 'static_assert(trio::frame_room<trio::dump>() >= {}, "");'
+    said = "each handler has to take an event of"
+    rooms = re.findall(r"TRIO_DUMP_FROM_\w+_FRAME_ROOM(?= )", (tmp_path / "trio.h").read_text())
+    assert len(rooms) > 1
+    for handler, refused in (("const trio::ping &", False), ("const alien &", True)):
+        lines = [
+            '#include "trio.hpp"',
+            *map(room.format, rooms),
+            "struct alien {};",
+            f"void f(trio::station_decoder &d) {{ d.push(1, []({handler}) {{}}); }}",
+        ]
+        (tmp_path / "forms.cc").write_text("\n".join(lines), encoding="utf-8")
+        command = [require_tool("g++"), "-std=c++11", *WARNINGS, "-fsyntax-only", "forms.cc"]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert (done.returncode != 0) == refused, done.stderr
+        assert (said in done.stderr) == refused
+
+
 # --- names ----------------------------------------------------------------------------------------
 
 
@@ -224,6 +246,45 @@ def test_names_that_are_taken_are_escaped() -> None:
     escaped = {name for table in names.tables for found in table.escaped.values() for name in found}
     # The message `result`; the value `class`; the value and the struct `true`.
     assert {"result_", "class_", "true_"} <= escaped
+
+
+PARTS = """
+protocol: parts
+endpoints: {board: Board}
+byte_order: little
+frame:
+  start: {literal: 0x7E}
+  id: {type: uint8, id: true}
+  give: {type: uint8, default: 0}
+  put: {type: uint8, default: 0}
+  result: {type: uint8, default: 0}
+  data: {type: uint8, default: 0}
+  payload: {}
+  sum: {type: uint8, algorithm: CRC-8/SMBUS, covers: id..payload}
+  end: {literal: 0x7E}
+transparency: hdlc
+messages:
+  data: {id: 1, from: board, fields: {pace: {type: sint16, scale: 1/73786976294838206464}}}
+  received: {id: 2, from: board}
+"""
+"""Names of what is in the functions of the header, and a scale of 2^-66, which no integer holds."""
+
+
+def test_parts_and_messages_are_called_as_parameters_of_the_header(tmp_path: Path) -> None:
+    path = tmp_path / "parts.yaml"
+    path.write_text(PARTS, encoding="utf-8")
+    written(path, ALL, tmp_path)
+    text = """#include "parts.hpp"
+    static_assert(parts::data_pace_raw(parts::data_pace_physical(5)) == 5, "");
+    parts::result f(parts::board_decoder &decoder, void (&put)(uint8_t)) {
+        decoder.push(1, [](const parts::data &) {});
+        return parts::send(parts::data(), 1, 2, 3, 4, put);
+    }"""
+    (tmp_path / "parts.cc").write_text(text, encoding="utf-8")
+    for compiler in ("g++", "clang++"):
+        run(
+            [require_tool(compiler), "-std=c++11", *WARNINGS, "-fsyntax-only", "parts.cc"], tmp_path
+        )
 
 
 def test_the_header_is_made_where_it_is_asked_for() -> None:

@@ -17,6 +17,12 @@ static_assert(rover::state_battery_raw(3.2814) == 3281, "");
 static_assert(rover::state_battery_raw(1e9) == 65535, "");
 static_assert(rover::state_battery_raw(-1.0F) == 0, "");
 
+// By hand: 3 / 0.001, and -1 * 16; just less than half of 1/16 is nearer to 0 than to 1.
+static_assert(rover::state_battery_raw(3) == 3000, "");
+static_assert(rover::state_heading_raw(-1L) == -16, "");
+static_assert(rover::state_heading_raw(0.031249998F) == 0, "");
+static_assert(rover::state_heading_raw(-0.03125) == -1, "");
+
 static int turns, others;
 
 static void on_drive(const rover::drive &drive) {
@@ -78,6 +84,29 @@ static bool the_first_handler_that_takes_an_event_gets_it() {
     return left.left == 7 && turns == 0 && others == 2;
 }
 
+/* Found by its arguments if a call does not say whose `load` it means. */
+void load(rover::drive &drive, const rover::host_event &event);
+void load(rover::drive &, const rover::host_event &) {}
+
+__attribute__((warn_unused_result)) static int answer(const rover::drive &drive) {
+    turns += drive.left;
+    return turns;
+}
+
+static bool a_copy_goes_on_where_the_first_one_is() {
+    rover::drive drive{};
+    drive.left = 3;
+    uint8_t buffer[rover::frame_room<rover::drive>()];
+    const rover::encoded made = rover::frame(drive, buffer);
+    rover::host_decoder decoder;
+    turns = 0;
+    decoder.feed({made.data(), 4}, answer);
+    rover::host_decoder copy = decoder;
+    decoder.feed({made.data() + 4, made.size() - 4}, answer);
+    copy.feed({made.data() + 4, made.size() - 4}, &answer);
+    return turns == 6;
+}
+
 static bool refuses_what_c_refuses() {
     rover::drive drive{};
     drive.left = 2001;
@@ -96,7 +125,7 @@ static bool refuses_what_c_refuses() {
 
 int main() {
     return takes_whatever_holds_bytes() && the_first_handler_that_takes_an_event_gets_it() &&
-                   refuses_what_c_refuses()
+                   a_copy_goes_on_where_the_first_one_is() && refuses_what_c_refuses()
                ? 0
                : 1;
 }

@@ -46,7 +46,9 @@ def cpp_physical(record: str, fields: Sequence[Field], cpp: CppNames) -> Iterato
             to_raw=cpp.of(thing, record, field.name, "raw"),
             type=integer_type(integer),
             physical=_sum(_product("static_cast<Real>(raw)", field.scale), field.offset),
-            scaled=_product(_group(_sum("physical", -field.offset)), 1 / field.scale),
+            scaled=_product(
+                _group(_sum("static_cast<Real>(physical)", -field.offset)), 1 / field.scale
+            ),
             least=constant(int(field.least), integer),
             greatest=constant(int(field.greatest), integer),
         )
@@ -71,4 +73,6 @@ def _group(value: str) -> str:
 
 
 def _real(value: int) -> str:
-    return f"static_cast<Real>({number(value)})"
+    # No integer of C holds such a one; `L`, so that it is as exact as any `Real`.
+    text = number(value) if value < 1 << 63 else f"{value}.0L"
+    return f"static_cast<Real>({text})"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import reduce
 
 import msgspec
 
@@ -39,6 +40,11 @@ class CppMessage(msgspec.Struct, frozen=True):
     rooms: tuple[str, ...]
     """Macros for the bytes that suffice for its frames, of each kind of frame that it has."""
 
+    @property
+    def room(self) -> str:
+        """The greatest of them, worked out by the compiler."""
+        return reduce(lambda one, other: f"detail::greater({one}, {other})", self.rooms)
+
 
 class CppFrame(msgspec.Struct, frozen=True):
     """Functions that make a message's frames."""
@@ -63,7 +69,7 @@ class CppFrame(msgspec.Struct, frozen=True):
     @property
     def send_call(self) -> str:
         """The call of C's function that sends."""
-        known = {"put": "&detail::put_byte<decltype(give)>", "user": "&give"}
+        known = {"put": "&detail::put_byte<decltype(give_)>", "user": "&give_"}
         return self._call(self.item.called.send, self.item.send_arguments("put_type"), known)
 
     def _call(self, function: str, arguments: Sequence[str], known: dict[str, str]) -> str:
@@ -119,6 +125,11 @@ class CppForms(msgspec.Struct, frozen=True):
     view: FormsDecoder
     forms: tuple[CppForm, ...]
     """In the order of the enum, whose last value says that there is none."""
+
+    @property
+    def received_list(self) -> str:
+        """The name for the list of all their messages."""
+        return f"messages_of_{self.name}"
 
     @property
     def told_parts(self) -> tuple[ToldView, ...]:
