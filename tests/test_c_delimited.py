@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 from random import Random
+from typing import Literal
 
 import pytest
-from c_engine import check_events, process_of
+from c_engine import check_events, process_of, python_events
 from compiled import ROOT, module_at, protocol_of
 from corpus import marks_of, material_of, stream_of
 from test_c_decoder import steps_of
@@ -17,6 +18,7 @@ from protogen.targets.c.emit import unit_of
 from protogen.targets.c.options import COptions
 
 MESSAGES = COptions(events="messages")
+KINDS: tuple[Literal["push", "feed"], ...] = ("push", "feed")
 LONG_COBS = """
 protocol: long_cobs
 endpoints: {station: Weather station}
@@ -62,10 +64,26 @@ transparency: {covers: kind..check, encoding: base16-upper}
 messages:
   text: {from: station, fields: {data: {type: bytes, size: {fill: true, max: 40}}}}
 """
+NEWER = """
+protocol: newer_between_zeros
+endpoints: {station: Weather station}
+byte_order: little
+frame:
+  id: {type: uint8, id: true}
+  length: {type: uint8, counts: payload}
+  payload: {longer: cut}
+  check: {type: uint8, algorithm: sum-8, covers: [id, payload]}
+  end: {literal: 0}
+transparency: {encoding: cobs}
+messages:
+  state: {id: 1, from: station, fields: {mode: {type: uint8, values: {off: 1}, closed: true}}}
+  calm: {id: 2, from: station}
+"""
 SCHEMAS = {
     "long_cobs": LONG_COBS,
     "shared_start": SHARED_START,
     "digits_between": DIGITS,
+    "newer_between_zeros": NEWER,
 }
 
 
@@ -107,6 +125,18 @@ def test_groups_of_cobs_may_be_full(paths: dict[str, Path]) -> None:
 def needless(frame: bytes) -> bytes:
     """The frame with a group behind the last that says nothing more: no encoder makes it."""
     return frame[:-1] + b"\x01\0"
+
+
+def test_what_is_too_short_to_be_cut_is_no_message(paths: dict[str, Path]) -> None:
+    """Its checksum, 01, stands where the mode of a payload would, and is one."""
+    path = paths["newer_between_zeros"]
+    short = b"\x02\x01\x02\x01\0"  # id 01, length 00, check 01
+    whole = b"\x05\x01\x01\x01\x02\0"  # id 01, length 01, mode 01, check 02
+    longer = b"\x06\x01\x02\x01\x09\x0b\0"  # id 01, length 02, mode 01, 09, check 0B
+    steps: list[Step] = [(kind, data) for data in (short, whole, longer) for kind in KINDS]
+    found = python_events(module_at(path), "station", steps)
+    assert [event.kind for events in found for event in events] == ["invalid"] * 2 + ["message"] * 4
+    check_events(process_of(path, MESSAGES), module_at(path), "station", steps)
 
 
 def test_the_buffer_is_as_large_as_the_greatest_message() -> None:

@@ -305,3 +305,37 @@ def test_a_checksum_of_the_wire_may_cover_nothing_that_is_stuffed(tmp_path: Path
     # CRC-16/KERMIT of "k" (0x6B) alone is 0xDDD5: by another implementation. 0x55 goes as 56 AA.
     assert (made.result, made.data) == (OK, bytes.fromhex("55 6B D5 DD 02 56 AA"))
     process.close()
+
+
+BITS_AHEAD = """
+protocol: bits_ahead
+endpoints: {pc: Computer}
+byte_order: big
+frame:
+  start: {literal: 0x7E, unprotected: in_front}
+  head:
+    type: uint8
+    bits:
+      sum: {bits: 0..3, algorithm: xor-8, covers: payload, takes: 0..3}
+      flow: {bits: 4..6, default: 5}
+  payload: {}
+  end: {literal: 0x7D, unprotected: in_front}
+transparency: {covers: payload, encoding: base16-upper}
+messages:
+  speed: {from: pc, fields: {speed: uint16}}
+decisions:
+  in_front:
+    question: Can 7E and 7D stand in front of the payload?
+    document: Only the payload goes as digits.
+    choice: Yes.
+    because: The sum tells wrong starts.
+"""
+
+
+def test_a_checksum_may_stand_in_bits_in_front_of_what_is_stuffed(tmp_path: Path) -> None:
+    """It is not known before the payload is, unlike other bytes in front."""
+    process = Process(compiled(BITS_AHEAD, tmp_path))
+    made = process.do(process.calls.frame("pc", "speed", {"speed": 0x1234}, {"flow": 3}))
+    # 12 xor 34 is 26, of which 6 is taken; flow 3 stands above it: 36. The digits are "1234".
+    assert (made.result, made.data) == (OK, bytes.fromhex("7E 36 31 32 33 34 7D"))
+    process.close()

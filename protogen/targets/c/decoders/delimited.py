@@ -181,12 +181,6 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
         """True if a group of COBS may be full, so that no zero stands behind it."""
         return self.is_cobs and self.around + self.greatest_payload >= _SHORT_COBS
 
-    @property
-    def keeps_code(self) -> bool:
-        """True if half a byte, or the code of a group, is kept."""
-        is_base16 = self.stuffing is not None and self.stuffing.kind is StuffingKind.BASE16
-        return is_base16 or self.groups_fill
-
     # --- messages ---------------------------------------------------------------------------------
 
     @property
@@ -206,7 +200,7 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
         message = group.messages[0]
         if len(group.messages) != 1:
             return False
-        return message.takes_any_size or (bool(message.checks) and not message.fixed)
+        return message.takes_any_size or message.check_sees_size
 
     @property
     def checks_head(self) -> bool:

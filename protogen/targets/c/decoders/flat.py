@@ -178,7 +178,7 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
             return True
         if self.fits_payloads and message.fixed:
             return message.takes_any_size
-        return len(group.messages) == 1 and bool(message.checks) and not message.fixed
+        return len(group.messages) == 1 and message.check_sees_size
 
     # --- stuffing ---------------------------------------------------------------------------------
 

@@ -62,6 +62,15 @@ class ReceivedMessage(msgspec.Struct, frozen=True):
         return bool(self.fills) or self.can_be_longer
 
     @property
+    def check_sees_size(self) -> bool:
+        """True if the function that checks a payload is told how many bytes there are.
+
+        Of one that is cut to a fixed size it is told that size, even where fewer bytes came.
+        """
+        is_cut = self.cuts is not None and not self.varies and not self.fills
+        return bool(self.checks) and not self.fixed and not is_cut
+
+    @property
     def own(self) -> int:
         """Size that payloads have when they are filled up or cut."""
         return self.fills if self.cuts is None else self.cuts

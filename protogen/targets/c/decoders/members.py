@@ -130,7 +130,7 @@ def _of_delimited(view: DelimitedDecoder) -> tuple[Member, ...]:
         ),
         (view.stuffing is not None, Member("uint8_t", "node", node)),
         (view.end_size > 1, Member("uint8_t", "held", "1: the first byte of an end was the last.")),
-        (view.keeps_code, Member("uint8_t", "code", "First half of a byte, or a group's code.")),
+        (view.groups_fill, Member("uint8_t", "code", "Code of the group.")),
         (True, Member("uint8_t", "buffer", "Bytes of the candidate.", view.buffer_size)),
     )
     return tuple(member for is_there, member in found if is_there)

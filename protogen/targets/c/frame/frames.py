@@ -232,7 +232,8 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         if not self.begins_at:
             return {}
         read = {name for c in self.plan.checksums for name in (c.placed.name, *_covered(c))}
-        plain = [s for s in self.steps if s.in_head and s.name not in read and not s.counts]
+        own = [s for s in self.steps if s.in_head and s.checksum is None and not s.counts]
+        plain = [s for s in own if s.name not in read]
         stores = {store.index: store.value for step in plain for store in step.stores}
         front = [f"{index}U" for index in range(self.begins_at)]
         return {index: stores[index] for index in front if index in stores}
