@@ -120,6 +120,8 @@ class _Helper(msgspec.Struct):
     """True if an inline function of the header calls it."""
     is_short: bool = False
     """True if it is put where it is called, which takes no more room than the call."""
+    is_everywhere: bool = False
+    """False if only code calls it that is left out where structs lie in memory as on the wire."""
 
     def text(self, words: str) -> str:
         """The definition."""
@@ -134,6 +136,7 @@ class Helpers:
         self._upper = names.prefix.upper()
         self._helpers: dict[str, _Helper] = {}
         self._is_public = False
+        self._is_left_out = False
         self.floats: set[int] = set()
         """Bits of the floats that were asked for."""
         self.has_vectors = False
@@ -152,8 +155,13 @@ class Helpers:
     def texts(self) -> tuple[str, ...]:
         """The definitions of the functions that only the source calls."""
         inline = f"{self._upper}_INLINE"
-        found = (item for item in self._helpers.values() if not item.is_public)
-        return tuple(item.text(inline if item.is_short else "static") for item in found)
+        found = [item for item in self._helpers.values() if not item.is_public]
+        texts = [item.text(inline if item.is_short else "static") for item in found]
+        unless = f"#if !{self._upper}_AS_IN_MEMORY"
+        return tuple(
+            text if item.is_everywhere else f"{unless}\n{text}\n#endif"
+            for item, text in zip(found, texts, strict=True)
+        )
 
     @property
     def public_texts(self) -> tuple[str, ...]:
@@ -167,6 +175,13 @@ class Helpers:
         self._is_public = True
         yield
         self._is_public = False
+
+    @contextmanager
+    def left_out(self, is_image: bool) -> Iterator[None]:
+        """Code printed meanwhile is left out where a struct lies in memory as on the wire."""
+        self._is_left_out = is_image
+        yield
+        self._is_left_out = False
 
     def helper(
         self,
@@ -185,6 +200,7 @@ class Helpers:
             self._helpers[key] = _Helper(name, result, arguments, lines, is_short=is_short)
         found = self._helpers[key]
         found.is_public |= self._is_public
+        found.is_everywhere |= not self._is_left_out
         return found.name
 
     # --- reading --------------------------------------------------------------------------------

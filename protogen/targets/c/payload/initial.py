@@ -50,7 +50,7 @@ def initialiser(macro: str, zeros: str, steps: Sequence[AnyStep]) -> tuple[str, 
         line += item
     width = max(map(len, lines))
     text = (*(f"{above:<{width}} \\" for above in lines), line)
-    if len(lines) == 1 and "{" not in line.lstrip(" {"):
+    if len(lines) == 1 and line.count("{") == 1:
         return text
     return (_OFF, *text, _ON)
 

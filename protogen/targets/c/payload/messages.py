@@ -262,8 +262,9 @@ class _Codec:
         return self._function(word, lines)
 
     def _store(self) -> str:
-        lines = Lines()
-        Store(self._printer.helpers, lines).message(self._item.plan)
+        lines, helpers = Lines(), self._printer.helpers
+        with helpers.left_out(self.is_image):
+            Store(helpers, lines).message(self._item.plan)
         self._or_copy(lines, "payload", "message")
         return self._function("store", lines)
 
@@ -316,9 +317,10 @@ class _Codec:
         return self._function("check", lines)
 
     def _load(self) -> str:
-        lines = Lines()
-        load = Load(self._printer.helpers, lines)
-        load.message(self._item.plan)
+        lines, helpers = Lines(), self._printer.helpers
+        load = Load(helpers, lines)
+        with helpers.left_out(self.is_image):
+            load.message(self._item.plan)
         if self.fixed is not None and load.reads_size:
             kind = "size_t" if load.moves_size else "const size_t"
             lines.put_first(f"{kind} size = {self.fixed}U;")
