@@ -79,20 +79,37 @@ messages:
   state: {id: 1, from: station, fields: {mode: {type: uint8, values: {off: 1}, closed: true}}}
   calm: {id: 2, from: station}
 """
+NEWER_BEHIND_STARTS = """
+protocol: newer_behind_starts
+endpoints: {station: Weather station}
+byte_order: little
+frame:
+  start: {literal: 2}
+  id: {type: uint8, id: true}
+  length: {type: uint8, counts: payload}
+  payload: {longer: cut}
+  check: {type: uint8, algorithm: sum-8, covers: [id, payload]}
+transparency: {covers: id..check, escape: {byte: 0x1B, of: [2, 0x1B], transform: {xor: 0x20}}}
+messages:
+  state: {id: 1, from: station, fields: {mode: {type: uint8, values: {off: 1}, closed: true}}}
+  calm: {id: 2, from: station}
+"""
 SCHEMAS = {
     "long_cobs": LONG_COBS,
     "shared_start": SHARED_START,
     "digits_between": DIGITS,
     "newer_between_zeros": NEWER,
 }
+FLAT = {"newer_behind_starts": NEWER_BEHIND_STARTS}
+"""Those whose frames are told by their start."""
 
 
 @pytest.fixture(scope="module")
 def paths(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("delimited")
-    found = {name: folder / f"{name}.yaml" for name in SCHEMAS}
+    found = {name: folder / f"{name}.yaml" for name in SCHEMAS | FLAT}
     for name, path in found.items():
-        path.write_text(SCHEMAS[name], encoding="utf-8")
+        path.write_text((SCHEMAS | FLAT)[name], encoding="utf-8")
     return found
 
 
@@ -127,13 +144,27 @@ def needless(frame: bytes) -> bytes:
     return frame[:-1] + b"\x01\0"
 
 
-def test_what_is_too_short_to_be_cut_is_no_message(paths: dict[str, Path]) -> None:
+# Each: id 01, length 00, check 01; id 01, length 01, mode 01, check 02; id 01, length 02, mode 01,
+# then 09, check 0B.
+SHORT_TO_LONG = {
+    "newer_between_zeros": (
+        b"\x02\x01\x02\x01\0",
+        b"\x05\x01\x01\x01\x02\0",
+        b"\x06\x01\x02\x01\x09\x0b\0",
+    ),
+    "newer_behind_starts": (
+        b"\x02\x01\x00\x01",
+        b"\x02\x01\x01\x01\x1b\x22",
+        b"\x02\x01\x1b\x22\x01\x09\x0b",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SHORT_TO_LONG)
+def test_what_is_too_short_to_be_cut_is_no_message(paths: dict[str, Path], name: str) -> None:
     """Its checksum, 01, stands where the mode of a payload would, and is one."""
-    path = paths["newer_between_zeros"]
-    short = b"\x02\x01\x02\x01\0"  # id 01, length 00, check 01
-    whole = b"\x05\x01\x01\x01\x02\0"  # id 01, length 01, mode 01, check 02
-    longer = b"\x06\x01\x02\x01\x09\x0b\0"  # id 01, length 02, mode 01, 09, check 0B
-    steps: list[Step] = [(kind, data) for data in (short, whole, longer) for kind in KINDS]
+    path, frames = paths[name], SHORT_TO_LONG[name]
+    steps: list[Step] = [(kind, data) for data in frames for kind in KINDS]
     found = python_events(module_at(path), "station", steps)
     assert [event.kind for events in found for event in events] == ["invalid"] * 2 + ["message"] * 4
     check_events(process_of(path, MESSAGES), module_at(path), "station", steps)
