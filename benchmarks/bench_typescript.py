@@ -365,10 +365,10 @@ function, which takes stuffing off and sums up in one loop, as code by hand does
 is looked up by its identity, and its function called. A frame in pieces goes by a description of
 the frame, and is tried by that function again once much more of it has come. In small portions this
 counts less, because code by hand copies what is left and begins the frame anew each time.
-Encoders sum up and stuff by a printed function, in one loop; the payload is written before, as only
-then its size is known, where code by hand does all of it in one pass. The runtime puts the rest of
-plain frames together, from what is always the same for a message. Encoders look the message up by
-its name, and see to it that callers give no part that there is none of.
+Encoders put plain frames together by a printed function, which sums up and stuffs in one loop; the
+payload is written before, as only then its size is known, where code by hand does all of it in one
+pass. They look the message up by its name, and see to it that callers give no part that there is
+none of.
 """
 
 

@@ -316,7 +316,6 @@ def test_more_payload_than_was_received_is_found(tmp_path: Path) -> None:
     """It is in the buffer all right, but from an earlier frame, or from nowhere."""
     made = generate(protocol_of(MATTY), tmp_path, COptions(events="messages"))
     header = changed(made.header, r"(event->payload_size = payload);", r"\1 + 2U;")
-    assert prove(made, push_driver(made.protocol, header)).found == ()
     report = prove(made, first_driver(made.protocol, header))
     assert any("event->payload + i" in found for found in report.found), report.found
 

@@ -66,7 +66,7 @@ export class EncodeView {
   /** The values and the given parts of an event, to be edited. */
   stateOf(event) {
     const given = this.explainer.senderOf(event).given;
-    const keys = Object.fromEntries(event.codec.frame.shown.map((part) => [part.name, part.key]));
+    const keys = Object.fromEntries(event.source.codec.frame.shown.map((part) => [part.name, part.key]));
     const parts = Object.fromEntries(given.map((part) => [part.name, event.parts[keys[part.name]]]));
     return { values: event.message, parts };
   }

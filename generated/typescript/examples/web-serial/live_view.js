@@ -11,7 +11,7 @@ const MARKED = 1000;
 /** Explains frames that a decoder found, which know their own codec. */
 class FrameExplainer extends Explainer {
   rows(event) {
-    this.frame = event.codec.frame;
+    this.frame = event.source.codec.frame;
     return super.rows(event);
   }
 

@@ -41,6 +41,11 @@ class CppMessage(msgspec.Struct, frozen=True):
     """Macros for the bytes that suffice for its frames, of each kind of frame that it has."""
 
     @property
+    def struct(self) -> str:
+        """Its struct in C, which is outside of all namespaces."""
+        return f"struct ::{self.view.struct.removeprefix('struct ')}"
+
+    @property
     def room(self) -> str:
         """The greatest of them, worked out by the compiler."""
         return reduce(lambda one, other: f"detail::greater({one}, {other})", self.rooms)
