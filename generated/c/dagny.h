@@ -28,7 +28,7 @@ extern "C" {
 #define DAGNY_API
 #endif
 
-/* Enums take one byte also where the compiler gives them two, as for AVR. */
+/* Enums that functions return take one byte, also where an int has two, as on AVR. */
 #if defined(__AVR__) && defined(__GNUC__)
 #define DAGNY_PACKED __attribute__((packed))
 #else

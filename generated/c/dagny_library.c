@@ -21,7 +21,7 @@
 #endif
 
 /*
- * Where numbers lie in memory as on the wire, a message of many is copied as a whole, which takes
+ * Where numbers lie in memory as on the wire, a message of several is copied as a whole, which takes
  * less flash than one by one. Define DAGNY_LIBRARY_AS_IN_MEMORY as 1 or 0 to choose.
  */
 #ifndef DAGNY_LIBRARY_AS_IN_MEMORY

@@ -40,7 +40,7 @@
 #endif
 
 /*
- * Where numbers lie in memory as on the wire, a message of many is copied as a whole, which takes
+ * Where numbers lie in memory as on the wire, a message of several is copied as a whole, which takes
  * less flash than one by one. Define MATTY_V4_AS_IN_MEMORY as 1 or 0 to choose.
  */
 #ifndef MATTY_V4_AS_IN_MEMORY

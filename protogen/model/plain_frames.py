@@ -18,7 +18,11 @@ _FEW = 8
 
 
 def is_plain(plan: FramePlan) -> bool:
-    """True if parts are literals and numbers of whole bytes, and the head tells the size."""
+    """True if a frame has no rare things.
+
+    It has literals and numbers of whole bytes with any value, a size that the head tells, checksums
+    over one run, and few sequences that are stuffed.
+    """
     parts, region = [item.part for item in (*plan.head, *plan.tail)], plan.region
     is_odd = any(part.is_optional or not _is_simple(part) for part in parts)
     is_fitted = plan.is_cut or plan.frame.payload.kept is not None
@@ -80,8 +84,8 @@ def folded_run(plan: FramePlan) -> Run | None:
     return item if is_behind and is_in else None
 
 
-def run_that_gives_0(plan: FramePlan) -> Run | None:
-    """Such a run, where all from the region's start or the payload's and its sum come to 0."""
+def zero_sum_run(plan: FramePlan) -> Run | None:
+    """The same, if the run and its checksum add up to 0, so that there is nothing to compare."""
     region, run = plan.region, folded_run(plan)
     if region is None or run is None or run.first.offset not in (region.before, plan.head_size):
         return None
@@ -95,7 +99,7 @@ def length_bounds(plan: FramePlan, part: LengthPart, greatest_payload: int) -> t
     return max(part.least, length.base), min(length.greatest, length.base + greatest_payload)
 
 
-def shows_marks(plan: FramePlan) -> bool:
+def may_contain_marks(plan: FramePlan) -> bool:
     """True if a byte that may end a start or an end may stand inside a plain frame."""
     marks = [word[-1] for word in plan.start_words if plan.start_is_unique]
     marks += plan.end_bytes[-1:] if plan.end_is_unique else b""

@@ -21,9 +21,9 @@ from protogen.model.parts import (
 from protogen.model.plain_frames import (
     is_plain,
     length_bounds,
-    run_that_gives_0,
-    shows_marks,
+    may_contain_marks,
     summed_run,
+    zero_sum_run,
 )
 from protogen.model.protocol import Sender
 from protogen.model.types import Integer
@@ -51,7 +51,7 @@ class AtOnce:
         self._shown = shown
         self._lines = BracedLines(2, 2)
         self._locals = locals_table()
-        self._folded = run_that_gives_0(self._plan)
+        self._folded = zero_sum_run(self._plan)
         self._values: dict[str, Code] = {}
         """Variables, by the parts whose values they have."""
 
@@ -90,7 +90,7 @@ class AtOnce:
         last = behind("end", plan.tail_size)
         room = behind("end", plan.tail_size + len(plan.end_bytes))
         tests = [f"{room} > size", *_differ("data", last, plan.end_bytes)]
-        if shows_marks(plan):
+        if may_contain_marks(plan):
             tests.append(f"!f.isClear({self._place(plan.start_size)}, {last})")
         self._refuse(*tests)
 
