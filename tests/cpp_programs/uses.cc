@@ -2,6 +2,7 @@
 #include "rover.hpp"
 
 #include <array>
+#include <cstring>
 #include <vector>
 #if __cplusplus >= 202002L
 #include <span>
@@ -123,9 +124,16 @@ static bool refuses_what_c_refuses() {
            rover::decode(read, {payload, 3}) == rover::result::error_size;
 }
 
+static bool names_are_those_of_the_schema() {
+    const rover::state_mode none = rover::state_mode(9);
+    return std::strcmp(rover::name(rover::state_mode::blocked), "blocked") == 0 &&
+           std::strcmp(rover::name(rover::message::drive), "drive") == 0 &&
+           std::strcmp(rover::name(none), "?") == 0;
+}
+
 int main() {
-    return takes_whatever_holds_bytes() && the_first_handler_that_takes_an_event_gets_it() &&
-                   a_copy_goes_on_where_the_first_one_is() && refuses_what_c_refuses()
-               ? 0
-               : 1;
+    const bool is_fine = takes_whatever_holds_bytes() && names_are_those_of_the_schema() &&
+                         the_first_handler_that_takes_an_event_gets_it() &&
+                         a_copy_goes_on_where_the_first_one_is() && refuses_what_c_refuses();
+    return is_fine ? 0 : 1;
 }
