@@ -303,10 +303,16 @@ function pcFrame() {
       let i = 0;
       for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end + 1; i++) {
-        if (i === end) bytes[end] = -sum;
+      for (; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum += byte;
+        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
+        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
+        else wire[at++] = byte;
+      }
+      bytes[end] = -sum;
+      for (; i < end + 1; i++) {
+        const byte = bytes[i] ?? 0;
         if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
         else wire[at++] = byte;
@@ -416,10 +422,16 @@ function espFrame() {
       let i = 0;
       for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end + 1; i++) {
-        if (i === end) bytes[end] = -sum;
+      for (; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum += byte;
+        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
+        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
+        else wire[at++] = byte;
+      }
+      bytes[end] = -sum;
+      for (; i < end + 1; i++) {
+        const byte = bytes[i] ?? 0;
         if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
         else wire[at++] = byte;

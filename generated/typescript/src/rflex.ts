@@ -873,10 +873,16 @@ function linuxFrame(): rt.Frame {
         else wire[at++] = byte;
       }
       let sum = 0;
-      for (; i < end + 1; i++) {
-        if (i === end) bytes[end] = sum;
+      for (; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum ^= byte;
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
+        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
+        else wire[at++] = byte;
+      }
+      bytes[end] = sum;
+      for (; i < end + 1; i++) {
+        const byte = bytes[i] ?? 0;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
         else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
         else wire[at++] = byte;
@@ -1012,10 +1018,16 @@ function flexFrame(): rt.Frame {
         else wire[at++] = byte;
       }
       let sum = 0;
-      for (; i < end + 1; i++) {
-        if (i === end) bytes[end] = sum;
+      for (; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum ^= byte;
+        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
+        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
+        else wire[at++] = byte;
+      }
+      bytes[end] = sum;
+      for (; i < end + 1; i++) {
+        const byte = bytes[i] ?? 0;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
         else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
         else wire[at++] = byte;

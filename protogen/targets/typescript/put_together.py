@@ -42,8 +42,7 @@ class PutTogether:
         known = [f"name !== {literal(part.name)}" for part in plan.frame.caller_parts]
         other = f"name in given) if ({' && '.join(known)})" if known else "_ in given)"
         add(f"for (const {other} return null;")
-        parts = [(item.place, item.part) for item in plan.placed]
-        stored = [(place, self._bytes(part)) for place, part in parts if part.size]
+        stored = [(it.place, self._bytes(it.part)) for it in plan.placed if it.part.size]
         add("const end = w.size;", f"w.room({plan.tail_size + len(plan.end_bytes)});")
         add("const { bytes } = w;")
         for place, values in (*stored, (Place(Side.TAIL, plan.tail_size), plan.end_bytes)):
@@ -94,8 +93,9 @@ class PutTogether:
         if first > region.before:
             self._loop(region, str(first))
         add(f"let sum = {spec.init};")
-        done = f"if (i === end) bytes[end] = {'-' * spec.negated}sum;"
-        self._loop(region, "end + 1", done, adding(spec))
+        self._loop(region, "end", adding(spec))
+        add(f"bytes[end] = {'-' * spec.negated}sum;")
+        self._loop(region, "end + 1")
         if self._plan.end_bytes:
             add("for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;")
         add("return wire.slice(0, at);")
@@ -104,7 +104,7 @@ class PutTogether:
         """Print what stuffs the bytes up to a place."""
         with self._lines.block(f"for (; i < {stop}; i++)"):
             # No byte is missing, but types don't know that.
-            self._lines.add(*summing[:1], "const byte = bytes[i] ?? 0;", *summing[1:])
+            self._lines.add("const byte = bytes[i] ?? 0;", *summing)
             word = ""
             for byte, sequence in region.codes:
                 put = " ".join(f"wire[at++] = {item};" for item in sequence)
