@@ -106,7 +106,7 @@ def test_escapes_are_listed_by_thing_and_language(tmp_path: Path) -> None:
         inside("gyro", "field", "class"): {"C": ("class_",), "Python": ("class_",)},
         inside("gyro", "field", "long"): {"C": ("long_",)},
         inside("gyro", "field", "lambda"): {"Python": ("lambda_",)},
-        message("result"): {"C": ("demo_result_",)},
+        message("result"): {"C": ("demo_result_",), "C++": ("result_",)},
         message("none"): {"Python": ("None_",)},
     }
 
@@ -136,7 +136,7 @@ def test_a_protocol_may_be_called_like_a_module_or_a_header(name: str, tmp_path:
 
 
 def test_the_names_of_files_are_listed(tmp_path: Path) -> None:
-    escaped = {"C": ("string_",), "Python": ("string_",)}
+    escaped = {"C": ("string_",), "C++": ("string_",), "Python": ("string_",)}
     assert emitted_names(schema(tmp_path, name="string")).escapes == {PROTOCOL: escaped}
 
 
