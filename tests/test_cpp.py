@@ -147,7 +147,8 @@ def test_the_header_is_used_in_each_standard_without_a_warning(
     source = PROGRAMS / "uses.cc"
     run([require_tool("cc"), "-DROVER_NAMES", "-c", "rover.c", "-o", "rover.o"], tmp_path)
     for standard in STANDARDS:
-        command = [require_tool(compiler), standard.replace("23", "2b"), *WARNINGS, "-I.", "-DROVER_NAMES"]
+        options = [standard.replace("23", "2b"), *WARNINGS, "-I.", "-DROVER_NAMES"]
+        command = [require_tool(compiler), *options]
         if standard == STANDARDS[-1] or (compiler, standard) == ("g++", STANDARDS[0]):
             run([*command, "-O1", source, "rover.o", "-o", "uses"], tmp_path)
             run(["./uses"], tmp_path)
