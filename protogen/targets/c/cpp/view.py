@@ -226,14 +226,10 @@ def _decoder(
         parts=cpp.of(thing, view.name, "parts"),
         view=view,
         received=tuple(
-            CppReceived(messages[it.message.name], _load(it.message)) for it in item.handlers
+            CppReceived(messages[it.message.name], f"::{it.message.load_call('event.')}")
+            for it in item.handlers
         ),
     )
-
-
-def _load(view: MessageView) -> str:
-    size = ", event.payload_size" if view.fixed is None else ""
-    return f"::{view.load}(&message, event.payload{size}{view.given('event.parts.')})"
 
 
 def _forms(item: FormsDecoder, decoders: dict[str, CppDecoder], cpp: CppNames) -> CppForms:

@@ -203,11 +203,6 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
         return message.takes_any_size or message.check_sees_size
 
     @property
-    def checks_head(self) -> bool:
-        """False: nothing is looked at before the end is there."""
-        return False
-
-    @property
     def compares_size(self) -> bool:
         """True if a length in the head has to say how large the payload turned out to be."""
         return self.only_size is None and any(number.is_length for number in self.head_numbers)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from fractions import Fraction
 from functools import lru_cache
-from math import copysign, inf, isfinite
+from math import inf
 
 import msgspec
 
@@ -26,6 +25,7 @@ from protogen.model.floats import float_within
 from protogen.model.payload_plan import FloatStep
 from protogen.model.types import Float, NumberType, is_text, storage_bits
 from protogen.targets.c.lines import Lines, function
+from protogen.targets.c.payload.float_bounds import float_literal, float_order
 from protogen.targets.c.spelling import Names
 
 _AT = "const uint8_t *at"
@@ -273,10 +273,10 @@ class Helpers:
         least, greatest = step.field.least, step.field.greatest
         if step.type.bits == 64:
             return self._float64_tests(step.type, expression, least, greatest)
-        low = [] if least is None else [f"{expression} >= {_float_literal(least, up=True)}"]
+        low = [] if least is None else [f"{expression} >= {float_literal(least, up=True)}"]
         if greatest is None:
             return low
-        return [*low, f"{expression} <= {_float_literal(greatest, up=False)}"]
+        return [*low, f"{expression} <= {float_literal(greatest, up=False)}"]
 
     def _float64_tests(
         self, type_: Float, expression: str, least: Fraction | None, greatest: Fraction | None
@@ -287,7 +287,7 @@ class Helpers:
         order = self.helper("float64_order", "uint64_t", (value,), body)
         low = -inf if least is None else float_within(least, 64, up=True)
         high = inf if greatest is None else float_within(greatest, 64, up=False)
-        bounds = _order_of(low or -0.0), _order_of(high or 0.0)
+        bounds = float_order(low or -0.0), float_order(high or 0.0)
         return [
             f"{order}({expression}) {sign} {hexadecimal(bound, 16)}"
             for sign, bound in zip((">=", "<="), bounds, strict=True)
@@ -399,27 +399,6 @@ def _stored(type_: NumberType) -> Iterator[str]:
 def _written(type_: NumberType, call: str) -> Iterator[str]:
     for byte in parted(type_, "value"):
         yield f"{call}, {byte});"
-
-
-# --- floats ---------------------------------------------------------------------------------------
-
-
-def _float_literal(bound: Fraction, *, up: bool) -> str:
-    """The number that a float is compared with.
-
-    The cast makes it a float also where constants have more digits than their type.
-    """
-    value = float_within(bound, 32, up=up)
-    if not isfinite(value):
-        value = copysign((2 - 2**-23) * 2.0**127, value)
-    text = f"{value:.9g}"
-    return f"(float){text}f" if "." in text or "e" in text else f"(float){text}.0f"
-
-
-def _order_of(value: float) -> int:
-    """The place of a float among all of them."""
-    bits: int = struct.unpack("<Q", struct.pack("<d", value))[0]
-    return bits ^ ((1 << 64) - 1) if bits >> 63 else bits | 1 << 63
 
 
 # --- expressions --------------------------------------------------------------------------------

@@ -96,6 +96,11 @@ class MessageView(msgspec.Struct, frozen=True):
         """The numbers of the frame as arguments behind others; `parts` leads to an event's."""
         return from_parts(self.held, parts)
 
+    def load_call(self, event: str) -> str:
+        """The call that makes `message` of a payload; `event` leads to an event's members."""
+        size = f", {event}payload_size" if self.fixed is None else ""
+        return f"{self.load}(&message, {event}payload{size}{self.given(f'{event}parts.')})"
+
 
 class MessagePrinter(msgspec.Struct, frozen=True):
     """Makes the views of a protocol's messages."""

@@ -56,7 +56,7 @@ export class GivenPart {
   }
 
   /** True of a number that needs no other check. */
-  isPlain(own: unknown): own is number {
+  private isPlain(own: unknown): own is number {
     const isIn = typeof own === "number" && own >= this.least && own <= this.greatest;
     return isIn && Number.isInteger(own);
   }

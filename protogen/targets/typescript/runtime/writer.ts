@@ -28,7 +28,7 @@ export class Writer extends Checks {
   private scratch: Uint8Array = new Uint8Array(256);
   bytes: Uint8Array = this.scratch;
   /** A frame as it is on the wire. */
-  stuffed: Uint8Array = new Uint8Array(256);
+  private stuffed: Uint8Array = new Uint8Array(256);
   /** Bytes so far, those in front of the payload among them. */
   size = 0;
   /** Values of the fields that are parts of the frame, by the names of the parts. */

@@ -24,7 +24,7 @@ export declare class GivenPart {
     /** What a caller gives for it. */
     own(given: GivenParts): unknown;
     /** True of a number that needs no other check. */
-    isPlain(own: unknown): own is number;
+    private isPlain;
     /** The value of what a caller gives. Throws an EncodeError. */
     given(own: unknown, strict: boolean): Value;
     /** The value where a caller gives none; null where there has to be one. */

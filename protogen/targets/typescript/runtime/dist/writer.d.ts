@@ -15,7 +15,7 @@ export declare class Writer extends Checks {
     private scratch;
     bytes: Uint8Array;
     /** A frame as it is on the wire. */
-    stuffed: Uint8Array;
+    private stuffed;
     /** Bytes so far, those in front of the payload among them. */
     size: number;
     /** Values of the fields that are parts of the frame, by the names of the parts. */
