@@ -581,26 +581,26 @@ function linuxFrame() {
       bytes[5] = length;
       bytes[end + 1] = 27;
       bytes[end + 2] = 3;
-      const wire = w.wire(3 * w.size);
-      let at = 0;
-      let i = 0;
-      for (; i < 2; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end; i++) {
+      let isPlain = true;
+      for (let i = 2; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum ^= byte;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
-        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
-        else wire[at++] = byte;
+        if (byte === 27 || byte === 124) isPlain = false;
       }
+      sum = sum & 255;
       bytes[end] = sum;
-      for (; i < end + 1; i++) {
+      if (isPlain && sum !== 27 && sum !== 124) return w.taken();
+      const wire = w.wire(3 * w.size);
+      let at = 0;
+      for (; at < 2; at++) wire[at] = bytes[at] ?? 0;
+      for (let i = 2; i < end + 1; i++) {
         const byte = bytes[i] ?? 0;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
         else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
         else wire[at++] = byte;
       }
-      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
+      for (let i = end + 1; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
       return wire.slice(0, at);
     },
     slots: 4,
@@ -721,26 +721,26 @@ function flexFrame() {
       bytes[5] = length;
       bytes[end + 1] = 27;
       bytes[end + 2] = 3;
-      const wire = w.wire(3 * w.size);
-      let at = 0;
-      let i = 0;
-      for (; i < 2; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end; i++) {
+      let isPlain = true;
+      for (let i = 2; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum ^= byte;
-        if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
-        else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
-        else wire[at++] = byte;
+        if (byte === 27 || byte === 124) isPlain = false;
       }
+      sum = sum & 255;
       bytes[end] = sum;
-      for (; i < end + 1; i++) {
+      if (isPlain && sum !== 27 && sum !== 124) return w.taken();
+      const wire = w.wire(3 * w.size);
+      let at = 0;
+      for (; at < 2; at++) wire[at] = bytes[at] ?? 0;
+      for (let i = 2; i < end + 1; i++) {
         const byte = bytes[i] ?? 0;
         if (byte === 27) { wire[at++] = 27; wire[at++] = 0; }
         else if (byte === 124) { wire[at++] = 124; wire[at++] = 27; wire[at++] = 1; }
         else wire[at++] = byte;
       }
-      for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
+      for (let i = end + 1; i < w.size; i++) wire[at++] = bytes[i] ?? 0;
       return wire.slice(0, at);
     },
     slots: 4,

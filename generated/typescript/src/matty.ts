@@ -449,20 +449,20 @@ function pcFrame(): rt.Frame {
       bytes[1] = length;
       bytes[2] = counter;
       bytes[3] = command;
-      const wire = w.wire(2 * w.size);
-      let at = 0;
-      let i = 0;
-      for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end; i++) {
+      let isPlain = true;
+      for (let i = 1; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum += byte;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
-        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
-        else wire[at++] = byte;
+        if (byte === 85 || byte === 86) isPlain = false;
       }
-      bytes[end] = -sum;
-      for (; i < end + 1; i++) {
+      sum = -sum & 255;
+      bytes[end] = sum;
+      if (isPlain && sum !== 85 && sum !== 86) return w.taken();
+      const wire = w.wire(2 * w.size);
+      let at = 0;
+      for (; at < 1; at++) wire[at] = bytes[at] ?? 0;
+      for (let i = 1; i < end + 1; i++) {
         const byte = bytes[i] ?? 0;
         if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
@@ -568,20 +568,20 @@ function espFrame(): rt.Frame {
       bytes[1] = length;
       bytes[2] = counter;
       bytes[3] = command;
-      const wire = w.wire(2 * w.size);
-      let at = 0;
-      let i = 0;
-      for (; i < 1; i++) wire[at++] = bytes[i] ?? 0;
       let sum = 0;
-      for (; i < end; i++) {
+      let isPlain = true;
+      for (let i = 1; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum += byte;
-        if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
-        else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }
-        else wire[at++] = byte;
+        if (byte === 85 || byte === 86) isPlain = false;
       }
-      bytes[end] = -sum;
-      for (; i < end + 1; i++) {
+      sum = -sum & 255;
+      bytes[end] = sum;
+      if (isPlain && sum !== 85 && sum !== 86) return w.taken();
+      const wire = w.wire(2 * w.size);
+      let at = 0;
+      for (; at < 1; at++) wire[at] = bytes[at] ?? 0;
+      for (let i = 1; i < end + 1; i++) {
         const byte = bytes[i] ?? 0;
         if (byte === 85) { wire[at++] = 86; wire[at++] = 170; }
         else if (byte === 86) { wire[at++] = 86; wire[at++] = 169; }

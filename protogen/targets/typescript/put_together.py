@@ -85,32 +85,35 @@ class PutTogether:
             self._lines.add(f"bytes[{_at(Place(side, offset))}] = {value};")
 
     def _stuff(self, region: StuffedRegion, run: Run) -> None:
-        """Print what copies all bytes, those of a region as they are stuffed and summed up."""
+        """Print what sums up, and then stuffs a region; few frames have a byte that is stuffed."""
         add, first, spec = self._lines.add, run.first.offset, self._plan.checksums[0].part.algorithm
-        add(f"const wire = w.wire({region.longest} * w.size);", "let at = 0;", "let i = 0;")
-        if region.before:
-            add(f"for (; i < {region.before}; i++) wire[at++] = bytes[i] ?? 0;")
+        see = f"if ({' || '.join(f'byte === {byte}' for byte, _ in region.codes)}) isPlain = false;"
+        is_plain = "".join(f" && sum !== {byte}" for byte, _ in region.codes)
+        add(f"let sum = {spec.init};", "let isPlain = true;")
         if first > region.before:
-            self._loop(region, str(first))
-        add(f"let sum = {spec.init};")
-        self._loop(region, "end", adding(spec))
-        add(f"bytes[end] = {'-' * spec.negated}sum;")
-        self._loop(region, "end + 1")
+            self._loop(region.before, str(first), see)
+        self._loop(first, "end", adding(spec), see)
+        add(f"sum = {'-' * spec.negated}sum & 255;", "bytes[end] = sum;")
+        add(f"if (isPlain{is_plain}) return w.taken();")
+        add(f"const wire = w.wire({region.longest} * w.size);", "let at = 0;")
+        add(f"for (; at < {region.before}; at++) wire[at] = bytes[at] ?? 0;")
+        self._loop(region.before, "end + 1", *_stuffing(region))
         if self._plan.end_bytes:
-            add("for (; i < w.size; i++) wire[at++] = bytes[i] ?? 0;")
+            add("for (let i = end + 1; i < w.size; i++) wire[at++] = bytes[i] ?? 0;")
         add("return wire.slice(0, at);")
 
-    def _loop(self, region: StuffedRegion, stop: str, *summing: str) -> None:
-        """Print what stuffs the bytes up to a place."""
-        with self._lines.block(f"for (; i < {stop}; i++)"):
+    def _loop(self, first: int, stop: str, *statements: str) -> None:
+        """Print what is done with each byte up to a place."""
+        with self._lines.block(f"for (let i = {first}; i < {stop}; i++)"):
             # No byte is missing, but types don't know that.
-            self._lines.add("const byte = bytes[i] ?? 0;", *summing)
-            word = ""
-            for byte, sequence in region.codes:
-                put = " ".join(f"wire[at++] = {item};" for item in sequence)
-                self._lines.add(f"{word}if (byte === {byte}) {{ {put} }}")
-                word = "else "
-            self._lines.add(f"{word}wire[at++] = byte;")
+            self._lines.add("const byte = bytes[i] ?? 0;", *statements)
+
+
+def _stuffing(region: StuffedRegion) -> list[str]:
+    """The statements that put a byte on the wire, or what stands for it."""
+    puts = {byte: "".join(f" wire[at++] = {it};" for it in word) for byte, word in region.codes}
+    tests = [f"if (byte === {byte}) {{{put} }}" for byte, put in puts.items()]
+    return "\nelse ".join([*tests, "wire[at++] = byte;"]).splitlines()
 
 
 def _shifted(part: TypedPart, name: str) -> list[str]:

@@ -4,6 +4,8 @@ export declare const NO_BYTES: Uint8Array;
 export declare function hex(digits: string): Uint8Array;
 /** Two hexadecimal digits a byte. */
 export declare function toHex(bytes: Uint8Array): string;
+/** A copy of the first `size` bytes. */
+export declare function firstOf(bytes: Uint8Array, size: number): Uint8Array;
 /** True if the bytes are the same. */
 export declare function equal(one: ArrayLike<number>, other: ArrayLike<number>): boolean;
 /** True if `word` stands at a place of the first `size` bytes. */

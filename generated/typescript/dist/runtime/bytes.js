@@ -16,6 +16,17 @@ export function toHex(bytes) {
     }
     return digits;
 }
+/** As many bytes are copied one by one at most, which is faster than a call for so few. */
+const FEW = 16;
+/** A copy of the first `size` bytes. */
+export function firstOf(bytes, size) {
+    if (size > FEW)
+        return bytes.slice(0, size);
+    const copy = new Uint8Array(size);
+    for (let index = 0; index < size; index++)
+        copy[index] = bytes[index];
+    return copy;
+}
 /** True if the bytes are the same. */
 export function equal(one, other) {
     if (one.length !== other.length)

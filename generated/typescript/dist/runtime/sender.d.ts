@@ -60,8 +60,6 @@ export declare class Sender {
     private leaves;
     /** The message of a frame's payload and values. Throws a Fault. */
     read(group: Group, payload: Uint8Array, values: readonly (Value | undefined)[]): NamedMessage;
-    /** The bytes of a message's payload that an encoder puts into a frame. */
-    trimmed(bytes: Uint8Array, from: number, size: number): number;
     /** The message called `name`, if the endpoint sends one. */
     named(name: string): MessagePlan | undefined;
 }
@@ -75,7 +73,7 @@ export declare function writePayload(message: MessagePlan, value: unknown, stric
  * With a size, it writes into an array of so many bytes, which are all that it has to write.
  */
 export declare function writerOf(strict: boolean, from: number, size?: number): Writer;
-/** Write the payload of a message. Throws an EncodeError. */
-export declare function writeMessage(message: MessagePlan, writer: Writer, value: unknown): void;
+/** Throw an EncodeError unless a message can have a payload of so many bytes. */
+export declare function checkSize(message: MessagePlan, size: number): void;
 /** Bytes at the start of `data` that the message takes. Throws a Fault. */
 export declare function prefixSize(message: MessagePlan, data: Uint8Array, held: HeldParts): number;

@@ -171,15 +171,6 @@ export class Sender {
         const fitting = group.messages.find((message) => holds(message.sizes, known.length)) ?? first;
         return readPayload(fitting, known, this.held(fitting, values));
     }
-    /** The bytes of a message's payload that an encoder puts into a frame. */
-    trimmed(bytes, from, size) {
-        const { kept } = this.frame;
-        let left = size;
-        if (kept !== null)
-            while (left > kept && bytes[from + left - 1] === 0)
-                left--;
-        return left;
-    }
     /** The message called `name`, if the endpoint sends one. */
     named(name) {
         return this.messages.get(name);
@@ -200,7 +191,8 @@ export function readPayload(message, payload, held = NO_PARTS) {
 /** The payload of a message. Throws an EncodeError. */
 export function writePayload(message, value, strict) {
     const writer = writerOf(strict, 0);
-    writeMessage(message, writer, value);
+    message.write(writer, value);
+    checkSize(message, writer.size);
     return writer.taken();
 }
 const WRITER = /* @__PURE__ */ new Writer();
@@ -212,11 +204,8 @@ const WRITER = /* @__PURE__ */ new Writer();
 export function writerOf(strict, from, size = 0) {
     return WRITER.restart(strict, from, size);
 }
-/** Write the payload of a message. Throws an EncodeError. */
-export function writeMessage(message, writer, value) {
-    const from = writer.size;
-    message.write(writer, value);
-    const size = writer.size - from;
+/** Throw an EncodeError unless a message can have a payload of so many bytes. */
+export function checkSize(message, size) {
     if (!holds(message.sizes, size)) {
         const problem = `makes ${size} bytes of payload, which ${message.name} can't have`;
         throw new EncodeError("", problem);

@@ -1,5 +1,5 @@
 /** Writes the values of a payload, one after another. Generated functions call it. */
-import { NO_BYTES } from "./bytes.js";
+import { firstOf, NO_BYTES } from "./bytes.js";
 import { Checks } from "./checks.js";
 import { spelled } from "./errors.js";
 import { NO_PARTS } from "./plan.js";
@@ -36,8 +36,9 @@ export class Writer extends Checks {
     restart(strict, from, size) {
         this.strict = strict;
         this.bytes = size ? new Uint8Array(size) : this.scratch;
-        this.size = 0;
-        this.room(from);
+        this.size = from;
+        if (from > this.bytes.length)
+            this.grow();
         this.held = NO_PARTS;
         if (this.path.length)
             this.path.length = 0;
@@ -45,7 +46,7 @@ export class Writer extends Checks {
     }
     /** All that was written. */
     taken() {
-        return this.bytes === this.scratch ? this.bytes.slice(0, this.size) : this.bytes;
+        return this.bytes === this.scratch ? firstOf(this.bytes, this.size) : this.bytes;
     }
     /** The place of so many more bytes. */
     room(size) {

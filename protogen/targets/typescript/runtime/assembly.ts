@@ -8,7 +8,7 @@ import { Layout, type Values } from "./layout.js";
 import type { Value } from "./numbers.js";
 import { areAmong, ownOf } from "./plan.js";
 import type { HeldParts, MessagePlan, PutTogether } from "./plan.js";
-import { writeMessage, writerOf, type Sender } from "./sender.js";
+import { checkSize, writerOf, type Sender } from "./sender.js";
 import type { Writer } from "./writer.js";
 
 /** What makes the frames of a sender, one after another. */
@@ -110,6 +110,9 @@ class Assembly {
   }
 }
 
+/** Behind every frame. It is no Infinity, which takes longer to compare with. */
+const FAR = 0x3fffffff;
+
 /** Makes the frames of a message. */
 export class FrameMaker {
   /** The first identity of the message. */
@@ -118,6 +121,10 @@ export class FrameMaker {
   private readonly isDoubtful: boolean;
   /** Bytes of every frame, where all have as many and none are stuffed; else 0. */
   private readonly size: number;
+  /** Where every payload ends, where all have as many bytes; else -1. */
+  private readonly end: number;
+  /** Where a payload may end whose zeros at the end are left out; far away where none are. */
+  private readonly kept: number;
   /** What makes a frame in one go, if all that has to be known is in it. */
   private readonly put: PutTogether | null;
   private readonly headSize: number;
@@ -140,6 +147,8 @@ export class FrameMaker {
     this.size = isFixed ? least + (least ? assembly.full : assembly.empty).size : 0;
     this.put = this.isDoubtful || message.held.length ? null : sender.frame.put;
     this.headSize = sender.frame.headSize;
+    this.end = least === greatest ? this.headSize + least : -1;
+    this.kept = kept === null ? FAR : this.headSize + kept;
     const { length } = sender;
     this.base = length ? length.base : 0;
     this.least = length ? length.least : 0;
@@ -163,9 +172,10 @@ export class FrameMaker {
   ): Uint8Array {
     const { assembly, headSize, put } = this;
     const writer = writerOf(strict, headSize, this.size);
-    writeMessage(this.message, writer, value);
-    const size = assembly.sender.trimmed(writer.bytes, headSize, writer.size - headSize);
-    writer.size = headSize + size;
+    this.message.write(writer, value as never);
+    if (writer.size !== this.end) checkSize(this.message, writer.size - headSize);
+    while (writer.size > this.kept && writer.bytes[writer.size - 1] === 0) writer.size--;
+    const size = writer.size - headSize;
     const found = put && put(this, writer, given, counts);
     const wire = found ?? this.described(writer, size, given, strict, counts);
     if (counts) for (const part of assembly.parts) part.count(given, counts);

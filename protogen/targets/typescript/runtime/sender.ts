@@ -211,14 +211,6 @@ export class Sender {
     return readPayload(fitting, known, this.held(fitting, values));
   }
 
-  /** The bytes of a message's payload that an encoder puts into a frame. */
-  trimmed(bytes: Uint8Array, from: number, size: number): number {
-    const { kept } = this.frame;
-    let left = size;
-    if (kept !== null) while (left > kept && bytes[from + left - 1] === 0) left--;
-    return left;
-  }
-
   /** The message called `name`, if the endpoint sends one. */
   named(name: string): MessagePlan | undefined {
     return this.messages.get(name);
@@ -245,7 +237,8 @@ export function readPayload<M>(
 /** The payload of a message. Throws an EncodeError. */
 export function writePayload(message: MessagePlan, value: unknown, strict: boolean): Uint8Array {
   const writer = writerOf(strict, 0);
-  writeMessage(message, writer, value);
+  message.write(writer, value as never);
+  checkSize(message, writer.size);
   return writer.taken();
 }
 
@@ -260,11 +253,8 @@ export function writerOf(strict: boolean, from: number, size = 0): Writer {
   return WRITER.restart(strict, from, size);
 }
 
-/** Write the payload of a message. Throws an EncodeError. */
-export function writeMessage(message: MessagePlan, writer: Writer, value: unknown): void {
-  const from = writer.size;
-  message.write(writer, value as never);
-  const size = writer.size - from;
+/** Throw an EncodeError unless a message can have a payload of so many bytes. */
+export function checkSize(message: MessagePlan, size: number): void {
   if (!holds(message.sizes, size)) {
     const problem = `makes ${size} bytes of payload, which ${message.name} can't have`;
     throw new EncodeError("", problem);

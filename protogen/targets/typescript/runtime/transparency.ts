@@ -1,6 +1,6 @@
 /** Transparency: what keeps delimiters out of a region of a frame, and takes it off again. */
 
-import { concatenated, equal, NO_BYTES, standsAt } from "./bytes.js";
+import { concatenated, equal, firstOf, NO_BYTES, standsAt } from "./bytes.js";
 import { Fault, spelled } from "./errors.js";
 
 /** Decodes one region, byte by byte. Of no use after a Fault or `finish`. */
@@ -45,9 +45,6 @@ function putBy(encode: Transparency["encode"]): Transparency["put"] {
     return wire;
   };
 }
-
-/** As many bytes are copied one by one at most, which is faster than a call for so few. */
-const COPIED = 16;
 
 /** Each byte by its value, as what a byte releases. */
 const BYTES: readonly Uint8Array[] = Array.from({ length: 256 }, (_, byte) => Uint8Array.of(byte));
@@ -201,7 +198,7 @@ export function substitution(
   const put: Transparency["put"] = (bytes, size, from, to) => {
     words ??= wordsOf(codes);
     const more = added(words.more, bytes, from, to);
-    if (!more && size > COPIED) return bytes.slice(0, size);
+    if (!more) return firstOf(bytes, size);
     return replaced(bytes, from, to, words.words, new Uint8Array(size + more));
   };
   return {

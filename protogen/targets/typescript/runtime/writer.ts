@@ -1,6 +1,6 @@
 /** Writes the values of a payload, one after another. Generated functions call it. */
 
-import { NO_BYTES } from "./bytes.js";
+import { firstOf, NO_BYTES } from "./bytes.js";
 import { Checks } from "./checks.js";
 import { spelled } from "./errors.js";
 import type { Value } from "./numbers.js";
@@ -42,8 +42,8 @@ export class Writer extends Checks {
   restart(strict: boolean, from: number, size: number): this {
     this.strict = strict;
     this.bytes = size ? new Uint8Array(size) : this.scratch;
-    this.size = 0;
-    this.room(from);
+    this.size = from;
+    if (from > this.bytes.length) this.grow();
     this.held = NO_PARTS;
     if (this.path.length) this.path.length = 0;
     return this;
@@ -51,7 +51,7 @@ export class Writer extends Checks {
 
   /** All that was written. */
   taken(): Uint8Array {
-    return this.bytes === this.scratch ? this.bytes.slice(0, this.size) : this.bytes;
+    return this.bytes === this.scratch ? firstOf(this.bytes, this.size) : this.bytes;
   }
 
   /** The place of so many more bytes. */

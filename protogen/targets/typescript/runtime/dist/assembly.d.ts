@@ -39,6 +39,10 @@ export declare class FrameMaker {
     private readonly isDoubtful;
     /** Bytes of every frame, where all have as many and none are stuffed; else 0. */
     private readonly size;
+    /** Where every payload ends, where all have as many bytes; else -1. */
+    private readonly end;
+    /** Where a payload may end whose zeros at the end are left out; far away where none are. */
+    private readonly kept;
     /** What makes a frame in one go, if all that has to be known is in it. */
     private readonly put;
     private readonly headSize;

@@ -5,7 +5,7 @@ import { EncodeError } from "./errors.js";
 import { GivenPart, givenTo } from "./given.js";
 import { Layout } from "./layout.js";
 import { areAmong, ownOf } from "./plan.js";
-import { writeMessage, writerOf } from "./sender.js";
+import { checkSize, writerOf } from "./sender.js";
 /** What makes the frames of a sender, one after another. */
 class Assembly {
     constructor(sender) {
@@ -97,6 +97,8 @@ class Assembly {
         }
     }
 }
+/** Behind every frame. It is no Infinity, which takes longer to compare with. */
+const FAR = 0x3fffffff;
 /** Makes the frames of a message. */
 export class FrameMaker {
     constructor(assembly, message) {
@@ -112,6 +114,8 @@ export class FrameMaker {
         this.size = isFixed ? least + (least ? assembly.full : assembly.empty).size : 0;
         this.put = this.isDoubtful || message.held.length ? null : sender.frame.put;
         this.headSize = sender.frame.headSize;
+        this.end = least === greatest ? this.headSize + least : -1;
+        this.kept = kept === null ? FAR : this.headSize + kept;
         const { length } = sender;
         this.base = length ? length.base : 0;
         this.least = length ? length.least : 0;
@@ -128,9 +132,12 @@ export class FrameMaker {
     make(value, given, strict, counts = null) {
         const { assembly, headSize, put } = this;
         const writer = writerOf(strict, headSize, this.size);
-        writeMessage(this.message, writer, value);
-        const size = assembly.sender.trimmed(writer.bytes, headSize, writer.size - headSize);
-        writer.size = headSize + size;
+        this.message.write(writer, value);
+        if (writer.size !== this.end)
+            checkSize(this.message, writer.size - headSize);
+        while (writer.size > this.kept && writer.bytes[writer.size - 1] === 0)
+            writer.size--;
+        const size = writer.size - headSize;
         const found = put && put(this, writer, given, counts);
         const wire = found ?? this.described(writer, size, given, strict, counts);
         if (counts)

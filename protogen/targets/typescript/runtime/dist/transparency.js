@@ -1,5 +1,5 @@
 /** Transparency: what keeps delimiters out of a region of a frame, and takes it off again. */
-import { concatenated, equal, NO_BYTES, standsAt } from "./bytes.js";
+import { concatenated, equal, firstOf, NO_BYTES, standsAt } from "./bytes.js";
 import { Fault, spelled } from "./errors.js";
 /** Decodes one region, byte by byte. Of no use after a Fault or `finish`. */
 export class Unstuffer {
@@ -28,8 +28,6 @@ function putBy(encode) {
         return wire;
     };
 }
-/** As many bytes are copied one by one at most, which is faster than a call for so few. */
-const COPIED = 16;
 /** Each byte by its value, as what a byte releases. */
 const BYTES = Array.from({ length: 256 }, (_, byte) => Uint8Array.of(byte));
 function cutSequence(held) {
@@ -166,8 +164,8 @@ export function substitution(codes, lenient = false) {
     const put = (bytes, size, from, to) => {
         words ?? (words = wordsOf(codes));
         const more = added(words.more, bytes, from, to);
-        if (!more && size > COPIED)
-            return bytes.slice(0, size);
+        if (!more)
+            return firstOf(bytes, size);
         return replaced(bytes, from, to, words.words, new Uint8Array(size + more));
     };
     return {
