@@ -293,15 +293,15 @@ function hostFrame() {
         content[filled++] = byte;
         if (filled === 1) {
           const id = view.getUint8(0);
-          const group = f.group(id);
-          if (group === undefined || group.fixed === null) return null;
-          due = group.fixed + 1;
+          const known = f.known(id);
+          if (known === undefined || known.fixed === null) return null;
+          due = known.fixed + 1;
         }
       }
       const end = due;
       if (place + 1 > size || data[place] !== 13) return null;
       const id = view.getUint8(0);
-      return f.event({ id }, f.group(id), 1, end, place + 1);
+      return f.event(id, f.known(id), 1, end, place + 1);
     },
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
@@ -376,15 +376,15 @@ function robotFrame() {
         content[filled++] = byte;
         if (filled === 1) {
           const id = view.getUint8(0);
-          const group = f.group(id);
-          if (group === undefined || group.fixed === null) return null;
-          due = group.fixed + 1;
+          const known = f.known(id);
+          if (known === undefined || known.fixed === null) return null;
+          due = known.fixed + 1;
         }
       }
       const end = due;
       if (place + 1 > size || data[place] !== 13) return null;
       const id = view.getUint8(0);
-      return f.event({ id }, f.group(id), 1, end, place + 1);
+      return f.event(id, f.known(id), 1, end, place + 1);
     },
     put: (f, w, given, counts) => {
       for (const _ in given) return null;

@@ -433,7 +433,7 @@ function pcFrame(): rt.Frame {
       if (place > size || sum & 255) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
-      return f.event({ counter, command }, f.group(command), 4, end, place);
+      return f.event(256 * (counter) + command, f.known(command), 4, end, place);
     },
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "counter") return null;
@@ -552,7 +552,7 @@ function espFrame(): rt.Frame {
       if (place > size || sum & 255) return null;
       const counter = view.getUint8(2);
       const command = view.getUint8(3);
-      return f.event({ counter, command }, f.group(command), 4, end, place);
+      return f.event(256 * (counter) + command, f.known(command), 4, end, place);
     },
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "counter") return null;

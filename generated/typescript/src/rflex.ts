@@ -841,7 +841,7 @@ function linuxFrame(): rt.Frame {
       const class_ = view.getUint8(2);
       const number_ = view.getUint8(3);
       const subclass = view.getUint8(4);
-      return f.event({ class: class_, number: number_, subclass }, f.group(256 * (class_) + subclass), 6, end, place + 2);
+      return f.event(256 * (256 * (class_) + number_) + subclass, f.known(256 * (class_) + subclass), 6, end, place + 2);
     },
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "number") return null;
@@ -984,7 +984,7 @@ function flexFrame(): rt.Frame {
       const class_ = view.getUint8(2);
       const number_ = view.getUint8(3);
       const subclass = view.getUint8(4);
-      return f.event({ class: class_, number: number_, subclass }, f.group(256 * (class_) + subclass), 6, end, place + 2);
+      return f.event(256 * (256 * (class_) + number_) + subclass, f.known(256 * (class_) + subclass), 6, end, place + 2);
     },
     put: (f, w, given, counts) => {
       for (const name in given) if (name !== "number") return null;

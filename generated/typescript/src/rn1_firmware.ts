@@ -708,12 +708,12 @@ function hostFrame(): rt.Frame {
       const { data, size, view } = f;
       if (at + 3 > size) return null;
       const start = view.getUint8(at);
-      const group = f.group(start);
-      if (group === undefined || group.fixed === null) return null;
-      const end = at + group.fixed + 1;
+      const known = f.known(start);
+      if (known === undefined || known.fixed === null) return null;
+      const end = at + known.fixed + 1;
       if (end + 1 > size || data[end] !== 255) return null;
       if (!f.isSevenBit(at + 1, end)) return null;
-      return f.event({ start }, group, at + 1, end, end + 1);
+      return f.event(start, known, at + 1, end, end + 1);
     },
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
@@ -773,12 +773,12 @@ function brainFrame(): rt.Frame {
       const { data, size, view } = f;
       if (at + 3 > size) return null;
       const start = view.getUint8(at);
-      const group = f.group(start);
-      if (group === undefined || group.fixed === null) return null;
-      const end = at + group.fixed + 1;
+      const known = f.known(start);
+      if (known === undefined || known.fixed === null) return null;
+      const end = at + known.fixed + 1;
       if (end > size) return null;
       if (!f.isSevenBit(at + 1, end)) return null;
-      return f.event({ start }, group, at + 1, end, end);
+      return f.event(start, known, at + 1, end, end);
     },
     put: (f, w, given, counts) => {
       for (const _ in given) return null;

@@ -6,7 +6,7 @@ has others for that, so that it has no more to say than where everything is.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
 from protogen.model.checksums import ChecksumSpec
@@ -39,16 +39,15 @@ from protogen.targets.typescript.names import locals_table
 
 def is_taken_at_once(plan: FramePlan) -> bool:
     """True if a function is printed for such frames."""
-    return is_plain(plan) and plan.identity_bits <= GREATEST_BITS
+    return is_plain(plan) and sum(it.type.bits for it in plan.frame.shown_parts) <= GREATEST_BITS
 
 
 class AtOnce:
-    """Prints the function of a sender; `shown` has the members of events by the names of parts."""
+    """Prints the function of a sender."""
 
-    def __init__(self, sender: Sender, shown: Mapping[str, str]) -> None:
+    def __init__(self, sender: Sender) -> None:
         self._plan: FramePlan = sender.plan
         self._greatest = sender.framing.payload.greatest
-        self._shown = shown
         self._lines = BracedLines(2, 2)
         self._locals = locals_table()
         self._folded = zero_sum_run(self._plan)
@@ -99,9 +98,9 @@ class AtOnce:
         plan, length = self._plan, self._plan.length
         if length is not None:
             return self._values[length.part.name], plan.head_size - length.base
-        self._lines.add(f"const group = {self._group()};")
-        self._refuse("group === undefined", "group.fixed === null")
-        return "group.fixed", plan.head_size
+        self._lines.add(f"const known = {self._known()};")
+        self._refuse("known === undefined", "known.fixed === null")
+        return "known.fixed", plan.head_size
 
     # --- content that is stuffed ------------------------------------------------------------------
 
@@ -199,20 +198,24 @@ class AtOnce:
     def _event(self) -> None:
         """Print what the event has, and where everything is."""
         plan = self._plan
-        parts = {key: self._values[name] for name, key in self._shown.items()}
+        parts = self._joined(plan.frame.shown_parts)
         is_found = plan.region is None and plan.length is None
-        group = Code("group") if is_found else self._group()
+        known = Code("known") if is_found else self._known()
         last = behind("end", plan.tail_size) if plan.region is None else "place"
         places = self._place(plan.head_size), Code("end"), behind(last, len(plan.end_bytes))
-        self._lines.add(f"return {call('f.event', parts, group, *places)};")
+        self._lines.add(f"return {call('f.event', parts, known, *places)};")
 
-    def _group(self) -> Code:
-        """The messages of the identity, whose parts make up one number."""
+    def _known(self) -> Code:
+        """The message of the identity."""
+        return call("f.known", self._joined(self._plan.identity))
+
+    def _joined(self, parts: Iterable[NumberPart]) -> Code:
+        """The values of parts as one number, each part above those behind it."""
         number = ""
-        for part in self._plan.identity:
+        for part in parts:
             value = self._values[part.name]
             number = f"{256**part.size} * ({number}) + {value}" if number else value
-        return call("f.group", Code(number or "0"))
+        return Code(number or "0")
 
     def _place(self, offset: int, *more: str) -> Code:
         """A place so many bytes behind the first one."""

@@ -86,7 +86,7 @@ class FramePrinter:
             "start": _STARTS[plan.start],
             "end": plan.end_bytes,
             "parts": _lines(map(self._part, plan.content)),
-            "whole": AtOnce(self._sender, self._keys).text() if is_taken_at_once(plan) else None,
+            "whole": AtOnce(self._sender).text() if is_taken_at_once(plan) else None,
             "put": PutTogether(plan).text() if is_put_together(plan) else None,
             "slots": len(self._slots),
             "identity": [self._slots[item.name] for item in frame.identity],

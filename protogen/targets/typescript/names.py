@@ -34,7 +34,7 @@ decoderStream encode events jsonLine rt protocol
 """What a module has itself."""
 
 _LOCALS = """
-r w m v rt at f data size content view place filled due values group end given counts name bytes
+r w m v rt at f data size content view place filled due values known end given counts name bytes
 wire i byte sum
 """
 """What generated functions have themselves."""

@@ -4,8 +4,9 @@
  * It has the places and bounds of a frame as constants, and takes none that is odd in any way: for
  * these, and for frames in pieces, there are others.
  */
-import { Framed, Source, type PartValues } from "./events.js";
-import type { Group, TakeWhole } from "./plan.js";
+import { Framed, Source, type JoinedParts } from "./events.js";
+import type { Group, NamedMessage, TakeWhole } from "./plan.js";
+import { Reader } from "./reader.js";
 import type { Sender } from "./sender.js";
 /** A place in some input, for a generated function. Its methods say if all is well so far. */
 export declare class AtOnce {
@@ -24,11 +25,9 @@ export declare class AtOnce {
     private readonly isStuffed;
     private readonly reader;
     private readonly frame;
-    /** Groups by the numbers of identities: those of small ones, and those of others. */
     private readonly near;
-    private readonly far;
-    /** Bytes that may end a start or an end inside the frame. */
-    private readonly marks;
+    private readonly frames;
+    private readonly givenUpAt;
     constructor(sender: Sender, whole: TakeWhole);
     /** Take frames from a start on, one behind another; the place behind the last one. */
     take(source: Source, size: number, start: number, events: unknown[]): number;
@@ -38,10 +37,21 @@ export declare class AtOnce {
     isSevenBit(from: number, to: number): boolean;
     /** The checksum of bytes. */
     sum(index: number, from: number, to: number): number | bigint;
-    /** The messages of an identity, which is the number of all its parts; undefined: look further. */
-    group(identity: number): Group | undefined;
+    /** The message of an identity, which is the number of all its parts; undefined: look further. */
+    known(identity: number): Known | undefined;
     /** The event of the frame up to a place, with such a payload. Throws a Fault. */
-    event(parts: PartValues, group: Group | undefined, from: number, to: number, behind: number): Framed | null;
+    event(parts: JoinedParts, known: Known | undefined, from: number, to: number, behind: number): Framed | null;
+}
+/** A message that needs nothing but its payload. */
+declare class Known {
+    readonly read: (reader: Reader) => NamedMessage;
+    /** The payload's size, where it has no other one. */
+    readonly fixed: number | null;
+    private readonly sizes;
+    constructor(group: Group);
+    /** True if a frame carries so many bytes of it. */
+    holds(size: number): boolean;
 }
 /** The bytes that may end a start or an end inside a frame. */
 export declare function marksOf({ frame, completesStart }: Sender): Uint8Array;
+export {};

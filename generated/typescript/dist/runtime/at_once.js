@@ -20,26 +20,16 @@ export class AtOnce {
         this.size = 0;
         this.at = 0;
         this.reader = new Reader(NO_BYTES);
-        /** Groups by the numbers of identities: those of small ones, and those of others. */
-        this.near = [];
-        this.far = new Map();
         const { frame } = sender;
         this.frame = frame;
+        this.givenUpAt = frame.givenUpAt;
         this.source = new Source(sender, NO_BYTES, 0);
         this.isStuffed = frame.transparency !== null;
         this.content = new Uint8Array(frame.greatest + 1);
         this.content.set(frame.startBytes);
         this.view = new DataView(this.content.buffer);
-        for (const [identity, group] of plainGroups(sender)) {
-            if (identity >= NEAR)
-                this.far.set(identity, group);
-            else {
-                while (this.near.length < identity)
-                    this.near.push(undefined);
-                this.near[identity] = group;
-            }
-        }
-        this.marks = marksOf(sender);
+        this.frames = framesOf(sender);
+        this.near = this.frames.near;
     }
     /** Take frames from a start on, one behind another; the place behind the last one. */
     take(source, size, start, events) {
@@ -69,7 +59,8 @@ export class AtOnce {
     // --- what generated functions call ---------------------------------------------------------
     /** True if nothing stands there that may begin another frame or end this one. */
     isClear(from, to) {
-        const { data, marks } = this;
+        const { data } = this;
+        const { marks } = this.frames;
         for (let place = from; place < to; place++)
             if (marks[data[place]])
                 return false;
@@ -83,20 +74,59 @@ export class AtOnce {
     sum(index, from, to) {
         return this.frame.sums[index].algorithm.compute(this.content, from, to);
     }
-    /** The messages of an identity, which is the number of all its parts; undefined: look further. */
-    group(identity) {
-        return identity < this.near.length ? this.near[identity] : this.far.get(identity);
+    /** The message of an identity, which is the number of all its parts; undefined: look further. */
+    known(identity) {
+        return identity < this.near.length ? this.near[identity] : this.frames.far.get(identity);
     }
     /** The event of the frame up to a place, with such a payload. Throws a Fault. */
-    event(parts, group, from, to, behind) {
+    event(parts, known, from, to, behind) {
         const { at, reader, source } = this;
         const size = behind - at;
-        if (!group || size > this.frame.givenUpAt || !holds(group.carried[0], to - from))
+        if (!known || size > this.givenUpAt || !known.holds(to - from))
             return null;
-        const message = group.messages[0].read(reader.restart(this.content, from, to));
-        reader.finish();
+        const message = known.read(reader.restart(this.content, from, to));
+        if (reader.at !== to)
+            reader.finish();
         return new Framed(source.offset + at, size, source, parts, message);
     }
+}
+/** A message that needs nothing but its payload. */
+class Known {
+    constructor(group) {
+        this.read = group.messages[0].read;
+        this.fixed = group.fixed;
+        this.sizes = group.carried[0];
+    }
+    /** True if a frame carries so many bytes of it. */
+    holds(size) {
+        return size === this.fixed || holds(this.sizes, size);
+    }
+}
+/** What is looked up of a sender, and the same for all its decoders. */
+class KnownFrames {
+    constructor(sender) {
+        /** Messages by the numbers of identities: those of small ones, and those of others. */
+        this.near = [];
+        this.far = new Map();
+        this.marks = marksOf(sender);
+        for (const [identity, group] of plainGroups(sender)) {
+            const known = new Known(group);
+            if (identity >= NEAR)
+                this.far.set(identity, known);
+            else {
+                while (this.near.length < identity)
+                    this.near.push(undefined);
+                this.near[identity] = known;
+            }
+        }
+    }
+}
+const KNOWN = /* @__PURE__ */ new WeakMap();
+function framesOf(sender) {
+    let found = KNOWN.get(sender);
+    if (!found)
+        KNOWN.set(sender, (found = new KnownFrames(sender)));
+    return found;
 }
 /** Identities below it are looked up in an array, which is faster. */
 const NEAR = 4096;

@@ -18,12 +18,17 @@ export class Source {
 }
 /** A valid frame. What is seldom asked for is looked up then, so that there is less of each. */
 export class Framed {
-    constructor(offset, size, source, parts, message) {
+    constructor(offset, size, source, shown, message) {
         this.offset = offset;
         this.size = size;
         this.source = source;
-        this.parts = parts;
+        this.shown = shown;
         this.message = message;
+    }
+    get parts() {
+        if (typeof this.shown === "number")
+            this.shown = this.source.codec.partsOf(this.shown);
+        return this.shown;
     }
     get kind() {
         return this.message ? "message" : "unknown";

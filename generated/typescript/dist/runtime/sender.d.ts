@@ -1,4 +1,5 @@
 /** A sender: its frame, with what is looked up of it. */
+import type { JoinedParts, PartValues } from "./events.js";
 import type { PartNumber, Value } from "./numbers.js";
 import type { Frame, Group, HeldParts, LengthNumber, MessagePlan } from "./plan.js";
 import type { NamedMessage, NumberPart, Part, ValueNumber } from "./plan.js";
@@ -21,6 +22,8 @@ export declare class Sender {
     readonly identityParts: readonly IdentityPart[];
     /** Values that callers give. */
     readonly valueParts: readonly ValueNumber[];
+    /** How many values each part has that events show. */
+    private readonly shownCounts;
     /** Where each part begins without the bytes of the payload, and where the last one ends. */
     readonly offsets: readonly number[];
     /** The same where the payload is empty. */
@@ -60,6 +63,8 @@ export declare class Sender {
     private leaves;
     /** The message of a frame's payload and values. Throws a Fault. */
     read(group: Group, payload: Uint8Array, values: readonly (Value | undefined)[]): NamedMessage;
+    /** The parts that events show, out of one number. */
+    partsOf(joined: JoinedParts): PartValues;
     /** The message called `name`, if the endpoint sends one. */
     named(name: string): MessagePlan | undefined;
 }

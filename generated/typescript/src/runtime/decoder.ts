@@ -9,7 +9,7 @@ import type { Sender } from "./sender.js";
 import type { Telling } from "./told.js";
 import { WholeFrames } from "./whole.js";
 
-const LEAST_ROOM = 4096;
+const LEAST_ROOM = 8192;
 
 /**
  * Cuts what is on a line into events: what one endpoint sends, or several.

@@ -75,15 +75,23 @@ export class Source {
 /** Values of the parts of a frame that events show. */
 export type PartValues = Readonly<Record<string, Value | undefined>>;
 
+/** The same in one number, each part above those behind it. */
+export type JoinedParts = number;
+
 /** A valid frame. What is seldom asked for is looked up then, so that there is less of each. */
 export class Framed {
   constructor(
     readonly offset: number,
     readonly size: number,
     readonly source: Source,
-    readonly parts: PartValues,
+    private shown: PartValues | JoinedParts,
     readonly message: NamedMessage | null,
   ) {}
+
+  get parts(): PartValues {
+    if (typeof this.shown === "number") this.shown = this.source.codec.partsOf(this.shown);
+    return this.shown;
+  }
 
   get kind(): "message" | "unknown" {
     return this.message ? "message" : "unknown";

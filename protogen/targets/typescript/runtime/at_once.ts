@@ -7,9 +7,9 @@
 
 import { hasHighBit, NO_BYTES } from "./bytes.js";
 import { Fault } from "./errors.js";
-import { Framed, Source, type PartValues } from "./events.js";
+import { Framed, Source, type JoinedParts } from "./events.js";
 import { holds } from "./plan.js";
-import type { Frame, Group, Runs, TakeWhole } from "./plan.js";
+import type { Frame, Group, NamedMessage, Runs, Sizes, TakeWhole } from "./plan.js";
 import { Reader } from "./reader.js";
 import type { Sender } from "./sender.js";
 
@@ -28,11 +28,9 @@ export class AtOnce {
   private readonly isStuffed: boolean;
   private readonly reader = new Reader(NO_BYTES);
   private readonly frame: Frame;
-  /** Groups by the numbers of identities: those of small ones, and those of others. */
-  private readonly near: (Group | undefined)[] = [];
-  private readonly far = new Map<number, Group>();
-  /** Bytes that may end a start or an end inside the frame. */
-  private readonly marks: Uint8Array;
+  private readonly near: readonly (Known | undefined)[];
+  private readonly frames: KnownFrames;
+  private readonly givenUpAt: number;
 
   constructor(
     readonly sender: Sender,
@@ -40,19 +38,14 @@ export class AtOnce {
   ) {
     const { frame } = sender;
     this.frame = frame;
+    this.givenUpAt = frame.givenUpAt;
     this.source = new Source(sender, NO_BYTES, 0);
     this.isStuffed = frame.transparency !== null;
     this.content = new Uint8Array(frame.greatest + 1);
     this.content.set(frame.startBytes);
     this.view = new DataView(this.content.buffer);
-    for (const [identity, group] of plainGroups(sender)) {
-      if (identity >= NEAR) this.far.set(identity, group);
-      else {
-        while (this.near.length < identity) this.near.push(undefined);
-        this.near[identity] = group;
-      }
-    }
-    this.marks = marksOf(sender);
+    this.frames = framesOf(sender);
+    this.near = this.frames.near;
   }
 
   /** Take frames from a start on, one behind another; the place behind the last one. */
@@ -83,7 +76,8 @@ export class AtOnce {
 
   /** True if nothing stands there that may begin another frame or end this one. */
   isClear(from: number, to: number): boolean {
-    const { data, marks } = this;
+    const { data } = this;
+    const { marks } = this.frames;
     for (let place = from; place < to; place++) if (marks[data[place]!]) return false;
     return true;
   }
@@ -98,26 +92,74 @@ export class AtOnce {
     return this.frame.sums[index]!.algorithm.compute(this.content, from, to);
   }
 
-  /** The messages of an identity, which is the number of all its parts; undefined: look further. */
-  group(identity: number): Group | undefined {
-    return identity < this.near.length ? this.near[identity] : this.far.get(identity);
+  /** The message of an identity, which is the number of all its parts; undefined: look further. */
+  known(identity: number): Known | undefined {
+    return identity < this.near.length ? this.near[identity] : this.frames.far.get(identity);
   }
 
   /** The event of the frame up to a place, with such a payload. Throws a Fault. */
   event(
-    parts: PartValues,
-    group: Group | undefined,
+    parts: JoinedParts,
+    known: Known | undefined,
     from: number,
     to: number,
     behind: number,
   ): Framed | null {
     const { at, reader, source } = this;
     const size = behind - at;
-    if (!group || size > this.frame.givenUpAt || !holds(group.carried[0]!, to - from)) return null;
-    const message = group.messages[0]!.read(reader.restart(this.content, from, to));
-    reader.finish();
+    if (!known || size > this.givenUpAt || !known.holds(to - from)) return null;
+    const message = known.read(reader.restart(this.content, from, to));
+    if (reader.at !== to) reader.finish();
     return new Framed(source.offset + at, size, source, parts, message);
   }
+}
+
+/** A message that needs nothing but its payload. */
+class Known {
+  readonly read: (reader: Reader) => NamedMessage;
+  /** The payload's size, where it has no other one. */
+  readonly fixed: number | null;
+  private readonly sizes: Sizes;
+
+  constructor(group: Group) {
+    this.read = group.messages[0]!.read;
+    this.fixed = group.fixed;
+    this.sizes = group.carried[0]!;
+  }
+
+  /** True if a frame carries so many bytes of it. */
+  holds(size: number): boolean {
+    return size === this.fixed || holds(this.sizes, size);
+  }
+}
+
+/** What is looked up of a sender, and the same for all its decoders. */
+class KnownFrames {
+  /** Messages by the numbers of identities: those of small ones, and those of others. */
+  readonly near: (Known | undefined)[] = [];
+  readonly far = new Map<number, Known>();
+  /** Bytes that may end a start or an end inside a frame. */
+  readonly marks: Uint8Array;
+
+  constructor(sender: Sender) {
+    this.marks = marksOf(sender);
+    for (const [identity, group] of plainGroups(sender)) {
+      const known = new Known(group);
+      if (identity >= NEAR) this.far.set(identity, known);
+      else {
+        while (this.near.length < identity) this.near.push(undefined);
+        this.near[identity] = known;
+      }
+    }
+  }
+}
+
+const KNOWN = /* @__PURE__ */ new WeakMap<Sender, KnownFrames>();
+
+function framesOf(sender: Sender): KnownFrames {
+  let found = KNOWN.get(sender);
+  if (!found) KNOWN.set(sender, (found = new KnownFrames(sender)));
+  return found;
 }
 
 /** Identities below it are looked up in an array, which is faster. */

@@ -2,6 +2,7 @@
 
 import { NO_BYTES } from "./bytes.js";
 import { EncodeError, Fault } from "./errors.js";
+import type { JoinedParts, PartValues } from "./events.js";
 import type { PartNumber, Value } from "./numbers.js";
 import { areAmong, holds, NO_PARTS } from "./plan.js";
 import type { Frame, Group, HeldParts, LengthNumber, MessagePlan } from "./plan.js";
@@ -51,6 +52,8 @@ export class Sender {
   readonly identityParts: readonly IdentityPart[];
   /** Values that callers give. */
   readonly valueParts: readonly ValueNumber[];
+  /** How many values each part has that events show. */
+  private readonly shownCounts: readonly number[];
   /** Where each part begins without the bytes of the payload, and where the last one ends. */
   readonly offsets: readonly number[];
   /** The same where the payload is empty. */
@@ -82,6 +85,10 @@ export class Sender {
     }
     const parts = [...frame.told.map((part) => ({ ...part, number: null })), ...numbers];
     this.identityParts = frame.identity.map((slot) => parts.find((part) => part.slot === slot)!);
+    this.shownCounts = frame.shown.map(({ name }) => {
+      const part = numbers.find((item) => item.name === name);
+      return 256 ** (part?.number.size ?? 0);
+    });
     this.offsets = offsetsOf(frame.parts, false);
     this.offsetsEmpty = offsetsOf(frame.parts, true);
     this.valueParts = numbers.filter((part): part is ValueNumber => part.kind === "value");
@@ -209,6 +216,19 @@ export class Sender {
     }
     const fitting = group.messages.find((message) => holds(message.sizes, known.length)) ?? first;
     return readPayload(fitting, known, this.held(fitting, values));
+  }
+
+  /** The parts that events show, out of one number. */
+  partsOf(joined: JoinedParts): PartValues {
+    const { shownCounts } = this;
+    const values = shownCounts.map(() => 0);
+    let rest = joined;
+    for (let index = shownCounts.length - 1; index >= 0; index--) {
+      const count = shownCounts[index]!;
+      values[index] = rest % count;
+      rest = Math.floor(rest / count);
+    }
+    return this.frame.partsOf(values);
   }
 
   /** The message called `name`, if the endpoint sends one. */

@@ -5,7 +5,7 @@ import { Fault } from "./errors.js";
 import { framed, Framed, Invalid, Source } from "./events.js";
 import { Search } from "./search.js";
 import { WholeFrames } from "./whole.js";
-const LEAST_ROOM = 4096;
+const LEAST_ROOM = 8192;
 /**
  * Cuts what is on a line into events: what one endpoint sends, or several.
  *

@@ -66,14 +66,17 @@ export declare class Source {
 }
 /** Values of the parts of a frame that events show. */
 export type PartValues = Readonly<Record<string, Value | undefined>>;
+/** The same in one number, each part above those behind it. */
+export type JoinedParts = number;
 /** A valid frame. What is seldom asked for is looked up then, so that there is less of each. */
 export declare class Framed {
     readonly offset: number;
     readonly size: number;
     readonly source: Source;
-    readonly parts: PartValues;
+    private shown;
     readonly message: NamedMessage | null;
-    constructor(offset: number, size: number, source: Source, parts: PartValues, message: NamedMessage | null);
+    constructor(offset: number, size: number, source: Source, shown: PartValues | JoinedParts, message: NamedMessage | null);
+    get parts(): PartValues;
     get kind(): "message" | "unknown";
     get raw(): Uint8Array;
     get sender(): string;

@@ -49,6 +49,10 @@ export class Sender {
         }
         const parts = [...frame.told.map((part) => ({ ...part, number: null })), ...numbers];
         this.identityParts = frame.identity.map((slot) => parts.find((part) => part.slot === slot));
+        this.shownCounts = frame.shown.map(({ name }) => {
+            const part = numbers.find((item) => item.name === name);
+            return 256 ** (part?.number.size ?? 0);
+        });
         this.offsets = offsetsOf(frame.parts, false);
         this.offsetsEmpty = offsetsOf(frame.parts, true);
         this.valueParts = numbers.filter((part) => part.kind === "value");
@@ -170,6 +174,18 @@ export class Sender {
         }
         const fitting = group.messages.find((message) => holds(message.sizes, known.length)) ?? first;
         return readPayload(fitting, known, this.held(fitting, values));
+    }
+    /** The parts that events show, out of one number. */
+    partsOf(joined) {
+        const { shownCounts } = this;
+        const values = shownCounts.map(() => 0);
+        let rest = joined;
+        for (let index = shownCounts.length - 1; index >= 0; index--) {
+            const count = shownCounts[index];
+            values[index] = rest % count;
+            rest = Math.floor(rest / count);
+        }
+        return this.frame.partsOf(values);
     }
     /** The message called `name`, if the endpoint sends one. */
     named(name) {
