@@ -359,16 +359,16 @@ and what reads the payload of one message.
 """
 
 NOTES = """\
-What costs more than by hand: each event has an object of the frame's parts besides, so there is
-more to allocate and to collect. Frames that are there as a whole are taken by a printed
-function, which takes stuffing off and sums up in one loop, as code by hand does; then the message
-is looked up by its identity, and its function called. A frame in pieces goes by a description of
-the frame, and is tried by that function again once much more of it has come. In small portions this
-counts less, because code by hand copies what is left and begins the frame anew each time.
-Encoders put plain frames together by a printed function, which sums up and stuffs in one loop; the
-payload is written before, as only then its size is known, where code by hand does all of it in one
-pass. They look the message up by its name, and see to it that callers give no part that there is
-none of.
+What costs more than by hand: the message is looked up by its identity, and its function called;
+whatever fits no fixed bounds is left to a description of the frame. Frames that are there as a
+whole are taken by a printed function, which takes stuffing off and sums up in one loop, as code by
+hand does. The parts of an event are one number until they are asked for. A frame in pieces goes by
+the description, and is tried by that function again once much more of it has come. In small
+portions this counts less, because code by hand copies what is left and begins the frame anew each
+time. Encoders write the payload first, as only then its size is known, and put plain frames
+together by a printed function: it sums up, and stuffs only where a byte has to be stuffed, where
+code by hand does all of it in one pass. They look the message up by its name, and see to it that
+callers give no part that there is none of.
 """
 
 

@@ -64,6 +64,38 @@ def test_a_part_that_differs_from_the_field_is_an_error_with_its_name() -> None:
     assert answer == {"path": "id", "problem": "is 130, as the message says, and not 129"}
 
 
+WIDE = """\
+protocol: wide
+endpoints: {host: Host, board: Board}
+byte_order: little
+frame:
+  start: {literal: 0xA5, unprotected: plain}
+  length: {type: uint8, counts: payload}
+  id: {type: uint16, id: true}
+  count: {type: uint32, counter: true}
+  payload: {}
+  check: {type: uint8, algorithm: xor-8, covers: length..payload}
+decisions:
+  plain: {question: Q, document: D, choice: C, because: B}
+messages: {state: {id: 0x1234, from: board, fields: {speed: uint16}}}
+"""
+
+
+def test_parts_that_make_no_small_number_are_those_that_were_sent(tmp_path: Path) -> None:
+    path = tmp_path / "wide.yaml"
+    path.write_text(WIDE, encoding="utf-8")
+    frames = [
+        # start, length, identity, counter, speed, exclusive or of all but the start
+        bytes.fromhex("A5 02 3412 FFFFFFFF 0100 25"),
+        bytes.fromhex("A5 02 3412 00000080 0001 A5"),
+    ]
+    (found,) = engine.events(engine.module_at(path), "board", [b"".join(frames)])
+    assert [event["parts"] for event in found] == [
+        {"id": 0x1234, "count": 0xFFFFFFFF},
+        {"id": 0x1234, "count": 0x80000000},
+    ]
+
+
 @pytest.mark.parametrize("path", ALL, ids=name_of)
 def test_cases_of_the_fuzzer_give_the_same_frames_and_events(path: Path) -> None:
     """What `protogen fuzz --examples 1` tries: all boundaries of all values."""
