@@ -7,6 +7,7 @@ import re
 import shlex
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +61,70 @@ class TestCommands:
             for hook in repo["hooks"]
         }
         assert named == set(IDS)
+
+
+# --- tests that fail by chance --------------------------------------------------------------------
+
+TRIED = """
+from pathlib import Path
+from hypothesis import given, strategies
+
+MARK = Path(__file__).with_name("mark")
+
+
+def test_passes():
+    assert True
+
+
+def test_fails_once():
+    tried, _ = MARK.exists(), MARK.write_text("")
+    assert tried, "by chance"
+
+
+@given(strategies.integers())
+def test_always_fails_where_a_property_is_wrong(number):
+    assert abs(number) < 300
+"""
+
+
+@pytest.fixture
+def tried(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Runs tests as CI does."""
+    file = tmp_path / "test_tried.py"
+    file.write_text(TRIED, encoding="utf-8")
+
+    def runs(*arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [ROOT / ".ci" / "tests", sys.executable, "-q", str(file), *arguments],
+            env={**os.environ, "PYTEST_XDIST_AUTO_NUM_WORKERS": "1"},
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+            check=False,
+        )
+
+    return runs
+
+
+class TestTriedAgain:
+    def test_what_fails_by_chance_is_named(self, tried: Callable[..., Any]) -> None:
+        done = tried("-k", "passes or once")
+        assert done.returncode == 0, done.stderr
+        closing, again, named, *wrong = done.stdout.splitlines()
+        assert closing.startswith("1 failed, 1 passed in")
+        assert again.startswith("Tried again: 1 passed, ")
+        assert re.match(r"FAILED .*::test_fails_once", named)
+        assert wrong[0].endswith("AssertionError: by chance")
+
+    def test_what_is_wrong_fails_again(self, tried: Callable[..., Any]) -> None:
+        done = tried()
+        assert done.returncode == 1
+        assert done.stdout == ""
+        wrong = re.findall(r"^_+ (test_\w+) _+$", done.stderr, re.MULTILINE)
+        assert sorted(wrong) == [
+            *["test_always_fails_where_a_property_is_wrong"] * 2,
+            "test_fails_once",
+        ]
 
 
 # --- the real pre-commit --------------------------------------------------------------------------
