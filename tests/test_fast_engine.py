@@ -24,7 +24,7 @@ from unittest.mock import MagicMock, Mock
 
 import numpy
 import pytest
-from compiled import DOCUMENTS, module_at, name_of, protocol_of, senders
+from compiled import DOCUMENTS, ROOT, module_at, name_of, protocol_of, senders
 from corpus import known_frames, material_of, portions, single_bytes, stream_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -722,6 +722,21 @@ def test_strange_values_have_the_same_outcome(path: Path, sender: str) -> None:
                 given = {**parts, name: value}
                 due = outcome(module.encode, event.message, sender, engine="construct", **given)
                 assert outcome(module.encode, event.message, sender, **given) == due
+
+
+@pytest.mark.parametrize(("words", "size"), [(100, 399), (100, 143), (37, 147), (37, 403)])
+@pytest.mark.parametrize("kind", [int, numpy.uint8, numpy.int8, numpy.uint16])
+def test_sizes_are_worked_out_in_exact_integers(
+    kind: Any, words: int, size: int, recwarn: pytest.WarningsRecorder
+) -> None:
+    """Of `words * 4 - 1` bytes; in 8 bits, 100 * 4 is 144."""
+    module = module_at(ROOT / "tests" / "framings" / "told_numbers.yaml")
+    numbers = {"n": 1, "pairs": [0, 0], "all_but_one": [], "length": 8, "points": [], "tail": 0}
+    item = module.Lines(words=kind(words), data=bytes(size), rest="    ", **numbers)
+    due = outcome(module.encode, item, engine="construct")
+    assert outcome(module.encode, item) == due
+    assert (due[0] == "frame") == (size == words * 4 - 1)
+    assert list(recwarn) == []
 
 
 @pytest.mark.parametrize("bits", [7, 14])

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from protogen.model.expressions import (
+    Arithmetic,
     Expression,
     Level,
     Membership,
+    Minus,
     Operand,
     Printer,
     Quotient,
+    every,
     operands,
     plain_name,
 )
@@ -50,6 +53,13 @@ class _PythonPrinter(Printer):
 def in_python(expression: Expression, whole: Callable[[Operand], str]) -> str:
     """The Python of an expression; `whole` gives that of a field."""
     return _PythonPrinter(whole).text(expression)
+
+
+def in_integers(expression: Expression, whole: Callable[[Operand], str]) -> str:
+    """The Python of an expression over what users give: NumPy's numbers would wrap around."""
+    if not any(isinstance(item, Arithmetic | Minus) for item in every(expression)):
+        return in_python(expression, whole)
+    return in_python(expression, lambda operand: f"int({whole(operand)})")
 
 
 def formula(expression: Expression) -> str:

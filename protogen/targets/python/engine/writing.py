@@ -48,7 +48,7 @@ from protogen.targets.python.engine.packing import Record, packed, packed_fill, 
 from protogen.targets.python.engine.raw import Raw, member_of
 from protogen.targets.python.engine.struct_calls import Packed, Packer
 from protogen.targets.python.formats import constant
-from protogen.targets.python.formulas import in_python
+from protogen.targets.python.formulas import in_integers
 from protogen.targets.python.literals import number, octets_in_class, tuple_of
 
 _GREATEST_FLOAT32 = "3.4028234663852886e38"
@@ -352,7 +352,7 @@ class _Writer(Raw):
             self.lines.refuse_if(outside_of(count, f"len({value})"))
         else:
             assert count.expression is not None
-            number = in_python(count.expression, self.raw_of)
+            number = in_integers(count.expression, self.raw_of)
             self.lines.refuse_if(f"len({value}) != {number}")
             if count.stated or plain_name(count.expression) is None:
                 self.lines.refuse_if(f"not {count.least} <= len({value}) <= {count.greatest}")
@@ -360,7 +360,7 @@ class _Writer(Raw):
     def _choose(self, value: str, step: ChooseStep) -> None:
         self._bytes.flush()
         data = self.lines.local("case")
-        selector = in_python(step.expression, self.raw_of)
+        selector = in_integers(step.expression, self.raw_of)
         with self.lines.block(f"match {selector}:"):
             for pattern, case in patterns(step):
                 with self.lines.block(f"case {pattern}:"):
@@ -384,7 +384,7 @@ class _Writer(Raw):
         given = f"{value} is not None"
         match step.presence:
             case ConditionalPresence(expression=expression):
-                condition, refused = in_python(expression, self.raw_of), given
+                condition, refused = in_integers(expression, self.raw_of), given
             case TrailingPresence():
                 condition, refused = given, ""
         with self.lines.block(f"if {condition}:"):
@@ -446,7 +446,7 @@ class _Writer(Raw):
     def _marked(self, value: str, mark: Formula) -> None:
         """Refuse elements of which another one than the last says that it is the last."""
         last, each = (
-            in_python(mark.expression, partial(member_of, item))
+            in_integers(mark.expression, partial(member_of, item))
             for item in (f"{value}[-1]", "each")
         )
         self.lines.refuse_if(f"not ({last}) or any({each} for each in {value}[:-1])")
