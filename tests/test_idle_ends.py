@@ -203,6 +203,7 @@ def test_a_capture_has_one_silence_at_its_end(
     assert len(tables.messages["ping"]["offset"]) == 0
 
 
+@pytest.mark.filterwarnings("default:only a silence")
 def test_convert_says_that_a_capture_has_one_silence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
