@@ -148,9 +148,9 @@ def random_samples(
     message: Message, frame: Frame, random: Random
 ) -> Iterator[tuple[Values, Values]]:
     """Yield values of the fields and of the caller's parts without end, if any fit the frame."""
-    chance = Chance(random)
+    chance, sizes, held = Chance(random), _carried(message, frame), _held_parts(message, frame)
     while True:
-        tries = (_sample(message, frame, chance) for _ in range(_TRIES))
+        tries = (_sample(message, sizes, held, chance) for _ in range(_TRIES))
         sample = next(filter(None, tries), None)
         if sample is None:
             return
@@ -158,18 +158,19 @@ def random_samples(
 
 
 def _boundary_samples(message: Message, frame: Frame) -> Iterator[tuple[Values, Values]]:
-    rounds = {1}
+    rounds, sizes, held = {1}, _carried(message, frame), _held_parts(message, frame)
     for round in count():
         if round == max(rounds):
             return
-        sample = _sample(message, frame, Boundaries(round, rounds))
+        sample = _sample(message, sizes, held, Boundaries(round, rounds))
         if sample is not None:
             yield sample
 
 
-def _sample(message: Message, frame: Frame, chooser: Chooser) -> tuple[Values, Values] | None:
+def _sample(
+    message: Message, sizes: SizeSet, held: Mapping[str, HeldPart], chooser: Chooser
+) -> tuple[Values, Values] | None:
     """A sample; None where its payload has a size that the frame does not let it have."""
-    sizes, held = _carried(message, frame), _held_parts(message, frame)
     if message.unspecified:
         fields = {message.fields[0].name: chooser.choose(unspecified_choices(message, sizes))}
     else:
