@@ -52,7 +52,9 @@ FAULTY = {"wrong.yaml", "rover_seen.yaml", "sensor_guess.yaml"}
 def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the schemas of the project and of all pages, and some generated code."""
     folder = tmp_path_factory.mktemp("documents")
-    shutil.copytree(ROOT / "schemas", folder / "schemas")
+    # Else the library, to which a link leads, would be compiled, and copied for each page.
+    without = shutil.ignore_patterns("library")
+    shutil.copytree(ROOT / "schemas", folder / "schemas", ignore=without)
     for name, text in {**named_schemas(), **definitions()}.items():
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
