@@ -168,9 +168,6 @@ def test_annotations_are_comments(path: Path, tmp_path: Path) -> None:
     assert re.sub(r" +//@ (split .*;\n +;|slevel merge;)\n", "", with_comments) == plain
 
 
-_TAKES = re.compile(r"\b\w+_take_byte\b")
-
-
 def prove_sending(made: Generated) -> Report:
     """Analyse what encodes and sends messages of up to `GREATEST` bytes."""
     assert made.source is not None
@@ -191,14 +188,7 @@ def whole_driver(made: Generated, *, loads: bool = True) -> Driver:
     header = made.header.read_text(encoding="utf-8")
     plain = made.source.read_text(encoding="utf-8")
     made.source.write_text(fed(plain, header), encoding="utf-8")
-    driver = push_driver(made.protocol, header, feeds=True, loads=loads)
-    depths = {
-        f"{name}:64": f"{name}(" in plain for name in _TAKES.findall(" ".join(driver.options))
-    }
-    options = driver.options
-    for depth, is_there in depths.items():  # Not each `feed` has a function of its own for a byte.
-        options = options if is_there else tuple(o.replace(f",{depth}", "") for o in options)
-    return replace(driver, options=options)
+    return push_driver(made.protocol, header, feeds=True, loads=loads)
 
 
 @pytest.mark.parametrize(("path", "events", "machine"), PUSHES, ids=name_of)

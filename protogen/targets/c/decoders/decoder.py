@@ -37,9 +37,19 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
         return DelimitedDecoder(*astuple(self)) if is_delimited else None
 
     @property
-    def polled(self) -> FlatDecoder | DelimitedDecoder | None:
+    def polled(self) -> FlatDecoder | DelimitedDecoder | PushDecoder | None:
         """View of a decoder whose `push` returns which message is complete, if this is one."""
-        return self.flat or self.delimited
+        return (self.flat or self.delimited or self.push) if self.is_polled else None
+
+    @property
+    def fills_in_place(self) -> bool:
+        """True if nothing that is needed stands where a payload is filled up."""
+        return self.flat is not None or self.delimited is not None
+
+    @property
+    def gives_more(self) -> bool:
+        """True if messages may be left when `push` has returned one."""
+        return self.polled is self.push and self.push.gives_more
 
     @property
     def size_type(self) -> str:

@@ -14,9 +14,9 @@ class DecoderStyle(Enum):
     """Shape in which a decoder is printed."""
 
     PUSH = auto()
-    """A machine with states, which calls a handler: any frame, any events."""
+    """A machine with states: any frame, any events."""
     FLAT = auto()
-    """No more states than how much of a frame is there; `push` returns the message."""
+    """No more states than how much of a frame is there."""
     DELIMITED = auto()
     """The same where a frame is judged at its end, whatever its head says."""
 
