@@ -77,6 +77,37 @@ template <class Event> struct queue {{
     }}
 }};
 
+/* A decoder as it was at each message that C++ took out of it, to be asked for again in C. */
+template <class Decoder> struct replay {{
+    static constexpr size_t most = 64;
+    Decoder seen[most], last;
+    enum {message} messages[most];
+    size_t count, next;
+
+    void add(const Decoder &decoder, enum {message} message) {{
+        if (count == most) {{
+            std::abort();
+        }}
+        seen[count] = decoder;
+        messages[count++] = message;
+    }}
+
+    enum {message} start(Decoder &decoder, enum {message} none) {{
+        last = decoder;
+        return take(decoder, none);
+    }}
+
+    enum {message} take(Decoder &decoder, enum {message} none) {{
+        if (next == count) {{
+            decoder = last;
+            next = count = 0;
+            return none;
+        }}
+        decoder = seen[next];
+        return messages[next++];
+    }}
+}};
+
 extern "C" {{
 """
 
@@ -159,17 +190,27 @@ enum {self.name}_result cpp_{name}({given}, {self.name}_put put, void *user) {{
     def decoder(self, item: CppDecoder) -> Iterator[Function]:
         prefix, calls = item.view.prefix, self.calls(item)
         yield self.dispatch(prefix, calls)
-        if item.polls:
-            yield from self.polled(item)
-        else:
-            yield from self.called(item.name, item.event, prefix)
+        yield from self.decoding(item, prefix, item.view.gives_more)
         yield from self.told(item.name, prefix, item.view.told_parts)
 
     def forms(self, item: CppForms) -> Iterator[Function]:
         calls = [call for form in item.forms for call in self.calls(form.decoder)]
         yield self.dispatch(item.view.prefix, calls)
-        yield from self.called(item.name, item.event, item.view.prefix)
+        yield from self.decoding(item, item.view.prefix, True)
         yield from self.told(item.name, item.view.prefix, item.told_parts)
+
+    def decoding(
+        self, item: CppDecoder | CppForms, prefix: str, gives_more: bool
+    ) -> Iterator[Function]:
+        """The functions that take bytes."""
+        if not item.polls:
+            yield from self.called(item.name, item.event, prefix)
+            return
+        yield self.fed(item, prefix)
+        if gives_more:
+            yield from self.replayed(item, prefix)
+        else:
+            yield from self.polled(item, prefix)
 
     def calls(self, item: CppDecoder) -> list[str]:
         """A handler for each message, with its parts."""
@@ -210,20 +251,51 @@ void cpp_{prefix}_decoder_{word}(struct {prefix}_decoder *decoder{parameters}) {
 }}""",
             )
 
-    def polled(self, item: CppDecoder) -> Iterator[Function]:
-        """The functions of one that is polled."""
-        p, event = item.view.prefix, f"{self.space}::{item.event}"
+    def polled(self, item: CppDecoder | CppForms, p: str) -> Iterator[Function]:
+        """The functions of one that is polled, and has one message at most."""
+        event = f"{self.space}::{item.event}"
         start = f"reinterpret_cast<{self.space}::{item.name} *>(decoder)->"
-        yield (
-            f"{p}_decoder_push",
-            f"""
-enum {self.name}_message cpp_{p}_decoder_push(struct {p}_decoder *decoder, uint8_t byte) {{
+        for word, parameter, given in (("push", ", uint8_t byte", "byte, "), ("flush", "", "")):
+            yield (
+                f"{p}_decoder_{word}",
+                f"""
+enum {self.name}_message cpp_{p}_decoder_{word}(struct {p}_decoder *decoder{parameter}) {{
     enum {self.name}_message found = {self.upper}_NO_MESSAGE;
-    {start}push(byte, [&found](const {event} &event) {{ found = event.message; }});
+    {start}{word}({given}[&found](const {event} &event) {{ found = event.message; }});
     return found;
 }}""",
-        )
+            )
+
+    def replayed(self, item: CppDecoder | CppForms, p: str) -> Iterator[Function]:
+        """Those of one that may have several, of which C++ has taken all."""
+        event, seen = f"{self.space}::{item.event}", f"seen_by_{p}"
+        kind = f"enum {self.name}_message"
+        start = f"reinterpret_cast<{self.space}::{item.name} *>(decoder)->"
+        words = (("push", ", uint8_t byte", "byte, "), ("idle", "", ""))
+        texts = {
+            word: f"""
+{kind} cpp_{p}_decoder_{word}(struct {p}_decoder *decoder{parameter}) {{
+    {start}{word}(
+        {given}[decoder](const {event} &event) {{ {seen}.add(*decoder, event.message); }});
+    return {seen}.start(*decoder, {self.upper}_NO_MESSAGE);
+}}"""
+            for word, parameter, given in words
+        }
+        yield f"{p}_decoder_push", f"static replay<struct {p}_decoder> {seen};\n{texts['push']}"
+        yield f"{p}_decoder_flush", texts["idle"].replace("_decoder_idle(", "_decoder_flush(", 1)
         yield (
+            f"{p}_decoder_next",
+            f"""
+{kind} cpp_{p}_decoder_next(struct {p}_decoder *decoder) {{
+    return {seen}.take(*decoder, {self.upper}_NO_MESSAGE);
+}}""",
+        )
+
+    def fed(self, item: CppDecoder | CppForms, p: str) -> Function:
+        """`feed` of one that is polled."""
+        event = f"{self.space}::{item.event}"
+        start = f"reinterpret_cast<{self.space}::{item.name} *>(decoder)->"
+        return (
             f"{p}_decoder_feed",
             f"""
 size_t cpp_{p}_decoder_feed(struct {p}_decoder *decoder, const uint8_t *data, size_t size,
@@ -237,13 +309,6 @@ size_t cpp_{p}_decoder_feed(struct {p}_decoder *decoder, const uint8_t *data, si
     }}
     event->message = {self.upper}_NO_MESSAGE;
     return size;
-}}""",
-        )
-        yield (
-            f"{p}_decoder_flush",
-            f"""
-void cpp_{p}_decoder_flush(struct {p}_decoder *decoder) {{
-    {start}idle();
 }}""",
         )
 
@@ -264,7 +329,8 @@ def shim_of(unit: Unit) -> tuple[str, tuple[str, ...]]:
     functions = tuple(_Printer(unit).functions())
     text = "\n".join(text for _, text in functions)
     file = unit.names.file
-    return f"{_HEAD.format(file=file)}{text}\n}}\n", tuple(name for name, _ in functions)
+    head = _HEAD.format(file=file, message=f"{unit.module.name}_message")
+    return f"{head}{text}\n}}\n", tuple(name for name, _ in functions)
 
 
 def build_over_cpp(protocol: Protocol, options: COptions, standard: str) -> Callable[..., Path]:

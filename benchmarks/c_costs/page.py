@@ -82,9 +82,8 @@ These programs send and receive the same messages:
   the same checks: no heap, bounded, ranges checked before anything is written, resynchronisation.
   Its frames are compared with protogen's, byte for byte, before anything is measured. It returns
   from `push` which message is complete, and needs no handler. Nor do protogen's decoders with
-  `--events messages` where a frame's end is protected, or its start is and its size stands in
-  front, which are measured with their own interface: `push` and `feed` return what is complete.
-  Those of dagny and probe, and all of them with all events, call a handler.
+  `--events messages`, which are measured with their own interface: `push`, `next` and `feed` return
+  what is complete. Those with all events call a handler.
 * The inlined expert is the same text, included into the application and `static inline`: what a
   library of headers alone is, and about what `-flto` makes of the other.
 * MAVLink C is mavgen's, version 2 of the wire, from the dialects in [c/mavlink](c/mavlink/rn1.xml),

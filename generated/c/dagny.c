@@ -839,8 +839,8 @@ enum dagny_result dagny_command_decode(struct dagny_command *message, const uint
 enum {
     DAGNY_SEEKING,
     DAGNY_TAKING,
-    DAGNY_FAILED,
-    DAGNY_LOST /* An end has to come before the next frame. */
+    DAGNY_LOST, /* An end has to come before the next frame. */
+    DAGNY_FAILED
 };
 
 enum {
@@ -1366,7 +1366,7 @@ static void dagny_host_add_noise(struct dagny_host_decoder *decoder, uint16_t si
 /* The message of a valid frame. */
 
 static uint8_t dagny_host_identify(const struct dagny_host_parts *parts, const uint8_t *payload,
-                                   uint16_t size, uint8_t *message) {
+                                   uint16_t size, enum dagny_message *message) {
     *message = DAGNY_NO_MESSAGE;
     switch (parts->id) {
     case 0x4DU:
@@ -1402,7 +1402,7 @@ static uint8_t dagny_host_identify(const struct dagny_host_parts *parts, const u
 static uint8_t dagny_host_complete(struct dagny_host_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct dagny_host_event event;
-    uint8_t message;
+    enum dagny_message message;
     uint8_t reason;
     if (decoder->payload != 0U) {
         uint8_t sum = 0x00U;
@@ -1424,12 +1424,12 @@ static uint8_t dagny_host_complete(struct dagny_host_decoder *decoder) {
         return reason;
     }
     dagny_host_end_noise(decoder);
-    event.kind = message == (uint8_t)DAGNY_NO_MESSAGE ? DAGNY_UNKNOWN : DAGNY_MESSAGE;
+    event.kind = message == DAGNY_NO_MESSAGE ? DAGNY_UNKNOWN : DAGNY_MESSAGE;
     event.reason = DAGNY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum dagny_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return DAGNY_FRAME;
@@ -1629,6 +1629,14 @@ static void dagny_host_seek_on(struct dagny_host_decoder *decoder) {
     }
 }
 
+static void dagny_host_reset(struct dagny_host_decoder *decoder) {
+    decoder->state = DAGNY_SEEKING;
+    decoder->noise = 0;
+    decoder->count = 0;
+    decoder->next = 0;
+    decoder->match = 0;
+}
+
 /* Forget the first bytes that are kept, and read the others from the start. */
 static void dagny_host_drop(struct dagny_host_decoder *decoder, uint16_t size) {
     const size_t count = decoder->count;
@@ -1702,11 +1710,11 @@ static void dagny_host_run(struct dagny_host_decoder *decoder, bool is_end) {
             goes_on = false;
         } else {
             const uint8_t byte = decoder->buffer[decoder->next];
+            uint8_t reason = DAGNY_FINE;
             decoder->next++;
             if (decoder->state == DAGNY_SEEKING) { /* At the beginning of the input. */
                 dagny_host_open(decoder);
             }
-            uint8_t reason = DAGNY_FINE;
             if (decoder->state == DAGNY_LOST) {
                 dagny_host_seek(decoder, byte);
             } else {
@@ -1732,14 +1740,6 @@ void dagny_host_decoder_feed(struct dagny_host_decoder *decoder, const uint8_t *
     for (index = 0; index < size; index++) {
         dagny_host_decoder_push(decoder, data[index]);
     }
-}
-
-static void dagny_host_reset(struct dagny_host_decoder *decoder) {
-    decoder->state = DAGNY_SEEKING;
-    decoder->noise = 0;
-    decoder->count = 0;
-    decoder->next = 0;
-    decoder->match = 0;
 }
 
 void dagny_host_decoder_init(struct dagny_host_decoder *decoder, dagny_host_handler handler,
@@ -1804,7 +1804,7 @@ static void dagny_robot_add_noise(struct dagny_robot_decoder *decoder, uint16_t 
 /* The message of a valid frame. */
 
 static uint8_t dagny_robot_identify(const struct dagny_robot_parts *parts, const uint8_t *payload,
-                                    uint16_t size, uint8_t *message) {
+                                    uint16_t size, enum dagny_message *message) {
     *message = DAGNY_NO_MESSAGE;
     switch (parts->id) {
     case 0x53U:
@@ -1876,7 +1876,7 @@ static uint8_t dagny_robot_identify(const struct dagny_robot_parts *parts, const
 static uint8_t dagny_robot_complete(struct dagny_robot_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct dagny_robot_event event;
-    uint8_t message;
+    enum dagny_message message;
     uint8_t reason;
     if (decoder->payload != 0U) {
         uint8_t sum = 0x00U;
@@ -1898,12 +1898,12 @@ static uint8_t dagny_robot_complete(struct dagny_robot_decoder *decoder) {
         return reason;
     }
     dagny_robot_end_noise(decoder);
-    event.kind = message == (uint8_t)DAGNY_NO_MESSAGE ? DAGNY_UNKNOWN : DAGNY_MESSAGE;
+    event.kind = message == DAGNY_NO_MESSAGE ? DAGNY_UNKNOWN : DAGNY_MESSAGE;
     event.reason = DAGNY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum dagny_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return DAGNY_FRAME;
@@ -2115,6 +2115,14 @@ static void dagny_robot_seek_on(struct dagny_robot_decoder *decoder) {
     }
 }
 
+static void dagny_robot_reset(struct dagny_robot_decoder *decoder) {
+    decoder->state = DAGNY_SEEKING;
+    decoder->noise = 0;
+    decoder->count = 0;
+    decoder->next = 0;
+    decoder->match = 0;
+}
+
 /* Forget the first bytes that are kept, and read the others from the start. */
 static void dagny_robot_drop(struct dagny_robot_decoder *decoder, uint16_t size) {
     const size_t count = decoder->count;
@@ -2188,11 +2196,11 @@ static void dagny_robot_run(struct dagny_robot_decoder *decoder, bool is_end) {
             goes_on = false;
         } else {
             const uint8_t byte = decoder->buffer[decoder->next];
+            uint8_t reason = DAGNY_FINE;
             decoder->next++;
             if (decoder->state == DAGNY_SEEKING) { /* At the beginning of the input. */
                 dagny_robot_open(decoder);
             }
-            uint8_t reason = DAGNY_FINE;
             if (decoder->state == DAGNY_LOST) {
                 dagny_robot_seek(decoder, byte);
             } else {
@@ -2219,14 +2227,6 @@ void dagny_robot_decoder_feed(struct dagny_robot_decoder *decoder, const uint8_t
     for (index = 0; index < size; index++) {
         dagny_robot_decoder_push(decoder, data[index]);
     }
-}
-
-static void dagny_robot_reset(struct dagny_robot_decoder *decoder) {
-    decoder->state = DAGNY_SEEKING;
-    decoder->noise = 0;
-    decoder->count = 0;
-    decoder->next = 0;
-    decoder->match = 0;
 }
 
 void dagny_robot_decoder_init(struct dagny_robot_decoder *decoder, dagny_robot_handler handler,

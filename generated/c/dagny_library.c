@@ -617,8 +617,8 @@ enum dagny_library_result dagny_library_shutdown_decode(struct dagny_library_shu
 enum {
     DAGNY_LIBRARY_SEEKING,
     DAGNY_LIBRARY_TAKING,
-    DAGNY_LIBRARY_FAILED,
-    DAGNY_LIBRARY_LOST /* An end has to come before the next frame. */
+    DAGNY_LIBRARY_LOST, /* An end has to come before the next frame. */
+    DAGNY_LIBRARY_FAILED
 };
 
 enum {
@@ -1204,7 +1204,7 @@ static void dagny_library_host_add_noise(struct dagny_library_host_decoder *deco
 
 static uint8_t dagny_library_host_identify(const struct dagny_library_host_parts *parts,
                                            const uint8_t *payload, uint16_t size,
-                                           uint8_t *message) {
+                                           enum dagny_library_message *message) {
     *message = DAGNY_LIBRARY_NO_MESSAGE;
     switch (parts->id) {
     case 0x4DU:
@@ -1244,7 +1244,7 @@ static uint8_t dagny_library_host_identify(const struct dagny_library_host_parts
 static uint8_t dagny_library_host_complete(struct dagny_library_host_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct dagny_library_host_event event;
-    uint8_t message;
+    enum dagny_library_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[1U + decoder->payload];
@@ -1257,13 +1257,13 @@ static uint8_t dagny_library_host_complete(struct dagny_library_host_decoder *de
         return reason;
     }
     dagny_library_host_end_noise(decoder);
-    event.kind = message == (uint8_t)DAGNY_LIBRARY_NO_MESSAGE ? DAGNY_LIBRARY_UNKNOWN
-                                                              : DAGNY_LIBRARY_MESSAGE;
+    event.kind = message == DAGNY_LIBRARY_NO_MESSAGE ? DAGNY_LIBRARY_UNKNOWN
+                                                     : DAGNY_LIBRARY_MESSAGE;
     event.reason = DAGNY_LIBRARY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum dagny_library_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return DAGNY_LIBRARY_FRAME;
@@ -1481,6 +1481,12 @@ static void dagny_library_host_seek_on(struct dagny_library_host_decoder *decode
     }
 }
 
+static void dagny_library_host_reset(struct dagny_library_host_decoder *decoder) {
+    decoder->state = DAGNY_LIBRARY_SEEKING;
+    decoder->noise = 0;
+    decoder->match = 0;
+}
+
 static void dagny_library_host_judge(struct dagny_library_host_decoder *decoder, uint8_t reason,
                                      uint8_t byte) {
     (void)byte;
@@ -1518,12 +1524,6 @@ void dagny_library_host_decoder_feed(struct dagny_library_host_decoder *decoder,
     for (index = 0; index < size; index++) {
         dagny_library_host_decoder_push(decoder, data[index]);
     }
-}
-
-static void dagny_library_host_reset(struct dagny_library_host_decoder *decoder) {
-    decoder->state = DAGNY_LIBRARY_SEEKING;
-    decoder->noise = 0;
-    decoder->match = 0;
 }
 
 void dagny_library_host_decoder_init(struct dagny_library_host_decoder *decoder,
@@ -1588,7 +1588,7 @@ static void dagny_library_robot_add_noise(struct dagny_library_robot_decoder *de
 
 static uint8_t dagny_library_robot_identify(const struct dagny_library_robot_parts *parts,
                                             const uint8_t *payload, uint16_t size,
-                                            uint8_t *message) {
+                                            enum dagny_library_message *message) {
     *message = DAGNY_LIBRARY_NO_MESSAGE;
     switch (parts->id) {
     case 0x53U:
@@ -1630,7 +1630,7 @@ static uint8_t dagny_library_robot_identify(const struct dagny_library_robot_par
 static uint8_t dagny_library_robot_complete(struct dagny_library_robot_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct dagny_library_robot_event event;
-    uint8_t message;
+    enum dagny_library_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[1U + decoder->payload];
@@ -1643,13 +1643,13 @@ static uint8_t dagny_library_robot_complete(struct dagny_library_robot_decoder *
         return reason;
     }
     dagny_library_robot_end_noise(decoder);
-    event.kind = message == (uint8_t)DAGNY_LIBRARY_NO_MESSAGE ? DAGNY_LIBRARY_UNKNOWN
-                                                              : DAGNY_LIBRARY_MESSAGE;
+    event.kind = message == DAGNY_LIBRARY_NO_MESSAGE ? DAGNY_LIBRARY_UNKNOWN
+                                                     : DAGNY_LIBRARY_MESSAGE;
     event.reason = DAGNY_LIBRARY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum dagny_library_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return DAGNY_LIBRARY_FRAME;
@@ -1872,6 +1872,12 @@ static void dagny_library_robot_seek_on(struct dagny_library_robot_decoder *deco
     }
 }
 
+static void dagny_library_robot_reset(struct dagny_library_robot_decoder *decoder) {
+    decoder->state = DAGNY_LIBRARY_SEEKING;
+    decoder->noise = 0;
+    decoder->match = 0;
+}
+
 static void dagny_library_robot_judge(struct dagny_library_robot_decoder *decoder, uint8_t reason,
                                       uint8_t byte) {
     (void)byte;
@@ -1909,12 +1915,6 @@ void dagny_library_robot_decoder_feed(struct dagny_library_robot_decoder *decode
     for (index = 0; index < size; index++) {
         dagny_library_robot_decoder_push(decoder, data[index]);
     }
-}
-
-static void dagny_library_robot_reset(struct dagny_library_robot_decoder *decoder) {
-    decoder->state = DAGNY_LIBRARY_SEEKING;
-    decoder->noise = 0;
-    decoder->match = 0;
 }
 
 void dagny_library_robot_decoder_init(struct dagny_library_robot_decoder *decoder,

@@ -469,8 +469,8 @@ enum matty_result matty_gps_decode(struct matty_gps *message, const uint8_t *pay
 enum {
     MATTY_SEEKING,
     MATTY_TAKING,
-    MATTY_FAILED,
-    MATTY_LOST /* An end has to come before the next frame. */
+    MATTY_LOST, /* An end has to come before the next frame. */
+    MATTY_FAILED
 };
 
 enum {
@@ -1111,7 +1111,7 @@ static void matty_pc_add_noise(struct matty_pc_decoder *decoder, uint16_t size) 
 /* The message of a valid frame. */
 
 static uint8_t matty_pc_identify(const struct matty_pc_parts *parts, const uint8_t *payload,
-                                 uint16_t size, uint8_t *message) {
+                                 uint16_t size, enum matty_message *message) {
     (void)payload;
     *message = MATTY_NO_MESSAGE;
     switch (parts->command) {
@@ -1145,7 +1145,7 @@ static uint8_t matty_pc_identify(const struct matty_pc_parts *parts, const uint8
 static uint8_t matty_pc_complete(struct matty_pc_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct matty_pc_event event;
-    uint8_t message;
+    enum matty_message message;
     uint8_t reason;
     {
         uint8_t sum = 0x00U;
@@ -1168,12 +1168,12 @@ static uint8_t matty_pc_complete(struct matty_pc_decoder *decoder) {
         return reason;
     }
     matty_pc_end_noise(decoder);
-    event.kind = message == (uint8_t)MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
+    event.kind = message == MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
     event.reason = MATTY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum matty_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return MATTY_FRAME;
@@ -1320,6 +1320,11 @@ static void matty_pc_open(struct matty_pc_decoder *decoder) {
 /* Look for the next start. */
 static void matty_pc_seek_on(struct matty_pc_decoder *decoder) {
     decoder->state = MATTY_SEEKING;
+}
+
+static void matty_pc_reset(struct matty_pc_decoder *decoder) {
+    decoder->state = MATTY_SEEKING;
+    decoder->noise = 0;
 }
 
 /* Open a candidate with a start that was seen. */
@@ -1473,7 +1478,7 @@ static inline bool matty_pc_measure_head(const uint8_t *content, size_t *payload
 static size_t matty_pc_hand_over(struct matty_pc_decoder *decoder, const uint8_t *content,
                                  size_t payload, size_t wire) {
     struct matty_pc_event event;
-    uint8_t message;
+    enum matty_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[4U + payload];
@@ -1487,12 +1492,12 @@ static size_t matty_pc_hand_over(struct matty_pc_decoder *decoder, const uint8_t
         return 0;
     }
     matty_pc_end_noise(decoder);
-    event.kind = message == (uint8_t)MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
+    event.kind = message == MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
     event.reason = MATTY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
     decoder->offset += event.size;
-    event.message = (enum matty_message)message;
+    event.message = message;
     event.payload_size = (uint16_t)payload;
     decoder->handler(decoder->user, &event);
     return wire;
@@ -1567,11 +1572,6 @@ void matty_pc_decoder_feed(struct matty_pc_decoder *decoder, const uint8_t *data
     }
 }
 
-static void matty_pc_reset(struct matty_pc_decoder *decoder) {
-    decoder->state = MATTY_SEEKING;
-    decoder->noise = 0;
-}
-
 void matty_pc_decoder_init(struct matty_pc_decoder *decoder, matty_pc_handler handler, void *user) {
     decoder->handler = handler;
     decoder->user = user;
@@ -1630,7 +1630,7 @@ static void matty_esp_add_noise(struct matty_esp_decoder *decoder, uint16_t size
 /* The message of a valid frame. */
 
 static uint8_t matty_esp_identify(const struct matty_esp_parts *parts, const uint8_t *payload,
-                                  uint16_t size, uint8_t *message) {
+                                  uint16_t size, enum matty_message *message) {
     *message = MATTY_NO_MESSAGE;
     switch (parts->command) {
     case 0x41U:
@@ -1657,7 +1657,7 @@ static uint8_t matty_esp_identify(const struct matty_esp_parts *parts, const uin
 static uint8_t matty_esp_complete(struct matty_esp_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct matty_esp_event event;
-    uint8_t message;
+    enum matty_message message;
     uint8_t reason;
     {
         uint8_t sum = 0x00U;
@@ -1680,12 +1680,12 @@ static uint8_t matty_esp_complete(struct matty_esp_decoder *decoder) {
         return reason;
     }
     matty_esp_end_noise(decoder);
-    event.kind = message == (uint8_t)MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
+    event.kind = message == MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
     event.reason = MATTY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum matty_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return MATTY_FRAME;
@@ -1833,6 +1833,11 @@ static void matty_esp_open(struct matty_esp_decoder *decoder) {
 /* Look for the next start. */
 static void matty_esp_seek_on(struct matty_esp_decoder *decoder) {
     decoder->state = MATTY_SEEKING;
+}
+
+static void matty_esp_reset(struct matty_esp_decoder *decoder) {
+    decoder->state = MATTY_SEEKING;
+    decoder->noise = 0;
 }
 
 /* Open a candidate with a start that was seen. */
@@ -1986,7 +1991,7 @@ static inline bool matty_esp_measure_head(const uint8_t *content, size_t *payloa
 static size_t matty_esp_hand_over(struct matty_esp_decoder *decoder, const uint8_t *content,
                                   size_t payload, size_t wire) {
     struct matty_esp_event event;
-    uint8_t message;
+    enum matty_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[4U + payload];
@@ -2000,12 +2005,12 @@ static size_t matty_esp_hand_over(struct matty_esp_decoder *decoder, const uint8
         return 0;
     }
     matty_esp_end_noise(decoder);
-    event.kind = message == (uint8_t)MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
+    event.kind = message == MATTY_NO_MESSAGE ? MATTY_UNKNOWN : MATTY_MESSAGE;
     event.reason = MATTY_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
     decoder->offset += event.size;
-    event.message = (enum matty_message)message;
+    event.message = message;
     event.payload_size = (uint16_t)payload;
     decoder->handler(decoder->user, &event);
     return wire;
@@ -2078,11 +2083,6 @@ void matty_esp_decoder_feed(struct matty_esp_decoder *decoder, const uint8_t *da
         }
         index += taken;
     }
-}
-
-static void matty_esp_reset(struct matty_esp_decoder *decoder) {
-    decoder->state = MATTY_SEEKING;
-    decoder->noise = 0;
 }
 
 void matty_esp_decoder_init(struct matty_esp_decoder *decoder, matty_esp_handler handler,

@@ -597,8 +597,8 @@ enum matty_v4_result matty_v4_version_decode(struct matty_v4_version *message,
 enum {
     MATTY_V4_SEEKING,
     MATTY_V4_TAKING,
-    MATTY_V4_FAILED,
-    MATTY_V4_LOST /* An end has to come before the next frame. */
+    MATTY_V4_LOST, /* An end has to come before the next frame. */
+    MATTY_V4_FAILED
 };
 
 enum {
@@ -1358,7 +1358,7 @@ static void matty_v4_pc_add_noise(struct matty_v4_pc_decoder *decoder, uint16_t 
 /* The message of a valid frame. */
 
 static uint8_t matty_v4_pc_identify(const struct matty_v4_pc_parts *parts, const uint8_t *payload,
-                                    uint16_t size, uint8_t *message) {
+                                    uint16_t size, enum matty_v4_message *message) {
     (void)payload;
     *message = MATTY_V4_NO_MESSAGE;
     switch (parts->command) {
@@ -1398,7 +1398,7 @@ static uint8_t matty_v4_pc_identify(const struct matty_v4_pc_parts *parts, const
 static uint8_t matty_v4_pc_complete(struct matty_v4_pc_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct matty_v4_pc_event event;
-    uint8_t message;
+    enum matty_v4_message message;
     uint8_t reason;
     {
         uint8_t sum = 0x00U;
@@ -1421,12 +1421,12 @@ static uint8_t matty_v4_pc_complete(struct matty_v4_pc_decoder *decoder) {
         return reason;
     }
     matty_v4_pc_end_noise(decoder);
-    event.kind = message == (uint8_t)MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
+    event.kind = message == MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
     event.reason = MATTY_V4_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum matty_v4_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return MATTY_V4_FRAME;
@@ -1574,6 +1574,11 @@ static void matty_v4_pc_open(struct matty_v4_pc_decoder *decoder) {
 /* Look for the next start. */
 static void matty_v4_pc_seek_on(struct matty_v4_pc_decoder *decoder) {
     decoder->state = MATTY_V4_SEEKING;
+}
+
+static void matty_v4_pc_reset(struct matty_v4_pc_decoder *decoder) {
+    decoder->state = MATTY_V4_SEEKING;
+    decoder->noise = 0;
 }
 
 /* Open a candidate with a start that was seen. */
@@ -1727,7 +1732,7 @@ static inline bool matty_v4_pc_measure_head(const uint8_t *content, size_t *payl
 static size_t matty_v4_pc_hand_over(struct matty_v4_pc_decoder *decoder, const uint8_t *content,
                                     size_t payload, size_t wire) {
     struct matty_v4_pc_event event;
-    uint8_t message;
+    enum matty_v4_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[4U + payload];
@@ -1741,12 +1746,12 @@ static size_t matty_v4_pc_hand_over(struct matty_v4_pc_decoder *decoder, const u
         return 0;
     }
     matty_v4_pc_end_noise(decoder);
-    event.kind = message == (uint8_t)MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
+    event.kind = message == MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
     event.reason = MATTY_V4_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
     decoder->offset += event.size;
-    event.message = (enum matty_v4_message)message;
+    event.message = message;
     event.payload_size = (uint16_t)payload;
     decoder->handler(decoder->user, &event);
     return wire;
@@ -1822,11 +1827,6 @@ void matty_v4_pc_decoder_feed(struct matty_v4_pc_decoder *decoder, const uint8_t
     }
 }
 
-static void matty_v4_pc_reset(struct matty_v4_pc_decoder *decoder) {
-    decoder->state = MATTY_V4_SEEKING;
-    decoder->noise = 0;
-}
-
 void matty_v4_pc_decoder_init(struct matty_v4_pc_decoder *decoder, matty_v4_pc_handler handler,
                               void *user) {
     decoder->handler = handler;
@@ -1887,7 +1887,7 @@ static void matty_v4_esp_add_noise(struct matty_v4_esp_decoder *decoder, uint16_
 /* The message of a valid frame. */
 
 static uint8_t matty_v4_esp_identify(const struct matty_v4_esp_parts *parts, const uint8_t *payload,
-                                     uint16_t size, uint8_t *message) {
+                                     uint16_t size, enum matty_v4_message *message) {
     *message = MATTY_V4_NO_MESSAGE;
     switch (parts->command) {
     case 0x41U:
@@ -1917,7 +1917,7 @@ static uint8_t matty_v4_esp_identify(const struct matty_v4_esp_parts *parts, con
 static uint8_t matty_v4_esp_complete(struct matty_v4_esp_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct matty_v4_esp_event event;
-    uint8_t message;
+    enum matty_v4_message message;
     uint8_t reason;
     {
         uint8_t sum = 0x00U;
@@ -1940,12 +1940,12 @@ static uint8_t matty_v4_esp_complete(struct matty_v4_esp_decoder *decoder) {
         return reason;
     }
     matty_v4_esp_end_noise(decoder);
-    event.kind = message == (uint8_t)MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
+    event.kind = message == MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
     event.reason = MATTY_V4_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum matty_v4_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return MATTY_V4_FRAME;
@@ -2093,6 +2093,11 @@ static void matty_v4_esp_open(struct matty_v4_esp_decoder *decoder) {
 /* Look for the next start. */
 static void matty_v4_esp_seek_on(struct matty_v4_esp_decoder *decoder) {
     decoder->state = MATTY_V4_SEEKING;
+}
+
+static void matty_v4_esp_reset(struct matty_v4_esp_decoder *decoder) {
+    decoder->state = MATTY_V4_SEEKING;
+    decoder->noise = 0;
 }
 
 /* Open a candidate with a start that was seen. */
@@ -2246,7 +2251,7 @@ static inline bool matty_v4_esp_measure_head(const uint8_t *content, size_t *pay
 static size_t matty_v4_esp_hand_over(struct matty_v4_esp_decoder *decoder, const uint8_t *content,
                                      size_t payload, size_t wire) {
     struct matty_v4_esp_event event;
-    uint8_t message;
+    enum matty_v4_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[4U + payload];
@@ -2260,12 +2265,12 @@ static size_t matty_v4_esp_hand_over(struct matty_v4_esp_decoder *decoder, const
         return 0;
     }
     matty_v4_esp_end_noise(decoder);
-    event.kind = message == (uint8_t)MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
+    event.kind = message == MATTY_V4_NO_MESSAGE ? MATTY_V4_UNKNOWN : MATTY_V4_MESSAGE;
     event.reason = MATTY_V4_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
     decoder->offset += event.size;
-    event.message = (enum matty_v4_message)message;
+    event.message = message;
     event.payload_size = (uint16_t)payload;
     decoder->handler(decoder->user, &event);
     return wire;
@@ -2339,11 +2344,6 @@ void matty_v4_esp_decoder_feed(struct matty_v4_esp_decoder *decoder, const uint8
         }
         index += taken;
     }
-}
-
-static void matty_v4_esp_reset(struct matty_v4_esp_decoder *decoder) {
-    decoder->state = MATTY_V4_SEEKING;
-    decoder->noise = 0;
 }
 
 void matty_v4_esp_decoder_init(struct matty_v4_esp_decoder *decoder, matty_v4_esp_handler handler,

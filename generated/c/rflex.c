@@ -851,8 +851,8 @@ enum rflex_result rflex_changed_byte_decode(struct rflex_changed_byte *message,
 enum {
     RFLEX_SEEKING,
     RFLEX_TAKING,
-    RFLEX_FAILED,
-    RFLEX_LOST /* An end has to come before the next frame. */
+    RFLEX_LOST, /* An end has to come before the next frame. */
+    RFLEX_FAILED
 };
 
 enum {
@@ -1963,7 +1963,7 @@ static void rflex_linux_add_noise(struct rflex_linux_decoder *decoder, uint16_t 
 /* The message of a valid frame. */
 
 static uint8_t rflex_linux_identify(const struct rflex_linux_parts *parts, const uint8_t *payload,
-                                    uint16_t size, uint8_t *message) {
+                                    uint16_t size, enum rflex_message *message) {
     (void)payload;
     *message = RFLEX_NO_MESSAGE;
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_ << 8) | parts->subclass)) {
@@ -2006,7 +2006,7 @@ static uint8_t rflex_linux_identify(const struct rflex_linux_parts *parts, const
 static uint8_t rflex_linux_complete(struct rflex_linux_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct rflex_linux_event event;
-    uint8_t message;
+    enum rflex_message message;
     uint8_t reason;
     {
         uint8_t sum = 0x00U;
@@ -2030,12 +2030,12 @@ static uint8_t rflex_linux_complete(struct rflex_linux_decoder *decoder) {
         return reason;
     }
     rflex_linux_end_noise(decoder);
-    event.kind = message == (uint8_t)RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
+    event.kind = message == RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
     event.reason = RFLEX_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum rflex_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return RFLEX_FRAME;
@@ -2259,6 +2259,12 @@ static void rflex_linux_seek_on(struct rflex_linux_decoder *decoder) {
     decoder->match = 0;
 }
 
+static void rflex_linux_reset(struct rflex_linux_decoder *decoder) {
+    decoder->state = RFLEX_SEEKING;
+    decoder->noise = 0;
+    decoder->match = 0;
+}
+
 /* Open a candidate with a start that was seen. */
 static void rflex_linux_reopen(struct rflex_linux_decoder *decoder) {
     rflex_linux_open(decoder);
@@ -2443,7 +2449,7 @@ static inline bool rflex_linux_measure_head(const uint8_t *content, size_t *payl
 static size_t rflex_linux_hand_over(struct rflex_linux_decoder *decoder, const uint8_t *content,
                                     size_t payload, size_t wire) {
     struct rflex_linux_event event;
-    uint8_t message;
+    enum rflex_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[6U + payload];
@@ -2458,12 +2464,12 @@ static size_t rflex_linux_hand_over(struct rflex_linux_decoder *decoder, const u
         return 0;
     }
     rflex_linux_end_noise(decoder);
-    event.kind = message == (uint8_t)RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
+    event.kind = message == RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
     event.reason = RFLEX_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
     decoder->offset += event.size;
-    event.message = (enum rflex_message)message;
+    event.message = message;
     event.payload_size = (uint16_t)payload;
     decoder->handler(decoder->user, &event);
     return wire;
@@ -2542,12 +2548,6 @@ void rflex_linux_decoder_feed(struct rflex_linux_decoder *decoder, const uint8_t
         }
         index += taken;
     }
-}
-
-static void rflex_linux_reset(struct rflex_linux_decoder *decoder) {
-    decoder->state = RFLEX_SEEKING;
-    decoder->noise = 0;
-    decoder->match = 0;
 }
 
 void rflex_linux_decoder_init(struct rflex_linux_decoder *decoder, rflex_linux_handler handler,
@@ -2666,7 +2666,7 @@ static void rflex_flex_add_noise(struct rflex_flex_decoder *decoder, uint16_t si
 /* The message of a valid frame. */
 
 static uint8_t rflex_flex_identify(const struct rflex_flex_parts *parts, const uint8_t *payload,
-                                   uint16_t size, uint8_t *message) {
+                                   uint16_t size, enum rflex_message *message) {
     *message = RFLEX_NO_MESSAGE;
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_ << 8) | parts->subclass)) {
     case 0x0101U:
@@ -2717,7 +2717,7 @@ static uint8_t rflex_flex_identify(const struct rflex_flex_parts *parts, const u
 static uint8_t rflex_flex_complete(struct rflex_flex_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct rflex_flex_event event;
-    uint8_t message;
+    enum rflex_message message;
     uint8_t reason;
     {
         uint8_t sum = 0x00U;
@@ -2741,12 +2741,12 @@ static uint8_t rflex_flex_complete(struct rflex_flex_decoder *decoder) {
         return reason;
     }
     rflex_flex_end_noise(decoder);
-    event.kind = message == (uint8_t)RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
+    event.kind = message == RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
     event.reason = RFLEX_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum rflex_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return RFLEX_FRAME;
@@ -2970,6 +2970,12 @@ static void rflex_flex_seek_on(struct rflex_flex_decoder *decoder) {
     decoder->match = 0;
 }
 
+static void rflex_flex_reset(struct rflex_flex_decoder *decoder) {
+    decoder->state = RFLEX_SEEKING;
+    decoder->noise = 0;
+    decoder->match = 0;
+}
+
 /* Open a candidate with a start that was seen. */
 static void rflex_flex_reopen(struct rflex_flex_decoder *decoder) {
     rflex_flex_open(decoder);
@@ -3154,7 +3160,7 @@ static inline bool rflex_flex_measure_head(const uint8_t *content, size_t *paylo
 static size_t rflex_flex_hand_over(struct rflex_flex_decoder *decoder, const uint8_t *content,
                                    size_t payload, size_t wire) {
     struct rflex_flex_event event;
-    uint8_t message;
+    enum rflex_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[6U + payload];
@@ -3169,12 +3175,12 @@ static size_t rflex_flex_hand_over(struct rflex_flex_decoder *decoder, const uin
         return 0;
     }
     rflex_flex_end_noise(decoder);
-    event.kind = message == (uint8_t)RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
+    event.kind = message == RFLEX_NO_MESSAGE ? RFLEX_UNKNOWN : RFLEX_MESSAGE;
     event.reason = RFLEX_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
     decoder->offset += event.size;
-    event.message = (enum rflex_message)message;
+    event.message = message;
     event.payload_size = (uint16_t)payload;
     decoder->handler(decoder->user, &event);
     return wire;
@@ -3252,12 +3258,6 @@ void rflex_flex_decoder_feed(struct rflex_flex_decoder *decoder, const uint8_t *
         }
         index += taken;
     }
-}
-
-static void rflex_flex_reset(struct rflex_flex_decoder *decoder) {
-    decoder->state = RFLEX_SEEKING;
-    decoder->noise = 0;
-    decoder->match = 0;
 }
 
 void rflex_flex_decoder_init(struct rflex_flex_decoder *decoder, rflex_flex_handler handler,

@@ -1112,8 +1112,8 @@ enum rflex_drivers_result rflex_drivers_ir_report_decode(struct rflex_drivers_ir
 enum {
     RFLEX_DRIVERS_SEEKING,
     RFLEX_DRIVERS_TAKING,
-    RFLEX_DRIVERS_FAILED,
-    RFLEX_DRIVERS_LOST /* An end has to come before the next frame. */
+    RFLEX_DRIVERS_LOST, /* An end has to come before the next frame. */
+    RFLEX_DRIVERS_FAILED
 };
 
 enum {
@@ -2427,7 +2427,7 @@ static void rflex_drivers_linux_add_noise(struct rflex_drivers_linux_decoder *de
 
 static uint8_t rflex_drivers_linux_identify(const struct rflex_drivers_linux_parts *parts,
                                             const uint8_t *payload, uint16_t size,
-                                            uint8_t *message) {
+                                            enum rflex_drivers_message *message) {
     (void)payload;
     *message = RFLEX_DRIVERS_NO_MESSAGE;
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_ << 8) | parts->subclass)) {
@@ -2476,7 +2476,7 @@ static uint8_t rflex_drivers_linux_identify(const struct rflex_drivers_linux_par
 static uint8_t rflex_drivers_linux_complete(struct rflex_drivers_linux_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct rflex_drivers_linux_event event;
-    uint8_t message;
+    enum rflex_drivers_message message;
     uint8_t reason;
     {
         uint8_t sum = 0x00U;
@@ -2500,13 +2500,13 @@ static uint8_t rflex_drivers_linux_complete(struct rflex_drivers_linux_decoder *
         return reason;
     }
     rflex_drivers_linux_end_noise(decoder);
-    event.kind = message == (uint8_t)RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
-                                                              : RFLEX_DRIVERS_MESSAGE;
+    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
+                                                     : RFLEX_DRIVERS_MESSAGE;
     event.reason = RFLEX_DRIVERS_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum rflex_drivers_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return RFLEX_DRIVERS_FRAME;
@@ -2735,6 +2735,12 @@ static void rflex_drivers_linux_seek_on(struct rflex_drivers_linux_decoder *deco
     decoder->match = 0;
 }
 
+static void rflex_drivers_linux_reset(struct rflex_drivers_linux_decoder *decoder) {
+    decoder->state = RFLEX_DRIVERS_SEEKING;
+    decoder->noise = 0;
+    decoder->match = 0;
+}
+
 /* Open a candidate with a start that was seen. */
 static void rflex_drivers_linux_reopen(struct rflex_drivers_linux_decoder *decoder) {
     rflex_drivers_linux_open(decoder);
@@ -2922,7 +2928,7 @@ static inline bool rflex_drivers_linux_measure_head(const uint8_t *content, size
 static size_t rflex_drivers_linux_hand_over(struct rflex_drivers_linux_decoder *decoder,
                                             const uint8_t *content, size_t payload, size_t wire) {
     struct rflex_drivers_linux_event event;
-    uint8_t message;
+    enum rflex_drivers_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[6U + payload];
@@ -2937,13 +2943,13 @@ static size_t rflex_drivers_linux_hand_over(struct rflex_drivers_linux_decoder *
         return 0;
     }
     rflex_drivers_linux_end_noise(decoder);
-    event.kind = message == (uint8_t)RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
-                                                              : RFLEX_DRIVERS_MESSAGE;
+    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
+                                                     : RFLEX_DRIVERS_MESSAGE;
     event.reason = RFLEX_DRIVERS_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
     decoder->offset += event.size;
-    event.message = (enum rflex_drivers_message)message;
+    event.message = message;
     event.payload_size = (uint16_t)payload;
     decoder->handler(decoder->user, &event);
     return wire;
@@ -3023,12 +3029,6 @@ void rflex_drivers_linux_decoder_feed(struct rflex_drivers_linux_decoder *decode
         }
         index += taken;
     }
-}
-
-static void rflex_drivers_linux_reset(struct rflex_drivers_linux_decoder *decoder) {
-    decoder->state = RFLEX_DRIVERS_SEEKING;
-    decoder->noise = 0;
-    decoder->match = 0;
 }
 
 void rflex_drivers_linux_decoder_init(struct rflex_drivers_linux_decoder *decoder,
@@ -3150,7 +3150,7 @@ static void rflex_drivers_flex_add_noise(struct rflex_drivers_flex_decoder *deco
 
 static uint8_t rflex_drivers_flex_identify(const struct rflex_drivers_flex_parts *parts,
                                            const uint8_t *payload, uint16_t size,
-                                           uint8_t *message) {
+                                           enum rflex_drivers_message *message) {
     *message = RFLEX_DRIVERS_NO_MESSAGE;
     switch ((uint16_t)((uint16_t)((uint16_t)parts->class_ << 8) | parts->subclass)) {
     case 0x0101U:
@@ -3213,7 +3213,7 @@ static uint8_t rflex_drivers_flex_identify(const struct rflex_drivers_flex_parts
 static uint8_t rflex_drivers_flex_complete(struct rflex_drivers_flex_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct rflex_drivers_flex_event event;
-    uint8_t message;
+    enum rflex_drivers_message message;
     uint8_t reason;
     {
         uint8_t sum = 0x00U;
@@ -3237,13 +3237,13 @@ static uint8_t rflex_drivers_flex_complete(struct rflex_drivers_flex_decoder *de
         return reason;
     }
     rflex_drivers_flex_end_noise(decoder);
-    event.kind = message == (uint8_t)RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
-                                                              : RFLEX_DRIVERS_MESSAGE;
+    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
+                                                     : RFLEX_DRIVERS_MESSAGE;
     event.reason = RFLEX_DRIVERS_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum rflex_drivers_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return RFLEX_DRIVERS_FRAME;
@@ -3470,6 +3470,12 @@ static void rflex_drivers_flex_seek_on(struct rflex_drivers_flex_decoder *decode
     decoder->match = 0;
 }
 
+static void rflex_drivers_flex_reset(struct rflex_drivers_flex_decoder *decoder) {
+    decoder->state = RFLEX_DRIVERS_SEEKING;
+    decoder->noise = 0;
+    decoder->match = 0;
+}
+
 /* Open a candidate with a start that was seen. */
 static void rflex_drivers_flex_reopen(struct rflex_drivers_flex_decoder *decoder) {
     rflex_drivers_flex_open(decoder);
@@ -3657,7 +3663,7 @@ static inline bool rflex_drivers_flex_measure_head(const uint8_t *content, size_
 static size_t rflex_drivers_flex_hand_over(struct rflex_drivers_flex_decoder *decoder,
                                            const uint8_t *content, size_t payload, size_t wire) {
     struct rflex_drivers_flex_event event;
-    uint8_t message;
+    enum rflex_drivers_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[6U + payload];
@@ -3672,13 +3678,13 @@ static size_t rflex_drivers_flex_hand_over(struct rflex_drivers_flex_decoder *de
         return 0;
     }
     rflex_drivers_flex_end_noise(decoder);
-    event.kind = message == (uint8_t)RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
-                                                              : RFLEX_DRIVERS_MESSAGE;
+    event.kind = message == RFLEX_DRIVERS_NO_MESSAGE ? RFLEX_DRIVERS_UNKNOWN
+                                                     : RFLEX_DRIVERS_MESSAGE;
     event.reason = RFLEX_DRIVERS_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(wire);
     decoder->offset += event.size;
-    event.message = (enum rflex_drivers_message)message;
+    event.message = message;
     event.payload_size = (uint16_t)payload;
     decoder->handler(decoder->user, &event);
     return wire;
@@ -3758,12 +3764,6 @@ void rflex_drivers_flex_decoder_feed(struct rflex_drivers_flex_decoder *decoder,
         }
         index += taken;
     }
-}
-
-static void rflex_drivers_flex_reset(struct rflex_drivers_flex_decoder *decoder) {
-    decoder->state = RFLEX_DRIVERS_SEEKING;
-    decoder->noise = 0;
-    decoder->match = 0;
 }
 
 void rflex_drivers_flex_decoder_init(struct rflex_drivers_flex_decoder *decoder,

@@ -929,8 +929,8 @@ enum rn1_result rn1_facing_decode(struct rn1_facing *message, const uint8_t *pay
 enum {
     RN1_SEEKING,
     RN1_TAKING,
-    RN1_FAILED,
-    RN1_LOST /* An end has to come before the next frame. */
+    RN1_LOST, /* An end has to come before the next frame. */
+    RN1_FAILED
 };
 
 enum {
@@ -1510,7 +1510,7 @@ static void rn1_host_add_noise(struct rn1_host_decoder *decoder, uint8_t size) {
 /* The message of a valid frame. */
 
 static uint8_t rn1_host_identify(const struct rn1_host_parts *parts, const uint8_t *payload,
-                                 uint8_t size, uint8_t *message) {
+                                 uint8_t size, enum rn1_message *message) {
     *message = RN1_NO_MESSAGE;
     switch (parts->start) {
     case 0x80U:
@@ -1537,7 +1537,7 @@ static uint8_t rn1_host_identify(const struct rn1_host_parts *parts, const uint8
 static uint8_t rn1_host_complete(struct rn1_host_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct rn1_host_event event;
-    uint8_t message;
+    enum rn1_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[1U + decoder->payload];
@@ -1550,12 +1550,12 @@ static uint8_t rn1_host_complete(struct rn1_host_decoder *decoder) {
         return reason;
     }
     rn1_host_end_noise(decoder);
-    event.kind = message == (uint8_t)RN1_NO_MESSAGE ? RN1_UNKNOWN : RN1_MESSAGE;
+    event.kind = message == RN1_NO_MESSAGE ? RN1_UNKNOWN : RN1_MESSAGE;
     event.reason = RN1_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint8_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum rn1_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return RN1_FRAME;
@@ -1715,6 +1715,11 @@ static void rn1_host_seek_on(struct rn1_host_decoder *decoder) {
     decoder->state = RN1_SEEKING;
 }
 
+static void rn1_host_reset(struct rn1_host_decoder *decoder) {
+    decoder->state = RN1_SEEKING;
+    decoder->noise = 0;
+}
+
 /* Open a candidate with a start that was seen. */
 static void rn1_host_reopen(struct rn1_host_decoder *decoder, uint8_t byte) {
     uint8_t reason = RN1_FINE;
@@ -1765,11 +1770,6 @@ void rn1_host_decoder_feed(struct rn1_host_decoder *decoder, const uint8_t *data
     for (index = 0; index < size; index++) {
         rn1_host_decoder_push(decoder, data[index]);
     }
-}
-
-static void rn1_host_reset(struct rn1_host_decoder *decoder) {
-    decoder->state = RN1_SEEKING;
-    decoder->noise = 0;
 }
 
 void rn1_host_decoder_init(struct rn1_host_decoder *decoder, rn1_host_handler handler, void *user) {
@@ -1830,7 +1830,7 @@ static void rn1_brain_add_noise(struct rn1_brain_decoder *decoder, uint16_t size
 /* The message of a valid frame. */
 
 static uint8_t rn1_brain_identify(const struct rn1_brain_parts *parts, const uint8_t *payload,
-                                  uint16_t size, uint8_t *message) {
+                                  uint16_t size, enum rn1_message *message) {
     (void)payload;
     *message = RN1_NO_MESSAGE;
     switch (parts->start) {
@@ -1863,7 +1863,7 @@ static uint8_t rn1_brain_identify(const struct rn1_brain_parts *parts, const uin
 /* All parts are there: verify the checksums, read the message, and deliver it. */
 static uint8_t rn1_brain_complete(struct rn1_brain_decoder *decoder, const uint8_t *content) {
     struct rn1_brain_event event;
-    uint8_t message;
+    enum rn1_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[1U + decoder->payload];
@@ -1876,12 +1876,12 @@ static uint8_t rn1_brain_complete(struct rn1_brain_decoder *decoder, const uint8
         return reason;
     }
     rn1_brain_end_noise(decoder);
-    event.kind = message == (uint8_t)RN1_NO_MESSAGE ? RN1_UNKNOWN : RN1_MESSAGE;
+    event.kind = message == RN1_NO_MESSAGE ? RN1_UNKNOWN : RN1_MESSAGE;
     event.reason = RN1_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum rn1_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return RN1_FRAME;
@@ -2083,6 +2083,11 @@ static void rn1_brain_seek_on(struct rn1_brain_decoder *decoder) {
     decoder->state = RN1_SEEKING;
 }
 
+static void rn1_brain_reset(struct rn1_brain_decoder *decoder) {
+    decoder->state = RN1_SEEKING;
+    decoder->noise = 0;
+}
+
 /* Open a candidate with a start that was seen. */
 static void rn1_brain_reopen(struct rn1_brain_decoder *decoder, uint8_t byte) {
     uint8_t reason = RN1_FINE;
@@ -2228,11 +2233,6 @@ void rn1_brain_decoder_feed(struct rn1_brain_decoder *decoder, const uint8_t *da
         }
         index += taken;
     }
-}
-
-static void rn1_brain_reset(struct rn1_brain_decoder *decoder) {
-    decoder->state = RN1_SEEKING;
-    decoder->noise = 0;
 }
 
 void rn1_brain_decoder_init(struct rn1_brain_decoder *decoder, rn1_brain_handler handler,

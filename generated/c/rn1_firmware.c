@@ -1156,8 +1156,8 @@ enum rn1_firmware_result rn1_firmware_debug_numbers_decode(
 enum {
     RN1_FIRMWARE_SEEKING,
     RN1_FIRMWARE_TAKING,
-    RN1_FIRMWARE_FAILED,
-    RN1_FIRMWARE_LOST /* An end has to come before the next frame. */
+    RN1_FIRMWARE_LOST, /* An end has to come before the next frame. */
+    RN1_FIRMWARE_FAILED
 };
 
 enum {
@@ -1868,7 +1868,8 @@ static void rn1_firmware_host_add_noise(struct rn1_firmware_host_decoder *decode
 /* The message of a valid frame. */
 
 static uint8_t rn1_firmware_host_identify(const struct rn1_firmware_host_parts *parts,
-                                          const uint8_t *payload, uint8_t size, uint8_t *message) {
+                                          const uint8_t *payload, uint8_t size,
+                                          enum rn1_firmware_message *message) {
     *message = RN1_FIRMWARE_NO_MESSAGE;
     switch (parts->start) {
     case 0x80U:
@@ -1898,7 +1899,7 @@ static uint8_t rn1_firmware_host_identify(const struct rn1_firmware_host_parts *
 static uint8_t rn1_firmware_host_complete(struct rn1_firmware_host_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct rn1_firmware_host_event event;
-    uint8_t message;
+    enum rn1_firmware_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[1U + decoder->payload];
@@ -1911,13 +1912,12 @@ static uint8_t rn1_firmware_host_complete(struct rn1_firmware_host_decoder *deco
         return reason;
     }
     rn1_firmware_host_end_noise(decoder);
-    event.kind = message == (uint8_t)RN1_FIRMWARE_NO_MESSAGE ? RN1_FIRMWARE_UNKNOWN
-                                                             : RN1_FIRMWARE_MESSAGE;
+    event.kind = message == RN1_FIRMWARE_NO_MESSAGE ? RN1_FIRMWARE_UNKNOWN : RN1_FIRMWARE_MESSAGE;
     event.reason = RN1_FIRMWARE_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint8_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum rn1_firmware_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return RN1_FIRMWARE_FRAME;
@@ -2081,6 +2081,11 @@ static void rn1_firmware_host_seek_on(struct rn1_firmware_host_decoder *decoder)
     decoder->state = RN1_FIRMWARE_SEEKING;
 }
 
+static void rn1_firmware_host_reset(struct rn1_firmware_host_decoder *decoder) {
+    decoder->state = RN1_FIRMWARE_SEEKING;
+    decoder->noise = 0;
+}
+
 /* Open a candidate with a start that was seen. */
 static void rn1_firmware_host_reopen(struct rn1_firmware_host_decoder *decoder, uint8_t byte) {
     uint8_t reason = RN1_FIRMWARE_FINE;
@@ -2133,11 +2138,6 @@ void rn1_firmware_host_decoder_feed(struct rn1_firmware_host_decoder *decoder, c
     for (index = 0; index < size; index++) {
         rn1_firmware_host_decoder_push(decoder, data[index]);
     }
-}
-
-static void rn1_firmware_host_reset(struct rn1_firmware_host_decoder *decoder) {
-    decoder->state = RN1_FIRMWARE_SEEKING;
-    decoder->noise = 0;
 }
 
 void rn1_firmware_host_decoder_init(struct rn1_firmware_host_decoder *decoder,
@@ -2202,7 +2202,7 @@ static void rn1_firmware_brain_add_noise(struct rn1_firmware_brain_decoder *deco
 
 static uint8_t rn1_firmware_brain_identify(const struct rn1_firmware_brain_parts *parts,
                                            const uint8_t *payload, uint16_t size,
-                                           uint8_t *message) {
+                                           enum rn1_firmware_message *message) {
     (void)payload;
     *message = RN1_FIRMWARE_NO_MESSAGE;
     switch (parts->start) {
@@ -2242,7 +2242,7 @@ static uint8_t rn1_firmware_brain_identify(const struct rn1_firmware_brain_parts
 static uint8_t rn1_firmware_brain_complete(struct rn1_firmware_brain_decoder *decoder,
                                            const uint8_t *content) {
     struct rn1_firmware_brain_event event;
-    uint8_t message;
+    enum rn1_firmware_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[1U + decoder->payload];
@@ -2255,13 +2255,12 @@ static uint8_t rn1_firmware_brain_complete(struct rn1_firmware_brain_decoder *de
         return reason;
     }
     rn1_firmware_brain_end_noise(decoder);
-    event.kind = message == (uint8_t)RN1_FIRMWARE_NO_MESSAGE ? RN1_FIRMWARE_UNKNOWN
-                                                             : RN1_FIRMWARE_MESSAGE;
+    event.kind = message == RN1_FIRMWARE_NO_MESSAGE ? RN1_FIRMWARE_UNKNOWN : RN1_FIRMWARE_MESSAGE;
     event.reason = RN1_FIRMWARE_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum rn1_firmware_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return RN1_FIRMWARE_FRAME;
@@ -2474,6 +2473,11 @@ static void rn1_firmware_brain_seek_on(struct rn1_firmware_brain_decoder *decode
     decoder->state = RN1_FIRMWARE_SEEKING;
 }
 
+static void rn1_firmware_brain_reset(struct rn1_firmware_brain_decoder *decoder) {
+    decoder->state = RN1_FIRMWARE_SEEKING;
+    decoder->noise = 0;
+}
+
 /* Open a candidate with a start that was seen. */
 static void rn1_firmware_brain_reopen(struct rn1_firmware_brain_decoder *decoder, uint8_t byte) {
     uint8_t reason = RN1_FIRMWARE_FINE;
@@ -2637,11 +2641,6 @@ void rn1_firmware_brain_decoder_feed(struct rn1_firmware_brain_decoder *decoder,
         }
         index += taken;
     }
-}
-
-static void rn1_firmware_brain_reset(struct rn1_firmware_brain_decoder *decoder) {
-    decoder->state = RN1_FIRMWARE_SEEKING;
-    decoder->noise = 0;
 }
 
 void rn1_firmware_brain_decoder_init(struct rn1_firmware_brain_decoder *decoder,

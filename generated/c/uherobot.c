@@ -182,8 +182,8 @@ enum uherobot_result uherobot_status_decode(struct uherobot_status *message, con
 enum {
     UHEROBOT_SEEKING,
     UHEROBOT_TAKING,
-    UHEROBOT_FAILED,
-    UHEROBOT_LOST /* An end has to come before the next frame. */
+    UHEROBOT_LOST, /* An end has to come before the next frame. */
+    UHEROBOT_FAILED
 };
 
 enum {
@@ -491,7 +491,8 @@ static void uherobot_daemon_add_noise(struct uherobot_daemon_decoder *decoder, u
 /* The message of a valid frame. */
 
 static uint8_t uherobot_daemon_identify(const struct uherobot_daemon_parts *parts,
-                                        const uint8_t *payload, uint16_t size, uint8_t *message) {
+                                        const uint8_t *payload, uint16_t size,
+                                        enum uherobot_message *message) {
     (void)payload;
     *message = UHEROBOT_NO_MESSAGE;
     switch (parts->type) {
@@ -513,7 +514,7 @@ static uint8_t uherobot_daemon_identify(const struct uherobot_daemon_parts *part
 static uint8_t uherobot_daemon_complete(struct uherobot_daemon_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct uherobot_daemon_event event;
-    uint8_t message;
+    enum uherobot_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[3U + decoder->payload];
@@ -526,12 +527,12 @@ static uint8_t uherobot_daemon_complete(struct uherobot_daemon_decoder *decoder)
         return reason;
     }
     uherobot_daemon_end_noise(decoder);
-    event.kind = message == (uint8_t)UHEROBOT_NO_MESSAGE ? UHEROBOT_UNKNOWN : UHEROBOT_MESSAGE;
+    event.kind = message == UHEROBOT_NO_MESSAGE ? UHEROBOT_UNKNOWN : UHEROBOT_MESSAGE;
     event.reason = UHEROBOT_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum uherobot_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return UHEROBOT_FRAME;
@@ -693,6 +694,11 @@ static void uherobot_daemon_seek_on(struct uherobot_daemon_decoder *decoder) {
     decoder->state = UHEROBOT_SEEKING;
 }
 
+static void uherobot_daemon_reset(struct uherobot_daemon_decoder *decoder) {
+    decoder->state = UHEROBOT_SEEKING;
+    decoder->noise = 0;
+}
+
 /* Open a candidate with a start that was seen. */
 static void uherobot_daemon_reopen(struct uherobot_daemon_decoder *decoder) {
     uherobot_daemon_open(decoder);
@@ -741,11 +747,6 @@ void uherobot_daemon_decoder_feed(struct uherobot_daemon_decoder *decoder, const
     for (index = 0; index < size; index++) {
         uherobot_daemon_decoder_push(decoder, data[index]);
     }
-}
-
-static void uherobot_daemon_reset(struct uherobot_daemon_decoder *decoder) {
-    decoder->state = UHEROBOT_SEEKING;
-    decoder->noise = 0;
 }
 
 void uherobot_daemon_decoder_init(struct uherobot_daemon_decoder *decoder,
@@ -807,7 +808,8 @@ static void uherobot_board_add_noise(struct uherobot_board_decoder *decoder, uin
 /* The message of a valid frame. */
 
 static uint8_t uherobot_board_identify(const struct uherobot_board_parts *parts,
-                                       const uint8_t *payload, uint16_t size, uint8_t *message) {
+                                       const uint8_t *payload, uint16_t size,
+                                       enum uherobot_message *message) {
     (void)payload;
     *message = UHEROBOT_NO_MESSAGE;
     switch (parts->type) {
@@ -823,7 +825,7 @@ static uint8_t uherobot_board_identify(const struct uherobot_board_parts *parts,
 static uint8_t uherobot_board_complete(struct uherobot_board_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct uherobot_board_event event;
-    uint8_t message;
+    enum uherobot_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[3U + decoder->payload];
@@ -836,12 +838,12 @@ static uint8_t uherobot_board_complete(struct uherobot_board_decoder *decoder) {
         return reason;
     }
     uherobot_board_end_noise(decoder);
-    event.kind = message == (uint8_t)UHEROBOT_NO_MESSAGE ? UHEROBOT_UNKNOWN : UHEROBOT_MESSAGE;
+    event.kind = message == UHEROBOT_NO_MESSAGE ? UHEROBOT_UNKNOWN : UHEROBOT_MESSAGE;
     event.reason = UHEROBOT_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum uherobot_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return UHEROBOT_FRAME;
@@ -1002,6 +1004,11 @@ static void uherobot_board_seek_on(struct uherobot_board_decoder *decoder) {
     decoder->state = UHEROBOT_SEEKING;
 }
 
+static void uherobot_board_reset(struct uherobot_board_decoder *decoder) {
+    decoder->state = UHEROBOT_SEEKING;
+    decoder->noise = 0;
+}
+
 /* Open a candidate with a start that was seen. */
 static void uherobot_board_reopen(struct uherobot_board_decoder *decoder) {
     uherobot_board_open(decoder);
@@ -1050,11 +1057,6 @@ void uherobot_board_decoder_feed(struct uherobot_board_decoder *decoder, const u
     for (index = 0; index < size; index++) {
         uherobot_board_decoder_push(decoder, data[index]);
     }
-}
-
-static void uherobot_board_reset(struct uherobot_board_decoder *decoder) {
-    decoder->state = UHEROBOT_SEEKING;
-    decoder->noise = 0;
 }
 
 void uherobot_board_decoder_init(struct uherobot_board_decoder *decoder,

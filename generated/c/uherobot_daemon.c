@@ -136,8 +136,8 @@ enum uherobot_daemon_result uherobot_daemon_status_decode(struct uherobot_daemon
 enum {
     UHEROBOT_DAEMON_SEEKING,
     UHEROBOT_DAEMON_TAKING,
-    UHEROBOT_DAEMON_FAILED,
-    UHEROBOT_DAEMON_LOST /* An end has to come before the next frame. */
+    UHEROBOT_DAEMON_LOST, /* An end has to come before the next frame. */
+    UHEROBOT_DAEMON_FAILED
 };
 
 enum {
@@ -494,7 +494,7 @@ static void uherobot_daemon_daemon_add_noise(struct uherobot_daemon_daemon_decod
 
 static uint8_t uherobot_daemon_daemon_identify(const struct uherobot_daemon_daemon_parts *parts,
                                                const uint8_t *payload, uint16_t size,
-                                               uint8_t *message) {
+                                               enum uherobot_daemon_message *message) {
     (void)payload;
     *message = UHEROBOT_DAEMON_NO_MESSAGE;
     switch (parts->type) {
@@ -510,7 +510,7 @@ static uint8_t uherobot_daemon_daemon_identify(const struct uherobot_daemon_daem
 static uint8_t uherobot_daemon_daemon_complete(struct uherobot_daemon_daemon_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct uherobot_daemon_daemon_event event;
-    uint8_t message;
+    enum uherobot_daemon_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[3U + decoder->payload];
@@ -524,13 +524,13 @@ static uint8_t uherobot_daemon_daemon_complete(struct uherobot_daemon_daemon_dec
         return reason;
     }
     uherobot_daemon_daemon_end_noise(decoder);
-    event.kind = message == (uint8_t)UHEROBOT_DAEMON_NO_MESSAGE ? UHEROBOT_DAEMON_UNKNOWN
-                                                                : UHEROBOT_DAEMON_MESSAGE;
+    event.kind = message == UHEROBOT_DAEMON_NO_MESSAGE ? UHEROBOT_DAEMON_UNKNOWN
+                                                       : UHEROBOT_DAEMON_MESSAGE;
     event.reason = UHEROBOT_DAEMON_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum uherobot_daemon_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return UHEROBOT_DAEMON_FRAME;
@@ -700,6 +700,11 @@ static void uherobot_daemon_daemon_seek_on(struct uherobot_daemon_daemon_decoder
     decoder->state = UHEROBOT_DAEMON_SEEKING;
 }
 
+static void uherobot_daemon_daemon_reset(struct uherobot_daemon_daemon_decoder *decoder) {
+    decoder->state = UHEROBOT_DAEMON_SEEKING;
+    decoder->noise = 0;
+}
+
 /* Open a candidate with a start that was seen. */
 static void uherobot_daemon_daemon_reopen(struct uherobot_daemon_daemon_decoder *decoder) {
     uherobot_daemon_daemon_open(decoder);
@@ -750,11 +755,6 @@ void uherobot_daemon_daemon_decoder_feed(struct uherobot_daemon_daemon_decoder *
     for (index = 0; index < size; index++) {
         uherobot_daemon_daemon_decoder_push(decoder, data[index]);
     }
-}
-
-static void uherobot_daemon_daemon_reset(struct uherobot_daemon_daemon_decoder *decoder) {
-    decoder->state = UHEROBOT_DAEMON_SEEKING;
-    decoder->noise = 0;
 }
 
 void uherobot_daemon_daemon_decoder_init(struct uherobot_daemon_daemon_decoder *decoder,
@@ -843,7 +843,7 @@ static void uherobot_daemon_board_add_noise(struct uherobot_daemon_board_decoder
 
 static uint8_t uherobot_daemon_board_identify(const struct uherobot_daemon_board_parts *parts,
                                               const uint8_t *payload, uint16_t size,
-                                              uint8_t *message) {
+                                              enum uherobot_daemon_message *message) {
     (void)payload;
     *message = UHEROBOT_DAEMON_NO_MESSAGE;
     switch (parts->type) {
@@ -859,7 +859,7 @@ static uint8_t uherobot_daemon_board_identify(const struct uherobot_daemon_board
 static uint8_t uherobot_daemon_board_complete(struct uherobot_daemon_board_decoder *decoder) {
     const uint8_t *const content = decoder->buffer;
     struct uherobot_daemon_board_event event;
-    uint8_t message;
+    enum uherobot_daemon_message message;
     uint8_t reason;
     {
         const uint8_t *const tail = &content[3U + decoder->payload];
@@ -873,13 +873,13 @@ static uint8_t uherobot_daemon_board_complete(struct uherobot_daemon_board_decod
         return reason;
     }
     uherobot_daemon_board_end_noise(decoder);
-    event.kind = message == (uint8_t)UHEROBOT_DAEMON_NO_MESSAGE ? UHEROBOT_DAEMON_UNKNOWN
-                                                                : UHEROBOT_DAEMON_MESSAGE;
+    event.kind = message == UHEROBOT_DAEMON_NO_MESSAGE ? UHEROBOT_DAEMON_UNKNOWN
+                                                       : UHEROBOT_DAEMON_MESSAGE;
     event.reason = UHEROBOT_DAEMON_NO_REASON;
     event.offset = decoder->offset;
     event.size = (uint16_t)(decoder->wire - decoder->behind);
     decoder->offset += event.size;
-    event.message = (enum uherobot_daemon_message)message;
+    event.message = message;
     event.payload_size = decoder->payload;
     decoder->handler(decoder->user, &event);
     return UHEROBOT_DAEMON_FRAME;
@@ -1064,6 +1064,11 @@ static void uherobot_daemon_board_seek_on(struct uherobot_daemon_board_decoder *
     decoder->state = UHEROBOT_DAEMON_SEEKING;
 }
 
+static void uherobot_daemon_board_reset(struct uherobot_daemon_board_decoder *decoder) {
+    decoder->state = UHEROBOT_DAEMON_SEEKING;
+    decoder->noise = 0;
+}
+
 /* Open a candidate with a start that was seen. */
 static void uherobot_daemon_board_reopen(struct uherobot_daemon_board_decoder *decoder) {
     uherobot_daemon_board_open(decoder);
@@ -1114,11 +1119,6 @@ void uherobot_daemon_board_decoder_feed(struct uherobot_daemon_board_decoder *de
     for (index = 0; index < size; index++) {
         uherobot_daemon_board_decoder_push(decoder, data[index]);
     }
-}
-
-static void uherobot_daemon_board_reset(struct uherobot_daemon_board_decoder *decoder) {
-    decoder->state = UHEROBOT_DAEMON_SEEKING;
-    decoder->noise = 0;
 }
 
 void uherobot_daemon_board_decoder_init(struct uherobot_daemon_board_decoder *decoder,

@@ -144,7 +144,10 @@ def _decoders(unit: Unit) -> list[_Owner]:
     return [
         _Owner(
             decoder.name,
-            tuple((role, f"{decoder.prefix}_decoder_{role}") for role in roles),
+            tuple(
+                (role, f"{decoder.prefix}_decoder_{role}")
+                for role in (*roles, *(["next"] if decoder.gives_more else []))
+            ),
             f"struct {decoder.prefix}_decoder",
         )
         for decoder in decoders
@@ -156,6 +159,7 @@ def _handlers(unit: Unit) -> list[str]:
     dispatches = unit.framing.dispatches
     functions = [f"{dispatch.decoder.prefix}_dispatch" for dispatch in dispatches]
     functions += [f"{decoder.prefix}_dispatch" for decoder in unit.framing.together]
+    functions += [f"{prefix}_decoder_dispatch" for prefix in unit.framing.polled]
     return functions + [item.function for dispatch in dispatches for item in dispatch.handlers]
 
 

@@ -48,7 +48,7 @@ def fed(source: str, header: str) -> str:
 
     def splits(found: re.Match[str]) -> str:
         limit = "    //@ dynamic_split decoder->limit == 0;\n" if found[2] in limited else ""
-        return f"{found[1]}    //@ dynamic_split event->message;\n{limit}{found[3]}"
+        return f"{found[1]}    //@ dynamic_split message;\n{limit}{found[3]}"
 
     limited = set(_LIMIT.findall(header))
     return _POLLED_FEED.sub(splits, source)

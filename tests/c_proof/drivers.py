@@ -38,6 +38,9 @@ _TELLS = re.compile(
 _POLLS = re.compile(r"void (\w+)_decoder_init\(\s*struct \w+ \*decoder\);")
 """A decoder whose `push` returns which message is complete, and takes no handler."""
 
+_STATES = re.compile(r"struct (\w+)_decoder \{[^}]* state;")
+"""One with states, which bounds what events show by itself: its ways need not be followed apart."""
+
 HEAD = """#define {upper}_FAST_FEED 0 /* memcpy, which only `feed` needs; fuzzed against `push` */
 #include "{name}.c"
 #include "__fc_builtin.h"
@@ -65,8 +68,8 @@ _ENDLESS = """static void prove_{prefix}_push(void) {{
 {apart}    while (any) {{
         if (any) {{
             {push}
-{tells}{feed}        }} else {{
-            {prefix}_decoder_flush(&decoder);
+{tells}{feed}{next}        }} else {{
+            {flush}
         }}
     }}
 }}
@@ -113,7 +116,7 @@ _FIRST = """static void prove_{prefix}_first(void) {{
     for (int i = 0; i < {count}; i++) {{
         {push}
     }}
-    {prefix}_decoder_flush(&decoder);
+    {flush}
 }}
 """
 _IDLE = """    /* Until a frame's size is known the limit is nought, which is no size of a frame. */
@@ -124,11 +127,12 @@ _CALLS = {
     "init": "&decoder, take_{prefix}, NULL",
     "handler": "        decoder.handler = take_{prefix};\n",
     "push": "{prefix}_decoder_push(&decoder, Frama_C_unsigned_char_interval(0, 255));",
+    "next": "",
+    "flush": "{prefix}_decoder_flush(&decoder);",
 }
 _POLLED = {
-    "step": """static void step_{prefix}(struct {prefix}_decoder *decoder) {{
-    const uint8_t byte = Frama_C_unsigned_char_interval(0, 255);
-    const enum {lower}_message message = {prefix}_decoder_push(decoder, byte);
+    "step": """static void show_{prefix}(
+    struct {prefix}_decoder *decoder, enum {lower}_message message) {{
     if (message != {upper}_NO_MESSAGE) {{
         struct {prefix}_event event;
         {prefix}_decoder_event(decoder, message, &event);
@@ -136,10 +140,20 @@ _POLLED = {
     }}
 }}
 
+static void step_{prefix}(struct {prefix}_decoder *decoder) {{
+    const uint8_t byte = Frama_C_unsigned_char_interval(0, 255);
+    const enum {lower}_message message = {prefix}_decoder_push(decoder, byte);
+    show_{prefix}(decoder, message);
+}}
+
 """,
     "init": "&decoder",
     "handler": "",
     "push": "step_{prefix}(&decoder);",
+    "next": """        }} else if (any) {{
+            show_{prefix}(&decoder, {prefix}_decoder_next(&decoder));
+""",
+    "flush": "show_{prefix}(&decoder, {prefix}_decoder_flush(&decoder));",
 }
 _PAYLOAD = """
 static void prove_{prefix}_decode_of(size_t size) {{
@@ -174,6 +188,17 @@ _ANY = {
     "uint32_t": "Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU)",
 }
 """Any number of a type."""
+
+
+def known_in(source: str, options: Sequence[str]) -> tuple[str, ...]:
+    """The options without functions that the source does not have, about which EVA complains."""
+
+    def known(option: str) -> str:
+        name, found, values = option.partition("-function=")
+        is_there = (item for item in values.split(",") if f"{item.partition(':')[0]}(" in source)
+        return f"{name}{found}{','.join(is_there)}" if found else option
+
+    return tuple(known(option) for option in options)
 
 
 @dataclass(frozen=True)
@@ -227,7 +252,8 @@ def push_driver(
     `feeds`, bytes also come several at a time; where it `loads`, each event is dispatched.
     """
     prefixes, polled = _PUSH.findall(header), set(_POLLS.findall(header))
-    limited = polled & set(_LIMIT.findall(header))
+    flat = sorted(polled - set(_STATES.findall(header)))
+    limited = set(flat) & set(_LIMIT.findall(header))
     given = {"bounds": _bounds(header), "reads": _ENDS if reads_ends else _FIRST_BYTE}
     upper = protocol.name.upper()
     tells: dict[str, str] = {}
@@ -249,7 +275,7 @@ def push_driver(
     ]
     head = HEAD.format(name=protocol.name, upper=upper)
     driver = program([head, *parts], [f"{prefix}_push" for prefix in prefixes])
-    options = _apart(sorted(polled), feeds=feeds)
+    options = _apart(flat, feeds=feeds)
     return replace(driver, options=options)
 
 
@@ -275,15 +301,16 @@ def first_driver(protocol: Protocol, header: str) -> Driver:
         parts.append(_decoder(_FIRST, prefix, upper, **given))
         proofs.append(f"{prefix}_first")
     driver = program(parts, proofs)
-    return replace(driver, options=(*_apart(sorted(polled)), f"-eva-slevel={PATHS}"))
+    apart = _apart(sorted(polled - set(_STATES.findall(header))))
+    return replace(driver, options=(*apart, f"-eva-slevel={PATHS}"))
 
 
 def _apart(prefixes: Sequence[str], *, feeds: bool = False) -> tuple[str, ...]:
     """Split by the message that `push` returns: only with one the event is filled."""
     if not prefixes:
         return ()
-    steps = [name for p in prefixes for name in (f"step_{p}", f"{p}_decoder_push", f"{p}_complete")]
-    steps += [f"{p}_{name}" for p in prefixes for name in ("take_byte", "decoder_feed") if feeds]
+    ways = ("decoder_push", "complete", *(["decoder_feed"] if feeds else []))
+    steps = [f"step_{p}" for p in prefixes] + [f"{p}_{way}" for p in prefixes for way in ways]
     depths = ",".join(f"{name}:64" for name in steps)
     splits = ("-eva-interprocedural-splits",) if feeds else ()
     return ("-eva-split-return=full", f"-eva-slevel-function={depths}", *splits)

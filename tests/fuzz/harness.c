@@ -55,14 +55,19 @@ static void JOIN(PREFIX, _start)(struct JOIN(PREFIX, _decoder) * decoder, struct
 #endif
 }
 
-static void JOIN(PREFIX, _push)(struct JOIN(PREFIX, _decoder) * decoder, uint8_t byte, struct JOIN(PREFIX, _seen) * seen) {
 #if POLLS
-    const int message = (int)JOIN(PREFIX, _decoder_push)(decoder, byte);
-    if (message != NO_MESSAGE) {
+static void JOIN(PREFIX, _drain)(struct JOIN(PREFIX, _decoder) * decoder, int message, struct JOIN(PREFIX, _seen) * seen) {
+    for (; message != NO_MESSAGE; message = (int)JOIN(PREFIX, _decoder_next)(decoder)) {
         struct JOIN(PREFIX, _event) event;
         JOIN(PREFIX, _decoder_event)(decoder, message, &event);
         JOIN(PREFIX, _take)(seen, &event);
     }
+}
+#endif
+
+static void JOIN(PREFIX, _push)(struct JOIN(PREFIX, _decoder) * decoder, uint8_t byte, struct JOIN(PREFIX, _seen) * seen) {
+#if POLLS
+    JOIN(PREFIX, _drain)(decoder, (int)JOIN(PREFIX, _decoder_push)(decoder, byte), seen);
 #else
     (void)seen;
     JOIN(PREFIX, _decoder_push)(decoder, byte);
@@ -72,20 +77,29 @@ static void JOIN(PREFIX, _push)(struct JOIN(PREFIX, _decoder) * decoder, uint8_t
 static void JOIN(PREFIX, _feed)(struct JOIN(PREFIX, _decoder) * decoder, const uint8_t *data, size_t size,
                                 struct JOIN(PREFIX, _seen) * seen) {
 #if POLLS
-    while (size != 0) {
-        struct JOIN(PREFIX, _event) event;
+    struct JOIN(PREFIX, _event) event;
+    do {
         const size_t taken = JOIN(PREFIX, _decoder_feed)(decoder, data, size, &event);
-        REQUIRE(taken != 0 && taken <= size);
+        REQUIRE(taken <= size);
         REQUIRE(taken == size || event.message != NO_MESSAGE);
         if (event.message != NO_MESSAGE) {
             JOIN(PREFIX, _take)(seen, &event);
         }
         data += taken;
         size -= taken;
-    }
+    } while (event.message != NO_MESSAGE);
 #else
     (void)seen;
     JOIN(PREFIX, _decoder_feed)(decoder, data, size);
+#endif
+}
+
+static void JOIN(PREFIX, _flush)(struct JOIN(PREFIX, _decoder) * decoder, struct JOIN(PREFIX, _seen) * seen) {
+#if POLLS
+    JOIN(PREFIX, _drain)(decoder, (int)JOIN(PREFIX, _decoder_flush)(decoder), seen);
+#else
+    (void)seen;
+    JOIN(PREFIX, _decoder_flush)(decoder);
 #endif
 }
 
@@ -104,16 +118,16 @@ static void JOIN(PREFIX, _run)(const uint8_t *data, size_t size, uint8_t cut, ui
     JOIN(PREFIX, _start)(chunked, &by_chunk);
     for (size_t i = 0; i < size; i++) {
         if (end != 0 && i == silence) {
-            JOIN(PREFIX, _decoder_flush)(single);
+            JOIN(PREFIX, _flush)(single, &by_byte);
         }
         JOIN(PREFIX, _push)(single, data[i], &by_byte);
     }
-    JOIN(PREFIX, _decoder_flush)(single);
+    JOIN(PREFIX, _flush)(single, &by_byte);
     for (size_t at = 0; at < size;) {
         const size_t stop = end != 0 && at < silence ? silence : size;
         size_t chunk;
         if (end != 0 && at == silence) {
-            JOIN(PREFIX, _decoder_flush)(chunked);
+            JOIN(PREFIX, _flush)(chunked, &by_chunk);
         }
         dice = dice * 1103515245u + 12345u;
         chunk = cut == 0 ? size : 1u + (dice >> 16) % cut;
@@ -127,7 +141,7 @@ static void JOIN(PREFIX, _run)(const uint8_t *data, size_t size, uint8_t cut, ui
         free(bytes);
         at += chunk;
     }
-    JOIN(PREFIX, _decoder_flush)(chunked);
+    JOIN(PREFIX, _flush)(chunked, &by_chunk);
 #if ALL_EVENTS
     REQUIRE(by_byte.offset == size);
     REQUIRE(by_chunk.offset == size);

@@ -11,21 +11,24 @@
 static inline void subject_init(void) {}
 
 static inline void subject_push(uint8_t byte) {
-    struct LINK(_event) event;
-    LINK(_decoder_event)(&decoder, LINK(_decoder_push)(&decoder, byte), &event);
-    take(NULL, &event);
+    __typeof__(LINK(_decoder_next)(&decoder)) message = LINK(_decoder_push)(&decoder, byte);
+    for (; message != NO_MESSAGE; message = LINK(_decoder_next)(&decoder)) {
+        struct LINK(_event) event;
+        LINK(_decoder_event)(&decoder, message, &event);
+        take(NULL, &event);
+    }
 }
 
 static inline void subject_feed(const uint8_t *data, size_t size) {
-    while (size != 0) {
-        struct LINK(_event) event;
+    struct LINK(_event) event;
+    do {
         const size_t used = LINK(_decoder_feed)(&decoder, data, size, &event);
         if (event.message != NO_MESSAGE) {
             take(NULL, &event);
         }
         data += used;
         size -= used;
-    }
+    } while (event.message != NO_MESSAGE);
 }
 #else
 static inline void subject_init(void) {

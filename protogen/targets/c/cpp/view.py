@@ -107,8 +107,8 @@ class CppDecoder(msgspec.Struct, frozen=True):
 
     @property
     def polls(self) -> bool:
-        """True if C's `push` returns which message is complete, instead of calling a handler."""
-        return self.view.polled is not None
+        """True if C's functions return which message is complete, instead of calling a handler."""
+        return self.view.is_polled
 
 
 class CppForm(msgspec.Struct, frozen=True):
@@ -130,6 +130,11 @@ class CppForms(msgspec.Struct, frozen=True):
     view: FormsDecoder
     forms: tuple[CppForm, ...]
     """In the order of the enum, whose last value says that there is none."""
+
+    @property
+    def polls(self) -> bool:
+        """True if C's functions return which message is complete, instead of calling a handler."""
+        return self.view.is_polled
 
     @property
     def received_list(self) -> str:

@@ -9,7 +9,18 @@ from protogen.model.frame_plan import StartRule
 from protogen.targets.c.decoders.push import PushDecoder
 from protogen.targets.c.frame.virtual import VirtualView, virtual_of
 
-_OWNERS = ("offset", "noise", "count", "next", "failed", "state", "reason", "shared", "buffer")
+_OWNERS = (
+    "offset",
+    "noise",
+    "count",
+    "next",
+    "failed",
+    "state",
+    "reason",
+    "shared",
+    "ending",
+    "buffer",
+)
 """What is kept once for all forms."""
 
 
@@ -56,6 +67,7 @@ class Candidate(PushDecoder, frozen=True, dict=True):
         """None: it has states."""
 
     polled = flat
+    fills_in_place = False
 
     @cached_property
     def virtual(self) -> tuple[VirtualView, ...]:

@@ -139,11 +139,6 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         """True if the case of a number has variables."""
         return number.is_length or (number.identifies and self.only_size is None)
 
-    @property
-    def shows_tail(self) -> bool:
-        """True if events show a part from behind the payload."""
-        return any(not part.in_head for part in self.parts)
-
     # --- messages ---------------------------------------------------------------------------------
 
     @property

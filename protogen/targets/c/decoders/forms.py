@@ -17,7 +17,14 @@ from protogen.model.frame_plan import StartRule
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.candidate import Candidate
 from protogen.targets.c.decoders.decoder import DecoderView
-from protogen.targets.c.decoders.members import POINTERS, SMALL_POINTER, Member, candidate_members
+from protogen.targets.c.decoders.members import (
+    ENDING,
+    FOUND,
+    POINTERS,
+    SMALL_POINTER,
+    Member,
+    candidate_members,
+)
 from protogen.targets.c.decoders.named import NamedDecoder
 from protogen.targets.c.decoders.push import PushDecoder
 from protogen.targets.c.frame.numbers import ToldView
@@ -90,6 +97,16 @@ class FormsDecoder(NamedDecoder, frozen=True, dict=True):
     def all_events(self) -> bool:
         """True if invalid bytes and unknown frames are delivered, too."""
         return self.events == "all"
+
+    @property
+    def is_polled(self) -> bool:
+        """True if `push` and all others return which message is complete, one at a time."""
+        return self.events == "messages"
+
+    @property
+    def gives_more(self) -> bool:
+        """True if messages may be left when `push` has returned one."""
+        return self.is_polled
 
     # --- sizes ------------------------------------------------------------------------------------
 
@@ -167,7 +184,7 @@ class FormsDecoder(NamedDecoder, frozen=True, dict=True):
 
     @property
     def members(self) -> tuple[Member, ...]:
-        """The members behind the handler, its `user`, and those of the forms."""
+        """The members in front of those of the forms, behind the handler where there is one."""
         counters = (
             (self.all_events, "noise", "Bytes of noise that are in no event yet."),
             (True, "count", "Bytes in the buffer."),
@@ -176,7 +193,9 @@ class FormsDecoder(NamedDecoder, frozen=True, dict=True):
         )
         shared = "Bytes of the candidate that ended the frame before."
         states = (
-            (True, "state", "Seeking, taking, failed or lost."),
+            (True, "state", FOUND if self.is_polled else "Seeking, taking, failed or lost."),
+            (self.is_polled, "ending", ENDING),
+            (self.is_polled, "form", "The form of the frame that is complete."),
             (self.all_events, "reason", "Why the candidate failed."),
             (self.is_after_end, "match", "Bytes of an end that the input ends with."),
             (self.search.plan.shares_delimiter, "shared", shared),
@@ -193,7 +212,8 @@ class FormsDecoder(NamedDecoder, frozen=True, dict=True):
         """Bytes that it takes on an 8-bit controller."""
         kept = [member for item in self._each for member in candidate_members(item)]
         sizes = sum(member.size for member in (*self.members, *kept))
-        return (POINTERS + len(self.forms)) * SMALL_POINTER + sizes + self.buffer_size
+        pointers = len(self.forms) + (0 if self.is_polled else POINTERS)
+        return pointers * SMALL_POINTER + sizes + self.buffer_size
 
 
 def forms_decoders(

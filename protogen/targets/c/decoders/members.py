@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import msgspec
 
 from protogen.targets.c.decoders.candidate import Candidate
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.delimited import DelimitedDecoder
+from protogen.targets.c.decoders.kept import KeptDecoder
 from protogen.targets.c.frame.stuffing import StuffingKind
 
 POINTERS = 2
 """The handler and what it is given."""
 SMALL_POINTER = 2
 """Bytes of a pointer on a small target, which aligns nothing."""
+ENDING = "1: nothing comes behind the bytes that are kept, and a silence, or the end."
+FOUND = "Seeking, taking, failed or lost; or a message is complete."
 _SIZES = {"uint8_t": 1, "uint16_t": 2, "uint32_t": 4, "uint64_t": 8}
 
 
@@ -34,7 +39,12 @@ class Member(msgspec.Struct, frozen=True):
     @property
     def size(self) -> int:
         """Bytes of memory."""
-        return _SIZES[self.type] * (1 if self.count is None else self.count)
+        return _SIZES.get(self.type, 1) * (1 if self.count is None else self.count)
+
+
+def message_member(protocol: str) -> Member:
+    """The member for a message that is complete. Enums take one byte on a small target."""
+    return Member(f"enum {protocol}_message", "message", "The message of a frame.")
 
 
 def memory_of(view: DecoderView) -> int:
@@ -45,12 +55,13 @@ def memory_of(view: DecoderView) -> int:
 
 def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
     """The members, behind the handler and its `user` where there is one; the buffers last."""
-    if isinstance(view, DecoderView) and view.delimited is not None:
-        return _of_delimited(view.delimited)
+    if isinstance(view, DecoderView) and (view.delimited or view.kept):
+        return _of_lean(view)
     plan, push, stuffing = view.plan, view.push, view.stuffing
     kind = None if stuffing is None else stuffing.kind
     is_push = view.flat is None
     has_limit = not view.simple if view.flat is None else view.flat.only_size is None
+    is_polled = is_push and view.is_polled
     fails = view.keeps_wire or push.decides_later
     holds = is_push and push.searches and push.holds_delimiter
     begins_next = is_push and push.keeps_behind
@@ -75,9 +86,10 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
             "Bytes on the wire that are part of the candidate's content.",
         ),
         (view.length_over_wire, "stop", "Those up to the end of the stuffed region; 0: not known."),
+        (is_polled and view.fits_payloads, "fitted", "Size of the payload as events show it."),
     )
     states = (
-        (is_push, "state", "Seeking, taking, failed or lost."),
+        (is_push, "state", FOUND if is_polled else "Seeking, taking, failed or lost."),
         (view.all_events and fails, "reason", "Why the candidate failed."),
         (is_push and push.has_flags, "flags", "What is known of the candidate."),
         (plan.measures, "group", "Number of the identity whose payload is measured."),
@@ -89,19 +101,15 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
         (push.crosses_region, "region", "In front of the stuffed region, inside, or behind."),
         (stuffing is not None, "node", "Place inside a sequence of the stuffing; 0 outside."),
         (has_code, "code", "First half of a byte, or the code of a group."),
+        (is_polled and view.keeps_wire, "ending", ENDING),
     )
     found = [
         *(Member(view.counter, name, about) for is_there, name, about in counters if is_there),
         *(Member("uint8_t", name, about) for is_there, name, about in states if is_there),
     ]
-    for part in view.told_parts:
-        found.append(Member(part.type, part.kept, f"What was told of {part.name}."))
-        found.append(Member(part.type, part.own, "The same of the candidate."))
-        if part.once:
-            found.append(Member("uint8_t", part.is_new, "1: it was told since that began."))
-    if view.told_length is not None:
-        about = "Why no frame has the length that was told, if none has."
-        found.append(Member("uint8_t", "refused", about))
+    if is_polled and isinstance(view, DecoderView):
+        found.append(message_member(view.protocol))
+    found += _told(view)
     if view.all_events:
         offset = "Offset of the first byte that is in no event yet."
         found.insert(0, Member("uint32_t", "offset", offset))
@@ -111,10 +119,33 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
     found.append(Member("uint8_t", "buffer", "Bytes of the candidate.", view.buffer_size))
     if view.keeps_both:
         found.append(Member("uint8_t", "unstuffed", "Content of the candidate.", plan.greatest))
+    if is_polled and view.filled_size:
+        about = "The payload that was filled up with zeros."
+        found.append(Member("uint8_t", "filled", about, view.filled_size))
     if push.wire_ends:
         about = "Where each byte of content ends on the wire."
         found.append(Member(view.counter, "ends", about, plan.greatest))
     return tuple(found)
+
+
+def _told(view: DecoderView | Candidate) -> Iterator[Member]:
+    """The members for parts that are not sent."""
+    for part in view.told_parts:
+        yield Member(part.type, part.kept, f"What was told of {part.name}.")
+        yield Member(part.type, part.own, "The same of the candidate.")
+        if part.once:
+            yield Member("uint8_t", part.is_new, "1: it was told since that began.")
+    if view.told_length is not None:
+        about = "Why no frame has the length that was told, if none has."
+        yield Member("uint8_t", "refused", about)
+
+
+def _of_lean(view: DecoderView) -> tuple[Member, ...]:
+    """The members of a decoder with little more than a buffer."""
+    if view.kept is not None:
+        return _of_kept(view.kept)
+    assert view.delimited is not None
+    return _of_delimited(view.delimited)
 
 
 def _of_delimited(view: DelimitedDecoder) -> tuple[Member, ...]:
@@ -136,12 +167,27 @@ def _of_delimited(view: DelimitedDecoder) -> tuple[Member, ...]:
     return tuple(member for is_there, member in found if is_there)
 
 
+def _of_kept(view: KeptDecoder) -> tuple[Member, ...]:
+    """The members of a decoder that looks through what it keeps."""
+    buffer = Member("uint8_t", "buffer", "Bytes of the candidate, and behind it.", view.buffer_size)
+    if not view.gives_more:
+        return Member(view.counter, "content", "Bytes in the buffer."), buffer
+    payload = Member(view.counter, "payload", "Size of the payload of a complete frame.")
+    due = "Bytes of a message, or of a candidate when it is looked at again."
+    return (
+        Member(view.counter, "content", "Bytes in the buffer."),
+        Member(view.counter, "due", due),
+        *((payload,) if view.size_is_kept else ()),
+        Member("uint8_t", "ending", "1: no more bytes follow those in the buffer."),
+        buffer,
+    )
+
+
 def candidate_members(view: Candidate) -> tuple[Member, ...]:
     """The members of a candidate of one of several forms, behind the pointer to its bytes."""
     verdict = "Why it is no frame, if it is none; 0: not known yet."
-    message = "The message of a frame."
     return (
         *(member for member in members_of(view) if view.keeps(member.name)),
         Member("uint8_t", "verdict", verdict),
-        Member("uint8_t", "message", message),
+        message_member(view.protocol),
     )

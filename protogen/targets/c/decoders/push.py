@@ -102,6 +102,36 @@ class PushDecoder(PushStates, frozen=True, dict=True):
         around = self.around if group.greatest else self.least_around
         return min(around + group.greatest, self.plan.given_up_at)
 
+    # --- what is complete -------------------------------------------------------------------------
+
+    only_size = None
+    """The payload's size is looked up, or told, whatever it is."""
+
+    @property
+    def kept_content(self) -> str:
+        """Where the content begins in the decoder."""
+        return "decoder->unstuffed" if self.keeps_both else "decoder->buffer"
+
+    @property
+    def shown_size(self) -> str:
+        """The payload's size of a complete frame, as an argument in front of others."""
+        return f"{self.payload}, "
+
+    @property
+    def gives_more(self) -> bool:
+        """True if one byte may complete several messages: those in bytes that are kept."""
+        return self.keeps_wire
+
+    @property
+    def waits_behind_frames(self) -> bool:
+        """True if a candidate begins behind a frame at once, in whose place it is kept.
+
+        So that waits for the next call, as events show what is there. Where a byte of a set ends a
+        frame, that has no message: all messages say where they end.
+        """
+        begins = self.begins_anywhere or self.plan.shares_delimiter
+        return self.keeps_wire or begins or (self.ends_at_start and bool(self.marks))
+
     # --- messages ---------------------------------------------------------------------------------
 
     def fits(self, item: ReceivedMessage) -> str:

@@ -61,6 +61,14 @@ class ReceivedFrame(NamedDecoder, frozen=True, dict=True):
         """True if invalid bytes and unknown frames are delivered, too."""
         return self.events == "all"
 
+    @property
+    def is_polled(self) -> bool:
+        """True if `push` and all others return which message is complete, one at a time.
+
+        A decoder of all events calls a handler: one byte may tell of many.
+        """
+        return self.events == "messages"
+
     # --- sizes ------------------------------------------------------------------------------------
 
     @cached_property
@@ -280,6 +288,16 @@ class ReceivedFrame(NamedDecoder, frozen=True, dict=True):
         member = self.names.member
         sent = (PartView(item, member(item.name), self.numbers) for item in self.plan.shown)
         return (*(part for part in self.told_parts if not part.is_length), *sent)
+
+    @property
+    def shows_told(self) -> bool:
+        """True if events show what the decoder was told."""
+        return any(isinstance(part, ToldView) for part in self.parts)
+
+    @property
+    def shows_tail(self) -> bool:
+        """True if events show a part from behind the payload."""
+        return any(not part.in_head for part in self.parts)
 
     @property
     def shows_inline(self) -> bool:

@@ -67,9 +67,22 @@ class FramingView(msgspec.Struct, frozen=True):
         return any(message.sends for message in self.messages)
 
     @property
+    def polled(self) -> tuple[str, ...]:
+        """Prefixes of the decoders whose functions return what is complete."""
+        alone = tuple(decoder.prefix for decoder in self.decoders if decoder.is_polled)
+        return alone + tuple(item.prefix for item in self.together if item.is_polled)
+
+    @property
+    def stops_at_messages(self) -> bool:
+        """True if some decoder with states stops at a message, until it is called again."""
+        return any(d.polled is d.push for d in self.decoders) or any(
+            item.is_polled for item in self.together
+        )
+
+    @property
     def takes_whole(self) -> bool:
         """True if some decoder takes whole frames out of what it is fed."""
-        return any(decoder.whole for decoder in self.decoders)
+        return any(decoder.takes_whole for decoder in self.decoders)
 
     @property
     def unstuffs_whole(self) -> bool:

@@ -143,7 +143,7 @@ def _decoder(
         decoder.name,
         decoder.prefix,
         decoder.all_events,
-        decoder.polled is not None,
+        decoder.is_polled,
         tuple(DrivenPart(part.name, part.type, part.part, part.member) for part in decoder.parts),
         tuple(
             DrivenHandler(item.function, item.message.struct, indices[item.message.name])
@@ -162,4 +162,5 @@ def _forms_decoder(
         for form in item.forms
     )
     told = tuple((told.part.name, told.part.member, told.part.type) for told in item.told)
-    return DrivenDecoder(index, item.name, item.prefix, item.all_events, False, (), (), told, forms)
+    kind = (item.all_events, item.is_polled)
+    return DrivenDecoder(index, item.name, item.prefix, *kind, (), (), told, forms)
