@@ -50,6 +50,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """True if any of these hands over a byte."""
     cut_checks: frozenset[str]
     """The frames, by their sender, some of which a decoder might end too early."""
+    in_place: frozenset[str]
+    """Those in which no group of COBS is ever full, so that no byte moves when they are stuffed."""
     trims: frozenset[str]
     """Those in which zeros at the end of some payload may be left out."""
     cuts_sent: bool
@@ -111,7 +113,7 @@ def framing_view(
     """The frames and decoders of the senders that were chosen."""
     views = {view.name: view for view in messages}
     senders = [item for item in protocol.senders if _is_chosen(item, views, options)]
-    numbers, shared = PartNumbers(helpers), set(helpers.texts)
+    numbers, shared = PartNumbers(helpers), len(helpers.texts)
     claim_functions([sender.plan for sender in senders], numbers)
     decoders = tuple(
         decoder_view(names, sender, views, options.events, numbers) for sender in senders
@@ -143,6 +145,8 @@ def framing_view(
         cut_checks=frozenset(
             item.frame.decoder.name for item in message_frames if item.needs_cut_check
         ),
+        in_place=frozenset(frame.decoder.name for frame in distinct if frame.is_one_region)
+        - {item.frame.decoder.name for item in message_frames if item.may_fill_group},
         trims=frozenset(item.frame.decoder.name for item in message_frames if item.is_trimmed),
         cuts_sent=any(item.sends and item.is_trimmed for item in message_frames),
         idle_checks=frozenset(
@@ -151,7 +155,7 @@ def framing_view(
         dispatches=dispatches(decoders, messages, names),
         sinks=used,
         texts=texts_of(protocol),
-        helpers=tuple(text for text in helpers.texts if text not in shared),
+        helpers=helpers.texts[shared:],
     )
 
 
