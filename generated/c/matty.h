@@ -114,7 +114,8 @@ enum matty_gps_mode_mode {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
+ * no struct, nothing to load, and functions that take none.
  */
 
 /* --- stop ------------------------------------------------------------------------------------- */
@@ -130,18 +131,8 @@ enum matty_gps_mode_mode {
  *
  * Switches the drives off.
  */
-struct matty_stop {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define MATTY_STOP_INIT \
-    { 0 }
-
-MATTY_API enum matty_result matty_stop_encode(const struct matty_stop *message, uint8_t *payload,
-                                              size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_stop_decode(struct matty_stop *message, const uint8_t *payload,
-                                              size_t size);
-MATTY_API void matty_stop_load(struct matty_stop *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_stop_encode(uint8_t *payload, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_stop_decode(const uint8_t *payload, size_t size);
 
 /* --- reset ------------------------------------------------------------------------------------ */
 
@@ -152,18 +143,8 @@ MATTY_API void matty_stop_load(struct matty_stop *message, const uint8_t *payloa
 #define MATTY_RESET_SPEC_HASH "a17f3a6417d5a08ad126dbe1637857495214272ba832fc4d5a565f16a5354a01"
 
 /** Stops the robot and sets its encoders to zero (line 17). */
-struct matty_reset {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define MATTY_RESET_INIT \
-    { 0 }
-
-MATTY_API enum matty_result matty_reset_encode(const struct matty_reset *message, uint8_t *payload,
-                                               size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_reset_decode(struct matty_reset *message, const uint8_t *payload,
-                                               size_t size);
-MATTY_API void matty_reset_load(struct matty_reset *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_reset_encode(uint8_t *payload, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_reset_decode(const uint8_t *payload, size_t size);
 
 /* --- mode ------------------------------------------------------------------------------------- */
 
@@ -304,18 +285,8 @@ MATTY_API void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t
  *
  * The frame's counter is that of the command.
  */
-struct matty_ack {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define MATTY_ACK_INIT \
-    { 0 }
-
-MATTY_API enum matty_result matty_ack_encode(const struct matty_ack *message, uint8_t *payload,
-                                             size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_ack_decode(struct matty_ack *message, const uint8_t *payload,
-                                             size_t size);
-MATTY_API void matty_ack_load(struct matty_ack *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_ack_encode(uint8_t *payload, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_ack_decode(const uint8_t *payload, size_t size);
 
 /* --- nack ------------------------------------------------------------------------------------- */
 
@@ -330,18 +301,8 @@ MATTY_API void matty_ack_load(struct matty_ack *message, const uint8_t *payload)
  *
  * The frame's counter is that of the last command that was understood.
  */
-struct matty_nack {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define MATTY_NACK_INIT \
-    { 0 }
-
-MATTY_API enum matty_result matty_nack_encode(const struct matty_nack *message, uint8_t *payload,
-                                              size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_nack_decode(struct matty_nack *message, const uint8_t *payload,
-                                              size_t size);
-MATTY_API void matty_nack_load(struct matty_nack *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_nack_encode(uint8_t *payload, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_nack_decode(const uint8_t *payload, size_t size);
 
 /* --- status ----------------------------------------------------------------------------------- */
 
@@ -477,18 +438,16 @@ static inline bool matty_transmitted(struct matty_transmission *frame) {
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_STOP_FRAME_MAX 7U
 #define MATTY_STOP_FRAME_ROOM 10U
-MATTY_API enum matty_result matty_stop_frame(const struct matty_stop *message, uint8_t counter,
-                                             uint8_t *frame, size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_stop_send(const struct matty_stop *message, uint8_t counter,
-                                            matty_put put, void *user);
+MATTY_API enum matty_result matty_stop_frame(uint8_t counter, uint8_t *frame, size_t capacity,
+                                             size_t *size);
+MATTY_API enum matty_result matty_stop_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_RESET_FRAME_MAX 7U
 #define MATTY_RESET_FRAME_ROOM 10U
-MATTY_API enum matty_result matty_reset_frame(const struct matty_reset *message, uint8_t counter,
-                                              uint8_t *frame, size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_reset_send(const struct matty_reset *message, uint8_t counter,
-                                             matty_put put, void *user);
+MATTY_API enum matty_result matty_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity,
+                                              size_t *size);
+MATTY_API enum matty_result matty_reset_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_MODE_FRAME_MAX 8U
@@ -534,18 +493,16 @@ MATTY_API enum matty_result matty_gps_mode_send(const struct matty_gps_mode *mes
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_ACK_FRAME_MAX 6U
 #define MATTY_ACK_FRAME_ROOM 10U
-MATTY_API enum matty_result matty_ack_frame(const struct matty_ack *message, uint8_t counter,
-                                            uint8_t *frame, size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_ack_send(const struct matty_ack *message, uint8_t counter,
-                                           matty_put put, void *user);
+MATTY_API enum matty_result matty_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity,
+                                            size_t *size);
+MATTY_API enum matty_result matty_ack_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_NACK_FRAME_MAX 6U
 #define MATTY_NACK_FRAME_ROOM 10U
-MATTY_API enum matty_result matty_nack_frame(const struct matty_nack *message, uint8_t counter,
-                                             uint8_t *frame, size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_nack_send(const struct matty_nack *message, uint8_t counter,
-                                            matty_put put, void *user);
+MATTY_API enum matty_result matty_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity,
+                                             size_t *size);
+MATTY_API enum matty_result matty_nack_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_STATUS_FRAME_MAX 42U
@@ -585,6 +542,18 @@ enum matty_reason {
     MATTY_TRUNCATED  /**< The frame is cut off. */
 } MATTY_PACKED;
 
+/** What came of a line, if a handler counts each event; all zeros at first. They wrap around. */
+struct matty_counters {
+    /** Valid frames of messages. */
+    uint32_t messages;
+    /** Valid frames whose identity no message has. */
+    uint32_t unknown;
+    /** Frames, or what looked like one, whose checksum is wrong. */
+    uint32_t checksums;
+    /** Bytes that are in no valid frame. */
+    uint32_t lost;
+};
+
 /* --- what pc sends ---------------------------------------------------------------------------- */
 
 /** The greatest frame of pc on the wire, in bytes. */
@@ -612,6 +581,25 @@ struct matty_pc_event {
     const uint8_t *payload;
     struct matty_pc_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void matty_pc_count(struct matty_counters *counters,
+                                  const struct matty_pc_event *event) {
+    switch (event->kind) {
+    case MATTY_MESSAGE:
+        counters->messages++;
+        break;
+    case MATTY_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == MATTY_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*matty_pc_handler)(void *user, const struct matty_pc_event *event);
@@ -694,6 +682,25 @@ struct matty_esp_event {
     struct matty_esp_parts parts;
 };
 
+/** Adds an event to the counters of a line. */
+static inline void matty_esp_count(struct matty_counters *counters,
+                                   const struct matty_esp_event *event) {
+    switch (event->kind) {
+    case MATTY_MESSAGE:
+        counters->messages++;
+        break;
+    case MATTY_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == MATTY_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
+
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*matty_esp_handler)(void *user, const struct matty_esp_event *event);
 
@@ -760,12 +767,10 @@ MATTY_API void matty_esp_decoder_flush(struct matty_esp_decoder *decoder);
  */
 
 /** stop came from pc. */
-void matty_on_stop(void *user, const struct matty_stop *message,
-                   const struct matty_pc_parts *parts);
+void matty_on_stop(void *user, const struct matty_pc_parts *parts);
 
 /** reset came from pc. */
-void matty_on_reset(void *user, const struct matty_reset *message,
-                    const struct matty_pc_parts *parts);
+void matty_on_reset(void *user, const struct matty_pc_parts *parts);
 
 /** mode came from pc. */
 void matty_on_mode(void *user, const struct matty_mode *message,
@@ -790,11 +795,10 @@ void matty_on_gps_mode(void *user, const struct matty_gps_mode *message,
 MATTY_API void matty_pc_dispatch(void *user, const struct matty_pc_event *event);
 
 /** ack came from esp. */
-void matty_on_ack(void *user, const struct matty_ack *message, const struct matty_esp_parts *parts);
+void matty_on_ack(void *user, const struct matty_esp_parts *parts);
 
 /** nack came from esp. */
-void matty_on_nack(void *user, const struct matty_nack *message,
-                   const struct matty_esp_parts *parts);
+void matty_on_nack(void *user, const struct matty_esp_parts *parts);
 
 /** status came from esp. */
 void matty_on_status(void *user, const struct matty_status *message,

@@ -150,7 +150,8 @@ struct rn1_maintenance_argument_run_motor_controller_flasher {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
+ * no struct, nothing to load, and functions that take none.
  */
 
 /* --- move_manual ------------------------------------------------------------------------------ */
@@ -429,6 +430,39 @@ static inline uint16_t rn1_lidar_distances_at(const uint8_t *payload, size_t ind
     return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
 }
 
+/** Reads status from a payload that was received, unchecked. */
+static inline uint8_t rn1_lidar_status_get(const uint8_t *payload) {
+    const uint8_t *at = payload;
+    return at[0];
+}
+
+/** Writes status into a frame that was begun; false, and nothing, if the value is refused. */
+static inline bool rn1_lidar_status_set(uint8_t *payload, uint8_t value) {
+    if (value > 127U) {
+        return false;
+    }
+    uint8_t *at = payload;
+    at[0] = value;
+    return true;
+}
+
+/**
+ * Writes distances[index] into a frame that was begun; false, and nothing, if the value or the
+ * index is refused.
+ */
+static inline bool rn1_lidar_distances_set_at(uint8_t *payload, size_t index, uint16_t value) {
+    if (index >= 360U) {
+        return false;
+    }
+    if (value > 16383U) {
+        return false;
+    }
+    uint8_t *at = payload + 1U + 2U * index;
+    at[0] = (uint8_t)(value & 0x7FU);
+    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
+    return true;
+}
+
 /* --- sonar ------------------------------------------------------------------------------------ */
 
 #define RN1_SONAR_ID 0x85U
@@ -498,6 +532,11 @@ RN1_API void rn1_facing_load(struct rn1_facing *message, const uint8_t *payload)
  * always suffices; for a shorter payload less does, but the buffer has to take the most that its
  * bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
+ *
+ * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
+ * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
+ * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns
+ * RN1_ERROR_RANGE where a field has no default that is allowed, and was not set.
  */
 
 /** Takes the next byte of a frame. */
@@ -607,6 +646,8 @@ RN1_API enum rn1_result rn1_optflow_send(const struct rn1_optflow *message, rn1_
 #define RN1_LIDAR_FRAME_ROOM 722U
 RN1_API enum rn1_result rn1_lidar_frame(const struct rn1_lidar *message, uint8_t *frame,
                                         size_t capacity, size_t *size);
+RN1_API uint8_t *rn1_lidar_begin(uint8_t *frame, size_t capacity);
+RN1_API enum rn1_result rn1_lidar_end(uint8_t *frame, size_t *size);
 RN1_API enum rn1_result rn1_lidar_send(const struct rn1_lidar *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
@@ -645,6 +686,18 @@ enum rn1_reason {
     RN1_TRUNCATED  /**< The frame is cut off. */
 } RN1_PACKED;
 
+/** What came of a line, if a handler counts each event; all zeros at first. They wrap around. */
+struct rn1_counters {
+    /** Valid frames of messages. */
+    uint32_t messages;
+    /** Valid frames whose identity no message has. */
+    uint32_t unknown;
+    /** Frames, or what looked like one, whose checksum is wrong. */
+    uint32_t checksums;
+    /** Bytes that are in no valid frame. */
+    uint32_t lost;
+};
+
 /* --- what host sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of host on the wire, in bytes. */
@@ -671,6 +724,25 @@ struct rn1_host_event {
     const uint8_t *payload;
     struct rn1_host_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void rn1_host_count(struct rn1_counters *counters,
+                                  const struct rn1_host_event *event) {
+    switch (event->kind) {
+    case RN1_MESSAGE:
+        counters->messages++;
+        break;
+    case RN1_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == RN1_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*rn1_host_handler)(void *user, const struct rn1_host_event *event);
@@ -753,6 +825,25 @@ struct rn1_brain_event {
     const uint8_t *payload;
     struct rn1_brain_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void rn1_brain_count(struct rn1_counters *counters,
+                                   const struct rn1_brain_event *event) {
+    switch (event->kind) {
+    case RN1_MESSAGE:
+        counters->messages++;
+        break;
+    case RN1_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == RN1_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*rn1_brain_handler)(void *user, const struct rn1_brain_event *event);

@@ -89,7 +89,8 @@ enum uherobot_message {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
+ * no struct, nothing to load, and functions that take none.
  */
 
 /* --- motors_servos_leds ----------------------------------------------------------------------- */
@@ -332,6 +333,18 @@ enum uherobot_reason {
     UHEROBOT_TRUNCATED  /**< The frame is cut off. */
 } UHEROBOT_PACKED;
 
+/** What came of a line, if a handler counts each event; all zeros at first. They wrap around. */
+struct uherobot_counters {
+    /** Valid frames of messages. */
+    uint32_t messages;
+    /** Valid frames whose identity no message has. */
+    uint32_t unknown;
+    /** Frames, or what looked like one, whose checksum is wrong. */
+    uint32_t checksums;
+    /** Bytes that are in no valid frame. */
+    uint32_t lost;
+};
+
 /* --- what daemon sends ------------------------------------------------------------------------ */
 
 /** The greatest frame of daemon on the wire, in bytes. */
@@ -358,6 +371,25 @@ struct uherobot_daemon_event {
     const uint8_t *payload;
     struct uherobot_daemon_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void uherobot_daemon_count(struct uherobot_counters *counters,
+                                         const struct uherobot_daemon_event *event) {
+    switch (event->kind) {
+    case UHEROBOT_MESSAGE:
+        counters->messages++;
+        break;
+    case UHEROBOT_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == UHEROBOT_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*uherobot_daemon_handler)(void *user, const struct uherobot_daemon_event *event);
@@ -441,6 +473,25 @@ struct uherobot_board_event {
     const uint8_t *payload;
     struct uherobot_board_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void uherobot_board_count(struct uherobot_counters *counters,
+                                        const struct uherobot_board_event *event) {
+    switch (event->kind) {
+    case UHEROBOT_MESSAGE:
+        counters->messages++;
+        break;
+    case UHEROBOT_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == UHEROBOT_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*uherobot_board_handler)(void *user, const struct uherobot_board_event *event);

@@ -44,6 +44,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """What the names of their functions begin with."""
     puts: tuple[str, ...]
     """The functions that hand payloads to a writer."""
+    unset: tuple[str, ...]
+    """Functions that say whether a message that was begun in its frame can end."""
     stateless: bool
     """True if what is sent byte by byte goes out as it is."""
     writes: bool
@@ -80,6 +82,16 @@ class FramingView(msgspec.Struct, frozen=True):
         return any(d.polled is d.push for d in self.decoders) or any(
             item.is_polled for item in self.together
         )
+
+    @property
+    def tells_all(self) -> bool:
+        """True if decoders yield all events, and not messages alone."""
+        return any(decoder.all_events for decoder in self.decoders)
+
+    @property
+    def greatest_room(self) -> int:
+        """Bytes of the greatest buffer that some frame needs."""
+        return max((message.room for message in self.messages), default=0)
 
     @property
     def takes_whole(self) -> bool:
@@ -140,6 +152,13 @@ def framing_view(
         streaming=streaming,
         writers=tuple(names.senders[name] for name in streaming),
         puts=puts,
+        unset=tuple(
+            dict.fromkeys(
+                place.unset_function
+                for item in message_frames
+                if (place := item.view.in_place) and place.unset
+            )
+        ),
         stateless=is_stateless(protocol),
         writes=any(f"{protocol.name}_write(" in text for text in (*puts, *used)),
         cut_checks=frozenset(
@@ -194,7 +213,7 @@ def _message_frames(
         own = {frames[name].decoder.name: name for name in senders}
         for frame_name, name in own.items() if message.name in views else ():
             suffix = from_sender(frame_name) if len(own) > 1 else ""
-            called = claim_frame(names, message.name, suffix)
+            called = claim_frame(names, message, suffix)
             yield of_sender[name].view(message, views[message.name], called)
 
 

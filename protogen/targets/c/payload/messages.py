@@ -15,13 +15,14 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.passes.framing.capacity import is_delimited
 from protogen.targets import descriptions
-from protogen.targets.c.lines import Lines, function, mentions, prototype
+from protogen.targets.c.lines import Lines, assertion, function, mentions, prototype
 from protogen.targets.c.named import string
 from protogen.targets.c.payload.accessors import accessor
 from protogen.targets.c.payload.checking import Checker
 from protogen.targets.c.payload.held import HeldNumber, from_parts, held_numbers
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.payload.images import copied, is_image
+from protogen.targets.c.payload.images import copied, is_image, last_place
+from protogen.targets.c.payload.in_place import InPlace, in_place
 from protogen.targets.c.payload.initial import initialiser
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.measuring import Measure
@@ -42,7 +43,7 @@ class MessageView(msgspec.Struct, frozen=True):
     name: str
     """The name in the schema."""
     struct: str
-    """`struct rn1_gyro`."""
+    """`struct rn1_gyro`; empty where no field has a value, and functions take no message."""
     constant: str
     """Its value of `enum rn1_message`."""
     fixed: int | None
@@ -59,8 +60,9 @@ class MessageView(msgspec.Struct, frozen=True):
     """True if there is a function `validate`; without it, every struct can be sent."""
     held: tuple[HeldNumber, ...]
     """The numbers of the frame among its members, arguments of the functions that read it."""
-    is_image: bool
-    """True if a little-endian machine can copy its struct as a whole."""
+    image: str
+    """The assertion that its struct lies in memory as its payload does, where a little-endian
+    machine can copy it as a whole; empty where none can."""
     check: str
     """(const uint8_t *payload, size_t size, size_t *need[, held]): enum rn1_result; `need` may be
     NULL."""
@@ -85,12 +87,19 @@ class MessageView(msgspec.Struct, frozen=True):
     """The lines of `RN1_GYRO_INIT`."""
     prototypes: tuple[str, ...]
     accessors: tuple[str, ...]
+    in_place: InPlace | None
+    """What writes it in its frame, field by field."""
     functions: tuple[str, ...]
     """All functions of the payload but `put`."""
     put_function: str
     refused_prototype: str
     """Empty, as the function is, if there is no function `validate`."""
     refused_function: str
+
+    @property
+    def parameter(self) -> tuple[str, ...]:
+        """The parameter for a message that is sent or was received."""
+        return (f"const {self.struct} *message",) if self.struct else ()
 
     def given(self, parts: str) -> str:
         """The numbers of the frame as arguments behind others; `parts` leads to an event's."""
@@ -123,12 +132,16 @@ class MessagePrinter(msgspec.Struct, frozen=True):
         read = (
             accessor(item.name, step, names, self.helpers, self.records) for step in item.plan.steps
         )
+        place = in_place(item, names, self.helpers, self.records)
         accessors = tuple(text for text in read if text)
+        if place is not None:
+            accessors += (*place.getters, *place.setters)
         zeros = f"{names.prefix.upper()}_ZEROS"
-        codec = _Codec(self, item, f"struct {tag}", called)
+        struct = f"struct {tag}" if has_struct(item) else ""
+        codec = _Codec(self, item, struct, called)
         return MessageView(
             name=item.name,
-            struct=f"struct {tag}",
+            struct=struct,
             constant=constant,
             fixed=codec.fixed,
             greatest=item.sizes.greatest,
@@ -137,11 +150,14 @@ class MessagePrinter(msgspec.Struct, frozen=True):
             needs=codec.needs,
             validates=codec.validates,
             held=codec.held,
-            is_image=codec.is_image,
+            image=codec.image(),
             record=record,
-            initialiser=initialiser(claim_init(names, item), zeros, item.plan.steps),
+            initialiser=initialiser(claim_init(names, item), zeros, item.plan.steps)
+            if struct
+            else (),
             prototypes=codec.prototypes(),
             accessors=accessors,
+            in_place=place,
             functions=codec.functions(),
             put_function=codec.put(),
             refused_prototype=codec.prototype("refused") if codec.validates else "",
@@ -179,20 +195,22 @@ class _Codec:
         self.held = held_numbers(item, printer.names)
         held = tuple(f"{number.type} {number.name}" for number in self.held)
         result = f"enum {self._prefix}_result"
-        message, given = f"{struct} *message", f"const {struct} *message"
+        self._struct = struct
+        message = (f"{struct} *message",) if struct else ()
+        given = (f"const {struct} *message",) if struct else ()
         payload = "const uint8_t *payload"
         size = ("size_t size",) if self.fixed is None else ()
         inline = f"{self._upper}_INLINE"
         self._signatures: dict[str, tuple[str, tuple[str, ...]]] = {
-            "measure": ("static size_t", (given,)),
-            "validate": (f"{inline} {result}", (given,)),
-            "refused": ("const char *", (given,)),
-            "store": (f"{inline} void", (given, "uint8_t *payload")),
-            "put": (f"{inline} void", (given, printer.names.writer)),
-            "encode": (result, (given, "uint8_t *payload", "size_t capacity", "size_t *size")),
+            "measure": ("static size_t", given),
+            "validate": (f"{inline} {result}", given),
+            "refused": ("const char *", given),
+            "store": (f"{inline} void", (*given, "uint8_t *payload")),
+            "put": (f"{inline} void", (*given, printer.names.writer)),
+            "encode": (result, (*given, "uint8_t *payload", "size_t capacity", "size_t *size")),
             "check": (f"static {result}", (payload, "size_t size", "size_t *need", *held)),
-            "load": ("void", (message, payload, *size, *held)),
-            "decode": (result, (message, payload, "size_t size", *held)),
+            "load": ("void", (*message, payload, *size, *held)),
+            "decode": (result, (*message, payload, "size_t size", *held)),
         }
         """Result and arguments of each function."""
 
@@ -202,7 +220,8 @@ class _Codec:
 
     def prototypes(self) -> tuple[str, ...]:
         """Declarations for the header."""
-        return tuple(map(self.prototype, ("encode", "decode", "load")))
+        words = ("encode", "decode", "load") if self._struct else ("encode", "decode")
+        return tuple(map(self.prototype, words))
 
     def prototype(self, word: str) -> str:
         """The declaration of a function for the header."""
@@ -217,7 +236,8 @@ class _Codec:
         found += [self._store(), self._encode()]
         if self.checks:
             found.append(self._check())
-        return (*found, self._load(), self._decode())
+        found += [self._load()] if self._struct else []
+        return (*found, self._decode())
 
     def _function(self, word: str, lines: Lines) -> str:
         head, arguments = self._head(word)
@@ -273,6 +293,15 @@ class _Codec:
         self._or_copy(lines, "payload", "message")
         return self._function("store", lines)
 
+    def image(self) -> str:
+        """The assertion that the last member lies where it does in the payload."""
+        if not self.is_image:
+            return ""
+        last, place = last_place(self._item.plan)
+        names = self._printer.names
+        name = names.claim_helper(self._item.name, "layout")
+        return assertion(name, f"offsetof({self._struct}, {names.member(last)}) == {place}U")
+
     def _or_copy(self, lines: Lines, to: str, source: str) -> None:
         """Print in front of statements what does the same where a struct is as on the wire."""
         if self.is_image:
@@ -302,7 +331,8 @@ class _Codec:
             lines.add("(void)capacity;")
         else:
             self._refuse(lines, f"capacity < {size}", "SPACE")
-        lines.add(f"{self._names['store']}(message, payload);", f"*size = {size};")
+        message = "message, " if self._struct else ""
+        lines.add(f"{self._names['store']}({message}payload);", f"*size = {size};")
         lines.add(f"return {self._upper}_OK;")
         return self._function("encode", lines)
 
@@ -329,8 +359,6 @@ class _Codec:
         if self.fixed is not None and load.reads_size:
             kind = "size_t" if load.moves_size else "const size_t"
             lines.put_first(f"{kind} size = {self.fixed}U;")
-        if not self._item.plan.holds_values:
-            lines.add("message->unused = 0U;")
         self._or_copy(lines, "message", "payload")
         return self._function("load", lines)
 
@@ -341,10 +369,15 @@ class _Codec:
         else:
             self._refuse(lines, f"size != {self.fixed}U", "SIZE")
         size = ", size" if self.fixed is None else ""
-        lines.add(
-            f"{self._names['load']}(message, payload{size}{held});", f"return {self._upper}_OK;"
-        )
+        if self._struct:
+            lines.add(f"{self._names['load']}(message, payload{size}{held});")
+        lines.add(f"return {self._upper}_OK;")
         return self._function("decode", lines)
+
+
+def has_struct(item: Message) -> bool:
+    """True if a message has a struct: some field has a value."""
+    return item.plan.holds_values
 
 
 def _unfit(item: Message) -> str:
