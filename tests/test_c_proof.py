@@ -109,10 +109,7 @@ MATTY = ROOT / "schemas" / "matty.yaml"
 
 LOADS_UNSEEN = ("dagny", "rflex", "rn1")
 """Documents whose `dispatch` copies arrays of any number of elements: EVA does not see that this is
-what the size of the payload says."""
-
-FEED_UNSEEN = ("rn1", "messages")
-"""A document whose `feed` EVA takes all ways through together."""
+what the size of the payload says. They are dispatched behind `decode`."""
 UHEROBOT = ROOT / "schemas" / "uherobot.yaml"
 SENT = [path for path in DOCUMENTS if path.stem != "rn1"]
 """Documents whose messages are sent. In rn1 one has cases of any size, which EVA takes together."""
@@ -204,8 +201,7 @@ def whole_driver(made: Generated, *, loads: bool = True) -> Driver:
 def test_no_input_harms_a_decoder(path: Path, events: Events, machine: str, tmp_path: Path) -> None:
     protocol = protocol_of(path)
     made = generate(protocol, tmp_path, COptions(events=events))
-    is_fed = path in DOCUMENTS and (path.stem, events) != FEED_UNSEEN
-    if is_fed and path.stem not in SLOW_ALL:
+    if path in DOCUMENTS and path.stem not in SLOW_ALL:
         driver = whole_driver(made, loads=path.stem not in LOADS_UNSEEN)
     else:
         driver = plain_driver(made, path)
@@ -352,6 +348,21 @@ def test_a_member_that_is_too_small_by_an_element_is_found(tmp_path: Path) -> No
     changed(made.header, r"\bnmea\[121\];", "nmea[120];")
     report = prove(made, decode_driver_of(made))
     assert report.alarms > 0
+
+
+def test_an_element_that_is_read_behind_a_payload_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(UHEROBOT), tmp_path)
+    changed(made.header, r"at = payload \+ 4U \+ 2U \* index;", "at = payload + 5U + 2U * index;")
+    report = prove(made, decode_driver_of(made))
+    assert any("out of bounds read" in found for found in report.found)
+
+
+def test_a_dispatch_that_loads_more_than_was_decoded_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(UHEROBOT), tmp_path)
+    assert made.source is not None
+    changed(made.source, r"_load\(&message, event->payload", r"_load(&message, event->payload + 1")
+    report = prove(made, decode_driver_of(made))
+    assert any("out of bounds read" in found for found in report.found)
 
 
 def test_a_size_that_is_not_checked_is_found(tmp_path: Path) -> None:

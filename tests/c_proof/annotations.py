@@ -30,6 +30,10 @@ _POLLED_FEED = re.compile(
     r"(    while \(index < size)",
     re.MULTILINE,
 )
+_PAYLOAD_KNOWN = re.compile(
+    r"if \(payload <= (\d+)U\) \{\n( +)decoder->payload = payload;\n(?= +return \w+_complete\()"
+)
+"""Where a frame's payload has a size, which it keeps while its event is filled."""
 _FIXED = re.compile(r"payload\[\d+\]")
 
 
@@ -43,7 +47,8 @@ def annotated(source: str) -> str:
 def fed(source: str, header: str) -> str:
     """Generated C with annotations where `feed` looks whether an event was filled.
 
-    It is filled, with a payload of that message, just where it has a message.
+    It is filled, with a payload of that message, just where it has a message; and what `push` has
+    found at a frame's end stays apart from decoders that never saw one.
     """
 
     def splits(found: re.Match[str]) -> str:
@@ -51,6 +56,9 @@ def fed(source: str, header: str) -> str:
         return f"{found[1]}    //@ dynamic_split message;\n{limit}{found[3]}"
 
     limited = set(_LIMIT.findall(header))
+    source = _PAYLOAD_KNOWN.sub(
+        lambda known: known[0] + _split(known[2], f"decoder->payload <= {known[1]}"), source
+    )
     return _POLLED_FEED.sub(splits, source)
 
 

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from c_proof.received import uses
 from protogen.copying import replace
 from protogen.model.expressions import names_in
 from protogen.model.messages import Message
@@ -162,7 +163,8 @@ static void prove_{prefix}_decode_of(size_t size) {{
     const uint8_t *const payload = &bytes[sizeof bytes - size];
     {message}
     Frama_C_make_unknown((char *)bytes, sizeof bytes);
-{splits}    (void){prefix}_decode({given}payload, size{held});
+{splits}    if ({prefix}_decode({given}payload, size{held}) == 0) {{
+{uses}    }}
 }}
 
 static void prove_{prefix}_decode(void) {{
@@ -213,7 +215,10 @@ class Driver:
 
 
 def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
-    """Every payload of up to a byte more than the greatest, for each message's `decode`."""
+    """Every payload of up to a byte more than the greatest, for each message's `decode`.
+
+    Those that it takes are dispatched, and their elements are read.
+    """
     flat = re.sub(r"\s+", " ", header)
     greatest = {name: int(size) for name, size in _GREATEST.findall(flat)}
     messages = {f"{protocol.name}_{message.name}": message for message in protocol.messages}
@@ -228,6 +233,8 @@ def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
             for index, type_ in enumerate(types)
         )
         given = {"prefix": prefix, "room": room, "steps": room + 2}
+        is_read = struct and prefix in messages
+        given["uses"] = uses(protocol, messages[prefix], prefix, flat) if is_read else ""
         given["held"] = "".join(f", held_{index}" for index in range(len(types)))
         given["message"] = f"struct {struct} message;" if struct else ""
         given["given"] = "&message, " if struct else ""
@@ -235,7 +242,11 @@ def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
         proofs.append(f"{prefix}_decode")
     # Bytes that are copied are all alike: to follow each of them takes most of the time.
     copy = f"{protocol.name}_copy"
-    options = (STATES, *((f"-eva-slevel-function={copy}:0",) if f"{copy}(" in source else ()))
+    options = (
+        STATES,
+        "-eva-split-return=full",
+        *((f"-eva-slevel-function={copy}:0",) if f"{copy}(" in source else ()),
+    )
     return replace(program(parts, proofs), options=options)
 
 
