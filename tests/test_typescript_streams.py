@@ -96,6 +96,39 @@ def test_parts_that_make_no_small_number_are_those_that_were_sent(tmp_path: Path
     ]
 
 
+HEADS = """\
+protocol: heads
+endpoints: {host: Host, board: Board}
+byte_order: little
+frame:
+  start: {literal: 0xAA, unprotected: plain}
+  id: {type: uint8, id: true}
+  mark: {literal: {hex: "31 32"}}
+  length: {type: uint8, counts: length..payload}
+  payload: {}
+decisions:
+  plain: {question: Q, document: D, choice: C, because: B}
+messages: {state: {id: 6, from: board, fields: {speed: uint16}}}
+"""
+
+
+@pytest.mark.parametrize(
+    "wire",
+    [
+        "AA 06 33",  # the first byte of a mark that is 31 32
+        "AA 06 31 33",  # the second one
+        "AA 06 31 32 00",  # a length that counts itself, and so is 1 at least
+        "AA 06 31 32 04",  # one of three bytes of payload, where the greatest has two
+    ],
+)
+def test_what_no_frame_begins_with_is_given_up_as_soon_as_in_python(
+    wire: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "heads.yaml"
+    path.write_text(HEADS, encoding="utf-8")
+    check_events(path, "board", [*single_bytes(bytes.fromhex(wire)), None])
+
+
 @pytest.mark.parametrize("path", ALL, ids=name_of)
 def test_cases_of_the_fuzzer_give_the_same_frames_and_events(path: Path) -> None:
     """What `protogen fuzz --examples 1` tries: all boundaries of all values."""

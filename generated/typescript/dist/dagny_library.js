@@ -306,8 +306,7 @@ function hostFrame() {
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
       const id = f.identity(0);
-      const end = w.size;
-      w.room(1);
+      const end = w.room(1);
       const { bytes } = w;
       bytes[0] = id;
       bytes[end] = 13;
@@ -389,8 +388,7 @@ function robotFrame() {
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
       const id = f.identity(0);
-      const end = w.size;
-      w.room(1);
+      const end = w.room(1);
       const { bytes } = w;
       bytes[0] = id;
       bytes[end] = 13;

@@ -581,8 +581,7 @@ function hostFrame(): rt.Frame {
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
       const id = f.identity(0);
-      const end = w.size;
-      w.room(1);
+      const end = w.room(1);
       const { bytes } = w;
       bytes[0] = id;
       bytes[end] = 13;
@@ -664,8 +663,7 @@ function robotFrame(): rt.Frame {
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
       const id = f.identity(0);
-      const end = w.size;
-      w.room(1);
+      const end = w.room(1);
       const { bytes } = w;
       bytes[0] = id;
       bytes[end] = 13;

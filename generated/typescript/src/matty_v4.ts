@@ -586,23 +586,22 @@ function pcFrame(): rt.Frame {
       const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
       if (counter < 0) return null;
       const command = f.identity(0);
-      const end = w.size;
-      w.room(1);
+      const end = w.room(1);
       const { bytes } = w;
       bytes[0] = 85;
       bytes[1] = length;
       bytes[2] = counter;
       bytes[3] = command;
       let sum = 0;
-      let isPlain = true;
+      let isClean = true;
       for (let i = 1; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum += byte;
-        if (byte === 85 || byte === 86) isPlain = false;
+        if (byte === 85 || byte === 86) isClean = false;
       }
       sum = -sum & 255;
       bytes[end] = sum;
-      if (isPlain && sum !== 85 && sum !== 86) return w.taken();
+      if (isClean && sum !== 85 && sum !== 86) return w.taken();
       const wire = w.wire(2 * w.size);
       let at = 0;
       for (; at < 1; at++) wire[at] = bytes[at] ?? 0;
@@ -707,23 +706,22 @@ function espFrame(): rt.Frame {
       const counter = f.number(given["counter"] ?? f.usual(0, counts), 0, 255);
       if (counter < 0) return null;
       const command = f.identity(0);
-      const end = w.size;
-      w.room(1);
+      const end = w.room(1);
       const { bytes } = w;
       bytes[0] = 85;
       bytes[1] = length;
       bytes[2] = counter;
       bytes[3] = command;
       let sum = 0;
-      let isPlain = true;
+      let isClean = true;
       for (let i = 1; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum += byte;
-        if (byte === 85 || byte === 86) isPlain = false;
+        if (byte === 85 || byte === 86) isClean = false;
       }
       sum = -sum & 255;
       bytes[end] = sum;
-      if (isPlain && sum !== 85 && sum !== 86) return w.taken();
+      if (isClean && sum !== 85 && sum !== 86) return w.taken();
       const wire = w.wire(2 * w.size);
       let at = 0;
       for (; at < 1; at++) wire[at] = bytes[at] ?? 0;

@@ -1027,8 +1027,7 @@ function linuxFrame(): rt.Frame {
       const subclass = f.identity(1);
       const length = f.length(w.size);
       if (length < 0) return null;
-      const end = w.size;
-      w.room(3);
+      const end = w.room(3);
       const { bytes } = w;
       bytes[0] = 27;
       bytes[1] = 2;
@@ -1039,15 +1038,15 @@ function linuxFrame(): rt.Frame {
       bytes[end + 1] = 27;
       bytes[end + 2] = 3;
       let sum = 0;
-      let isPlain = true;
+      let isClean = true;
       for (let i = 2; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum ^= byte;
-        if (byte === 27 || byte === 124) isPlain = false;
+        if (byte === 27 || byte === 124) isClean = false;
       }
       sum = sum & 255;
       bytes[end] = sum;
-      if (isPlain && sum !== 27 && sum !== 124) return w.taken();
+      if (isClean && sum !== 27 && sum !== 124) return w.taken();
       const wire = w.wire(3 * w.size);
       let at = 0;
       for (; at < 2; at++) wire[at] = bytes[at] ?? 0;
@@ -1167,8 +1166,7 @@ function flexFrame(): rt.Frame {
       const subclass = f.identity(1);
       const length = f.length(w.size);
       if (length < 0) return null;
-      const end = w.size;
-      w.room(3);
+      const end = w.room(3);
       const { bytes } = w;
       bytes[0] = 27;
       bytes[1] = 2;
@@ -1179,15 +1177,15 @@ function flexFrame(): rt.Frame {
       bytes[end + 1] = 27;
       bytes[end + 2] = 3;
       let sum = 0;
-      let isPlain = true;
+      let isClean = true;
       for (let i = 2; i < end; i++) {
         const byte = bytes[i] ?? 0;
         sum ^= byte;
-        if (byte === 27 || byte === 124) isPlain = false;
+        if (byte === 27 || byte === 124) isClean = false;
       }
       sum = sum & 255;
       bytes[end] = sum;
-      if (isPlain && sum !== 27 && sum !== 124) return w.taken();
+      if (isClean && sum !== 27 && sum !== 124) return w.taken();
       const wire = w.wire(3 * w.size);
       let at = 0;
       for (; at < 2; at++) wire[at] = bytes[at] ?? 0;

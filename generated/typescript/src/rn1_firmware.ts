@@ -718,8 +718,7 @@ function hostFrame(): rt.Frame {
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
       const start = f.identity(0);
-      const end = w.size;
-      w.room(1);
+      const end = w.room(1);
       const { bytes } = w;
       bytes[0] = start;
       bytes[end] = 255;
@@ -783,8 +782,6 @@ function brainFrame(): rt.Frame {
     put: (f, w, given, counts) => {
       for (const _ in given) return null;
       const start = f.identity(0);
-      const end = w.size;
-      w.room(0);
       const { bytes } = w;
       bytes[0] = start;
       return w.taken();

@@ -1,8 +1,8 @@
 """Functions that put a frame together around its payload, with its places as constants.
 
 One is printed for frames without rare things. It refuses what is odd in any way, as the runtime has
-a description of the frame for that. A checksum of bytes is summed up where these are stuffed, so
-that nothing is looked at twice.
+a description of the frame for that. A checksum of bytes is summed up where it is seen whether one
+of them has to be stuffed, as in few frames.
 """
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ class PutTogether:
         other = f"name in given) if ({' && '.join(known)})" if known else "_ in given)"
         add(f"for (const {other} return null;")
         stored = [(it.place, self._bytes(it.part)) for it in plan.placed if it.part.size]
-        add("const end = w.size;", f"w.room({plan.tail_size + len(plan.end_bytes)});")
+        if (room := plan.tail_size + len(plan.end_bytes)) or plan.region:
+            add(f"const end = w.room({room});")
         add("const { bytes } = w;")
         for place, values in (*stored, (Place(Side.TAIL, plan.tail_size), plan.end_bytes)):
             for offset, value in enumerate(values, place.offset):
@@ -62,15 +63,14 @@ class PutTogether:
         """The bytes of a part; print its variable, which is negative where something is odd."""
         if not isinstance(part, NumberPart):
             return part.bytes if isinstance(part, LiteralPart) else ()
-        frame = self._plan.frame
+        frame, callers = self._plan.frame, self._plan.frame.caller_parts
         name = self._names.add(part.name, Thing("variable", ("local", part.name)))
         if isinstance(part, IdentityPart):
             self._lines.add(f"const {name} = f.identity({frame.identity.index(part)});")
             return _shifted(part, name)
         value = "f.length(w.size)"
         if not isinstance(part, LengthPart):
-            usual = f"f.usual({frame.caller_parts.index(part)}, counts)"
-            own = f"given[{literal(part.name)}] ?? {usual}"
+            own = f"given[{literal(part.name)}] ?? f.usual({callers.index(part)}, counts)"
             value = f"f.number({own}, {part.least}, {part.greatest})"
         self._lines.add(f"const {name} = {value};", f"if ({name} < 0) return null;")
         return _shifted(part, name)
@@ -87,14 +87,14 @@ class PutTogether:
     def _stuff(self, region: StuffedRegion, run: Run) -> None:
         """Print what sums up, and then stuffs a region; few frames have a byte that is stuffed."""
         add, first, spec = self._lines.add, run.first.offset, self._plan.checksums[0].part.algorithm
-        see = f"if ({' || '.join(f'byte === {byte}' for byte, _ in region.codes)}) isPlain = false;"
-        is_plain = "".join(f" && sum !== {byte}" for byte, _ in region.codes)
-        add(f"let sum = {spec.init};", "let isPlain = true;")
+        see = f"if ({' || '.join(f'byte === {byte}' for byte, _ in region.codes)}) isClean = false;"
+        is_clean = "".join(f" && sum !== {byte}" for byte, _ in region.codes)
+        add(f"let sum = {spec.init};", "let isClean = true;")
         if first > region.before:
             self._loop(region.before, str(first), see)
         self._loop(first, "end", adding(spec), see)
         add(f"sum = {'-' * spec.negated}sum & 255;", "bytes[end] = sum;")
-        add(f"if (isPlain{is_plain}) return w.taken();")
+        add(f"if (isClean{is_clean}) return w.taken();")
         add(f"const wire = w.wire({region.longest} * w.size);", "let at = 0;")
         add(f"for (; at < {region.before}; at++) wire[at] = bytes[at] ?? 0;")
         self._loop(region.before, "end + 1", *_stuffing(region))

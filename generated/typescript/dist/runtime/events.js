@@ -26,9 +26,8 @@ export class Framed {
         this.message = message;
     }
     get parts() {
-        if (typeof this.shown === "number")
-            this.shown = this.source.codec.partsOf(this.shown);
-        return this.shown;
+        const { shown } = this;
+        return typeof shown === "number" ? this.source.codec.separated(shown) : shown;
     }
     get kind() {
         return this.message ? "message" : "unknown";

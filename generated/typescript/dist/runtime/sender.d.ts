@@ -64,7 +64,7 @@ export declare class Sender {
     /** The message of a frame's payload and values. Throws a Fault. */
     read(group: Group, payload: Uint8Array, values: readonly (Value | undefined)[]): NamedMessage;
     /** The parts that events show, out of one number. */
-    partsOf(joined: JoinedParts): PartValues;
+    separated(joined: JoinedParts): PartValues;
     /** The message called `name`, if the endpoint sends one. */
     named(name: string): MessagePlan | undefined;
 }

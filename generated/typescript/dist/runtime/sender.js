@@ -176,7 +176,7 @@ export class Sender {
         return readPayload(fitting, known, this.held(fitting, values));
     }
     /** The parts that events show, out of one number. */
-    partsOf(joined) {
+    separated(joined) {
         const { shownCounts } = this;
         const values = shownCounts.map(() => 0);
         let rest = joined;

@@ -66,6 +66,10 @@ export declare class WholeFrames {
     private copy;
     /** Read the parts in front of the payload that are there. False: one is not plainly right. */
     private readHead;
+    /** True if what is there of a literal is right. */
+    private begins;
+    /** The payload's size where the length has such a value; -1 where no frame has it. */
+    private measured;
     /** The payload's size: by a length, or by the identity; -1 if neither tells it plainly. */
     private payloadSize;
     /** The event of the frame; null where it is not right. Throws a Fault. */

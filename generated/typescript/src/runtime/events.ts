@@ -84,13 +84,13 @@ export class Framed {
     readonly offset: number,
     readonly size: number,
     readonly source: Source,
-    private shown: PartValues | JoinedParts,
+    private readonly shown: PartValues | JoinedParts,
     readonly message: NamedMessage | null,
   ) {}
 
   get parts(): PartValues {
-    if (typeof this.shown === "number") this.shown = this.source.codec.partsOf(this.shown);
-    return this.shown;
+    const { shown } = this;
+    return typeof shown === "number" ? this.source.codec.separated(shown) : shown;
   }
 
   get kind(): "message" | "unknown" {

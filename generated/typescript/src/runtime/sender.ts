@@ -219,7 +219,7 @@ export class Sender {
   }
 
   /** The parts that events show, out of one number. */
-  partsOf(joined: JoinedParts): PartValues {
+  separated(joined: JoinedParts): PartValues {
     const { shownCounts } = this;
     const values = shownCounts.map(() => 0);
     let rest = joined;

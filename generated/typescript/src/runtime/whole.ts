@@ -265,18 +265,35 @@ export class WholeFrames {
     if (!this.passed) this.values = new Array<Value | undefined>(this.frame.slots);
     for (; this.passed < head.length; this.passed++) {
       const { offset, end, literal, number, slot, isByte } = head[this.passed]!;
+      if (!number && !this.begins(bytes, base, offset, literal)) return false;
       if (end > this.filled) return true;
       if (isByte) this.values[slot] = bytes[base + offset]!;
-      else if (!number) {
-        if (!standsAt(bytes, base + end, base + offset, literal)) return false;
-      } else {
+      else if (number) {
         const value = number.number.decode(bytes, base + offset);
         this.values[slot] = value;
         if (!isTaken(number, value)) return false;
+        if (number === this.sender.length && this.measured(value as number) < 0) return false;
       }
     }
     this.group = this.sender.group(this.values);
     return true;
+  }
+
+  /** True if what is there of a literal is right. */
+  private begins(bytes: Uint8Array, base: number, offset: number, literal: Uint8Array): boolean {
+    const size = Math.min(literal.length, this.filled - offset);
+    for (let index = 0; index < size; index++) {
+      if (bytes[base + offset + index] !== literal[index]) return false;
+    }
+    return true;
+  }
+
+  /** The payload's size where the length has such a value; -1 where no frame has it. */
+  private measured(value: number): number {
+    const { base, optional } = this.sender.length!;
+    if (value === base) return 0;
+    const size = value - base - optional;
+    return size > 0 && size <= this.frame.greatestPayload ? size : -1;
   }
 
   /** The payload's size: by a length, or by the identity; -1 if neither tells it plainly. */
@@ -284,9 +301,7 @@ export class WholeFrames {
     const { frame, length } = this.sender;
     const { group } = this;
     if (!length) return group?.fixed ?? -1;
-    const value = this.values[length.slot] as number;
-    const size = value === length.base ? 0 : value - length.base - length.optional;
-    if (size > frame.greatestPayload || (size <= 0 && value !== length.base)) return -1;
+    const size = this.measured(this.values[length.slot] as number);
     const isHeld = group && frame.rescans;
     return isHeld && !group.carried.some((sizes) => holds(sizes, size)) ? -1 : size;
   }

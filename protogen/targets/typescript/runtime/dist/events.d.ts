@@ -73,7 +73,7 @@ export declare class Framed {
     readonly offset: number;
     readonly size: number;
     readonly source: Source;
-    private shown;
+    private readonly shown;
     readonly message: NamedMessage | null;
     constructor(offset: number, size: number, source: Source, shown: PartValues | JoinedParts, message: NamedMessage | null);
     get parts(): PartValues;
