@@ -15,6 +15,7 @@ from c_proof.annotations import OPTIONS, annotated, fed
 from c_proof.drivers import Driver, decode_driver, first_driver, push_driver
 from c_proof.eva import MACHINES, Report, analyse
 from c_proof.generated import Generated, generate
+from c_proof.in_place import in_place_driver
 from c_proof.sending import send_driver, unrolled
 from compiled import DIALECTS, DOCUMENTS, ROOT, SCHEMAS, name_of, protocol_of
 
@@ -33,6 +34,8 @@ CONSTRUCTS = [
     for name in ("packed_bits", "digits_line", "written_line")
 ]
 """Schemas of what no document has, and C has to parse."""
+ELEMENTS = ROOT / "tests" / "c_schemas" / "elements.yaml"
+"""Floats in arrays."""
 TRIMMED = ROOT / "tests" / "framings" / "trimmed_stuffed.yaml"
 """Payloads that a decoder fills up in its buffer."""
 DIGITS = ROOT / "tests" / "framings" / "digit_words.yaml"
@@ -243,6 +246,23 @@ def test_no_input_harms_a_decoder_of_one_message(document: str, only: str, tmp_p
     assert (report.alarms, report.found) == (0, ())
 
 
+def prove_in_place(made: Generated, machine: str = WIDE) -> Report:
+    """Analyse what writes messages field by field in their frames."""
+    assert made.source is not None
+    made.source.write_text(unrolled(made.source.read_text(encoding="utf-8")), encoding="utf-8")
+    header = made.header.read_text(encoding="utf-8")
+    return prove(made, in_place_driver(made.protocol, header), machine)
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("path", [ROOT / "schemas" / "rn1.yaml", ELEMENTS], ids=name_of)
+def test_no_index_and_no_value_harms_a_frame_that_was_begun(
+    path: Path, machine: str, tmp_path: Path
+) -> None:
+    report = prove_in_place(generate(protocol_of(path), tmp_path), machine)
+    assert (report.alarms, report.found) == (0, ())
+
+
 # --- faults that have to be seen ------------------------------------------------------------------
 
 
@@ -288,6 +308,12 @@ def test_a_frame_that_needs_more_than_it_asks_for_is_found(
     assert made.source is not None
     changed(made.source, pattern, fault)
     assert any("out of bounds" in found for found in prove_sending(made).found)
+
+
+def test_an_index_that_is_too_great_by_one_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(ROOT / "schemas" / "rn1.yaml"), tmp_path)
+    changed(made.header, r"if \(index >= 360U\)", "if (index > 360U)")
+    assert any("out of bounds write" in found for found in prove_in_place(made).found)
 
 
 def test_a_buffer_that_is_too_small_by_a_byte_is_found(tmp_path: Path) -> None:

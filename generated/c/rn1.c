@@ -1408,6 +1408,25 @@ enum rn1_result rn1_lidar_frame(const struct rn1_lidar *message, uint8_t *frame,
     return RN1_OK;
 }
 
+uint8_t *rn1_lidar_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 721U;
+    uint8_t *at;
+    if (capacity < rn1_brain_room(payload)) {
+        return NULL;
+    }
+    at = rn1_brain_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+enum rn1_result rn1_lidar_end(uint8_t *frame, size_t *size) {
+    const size_t payload = 721U;
+    *size = rn1_brain_wrap(frame, payload, 0x84U);
+    return RN1_OK;
+}
+
 enum rn1_result rn1_lidar_send(const struct rn1_lidar *message, rn1_put put, void *user) {
     const size_t payload = 721U;
     const enum rn1_result result = rn1_lidar_validate(message);

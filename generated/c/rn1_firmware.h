@@ -474,6 +474,40 @@ static inline uint16_t rn1_firmware_lidar_distances_at(const uint8_t *payload, s
     return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
 }
 
+/** Reads status from a payload that was received, unchecked. */
+static inline uint8_t rn1_firmware_lidar_status_get(const uint8_t *payload) {
+    const uint8_t *at = payload;
+    return at[0];
+}
+
+/** Writes status into a frame that was begun; false, and nothing, if the value is refused. */
+static inline bool rn1_firmware_lidar_status_set(uint8_t *payload, uint8_t value) {
+    if (value > 127U) {
+        return false;
+    }
+    uint8_t *at = payload;
+    at[0] = value;
+    return true;
+}
+
+/**
+ * Writes distances[index] into a frame that was begun; false, and nothing, if the value or the
+ * index is refused.
+ */
+static inline bool rn1_firmware_lidar_distances_set_at(uint8_t *payload, size_t index,
+                                                       uint16_t value) {
+    if (index >= 360U) {
+        return false;
+    }
+    if (value > 16383U) {
+        return false;
+    }
+    uint8_t *at = payload + 1U + 2U * index;
+    at[0] = (uint8_t)(value & 0x7FU);
+    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
+    return true;
+}
+
 /* --- sonar ------------------------------------------------------------------------------------ */
 
 #define RN1_FIRMWARE_SONAR_ID 0x85U
@@ -654,6 +688,11 @@ RN1_FIRMWARE_API void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_
  * always suffices; for a shorter payload less does, but the buffer has to take the most that its
  * bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
+ *
+ * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
+ * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
+ * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns
+ * RN1_FIRMWARE_ERROR_RANGE where a field has no default that is allowed, and was not set.
  */
 
 /** Takes the next byte of a frame. */
@@ -768,6 +807,8 @@ RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_compass_send(
 #define RN1_FIRMWARE_LIDAR_FRAME_ROOM 722U
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_lidar_frame(
     const struct rn1_firmware_lidar *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API uint8_t *rn1_firmware_lidar_begin(uint8_t *frame, size_t capacity);
+RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_lidar_end(uint8_t *frame, size_t *size);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_lidar_send(
     const struct rn1_firmware_lidar *message, rn1_firmware_put put, void *user);
 

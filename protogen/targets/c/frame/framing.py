@@ -44,6 +44,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """What the names of their functions begin with."""
     puts: tuple[str, ...]
     """The functions that hand payloads to a writer."""
+    unset: tuple[str, ...]
+    """Functions that say whether a message that was begun in its frame can end."""
     stateless: bool
     """True if what is sent byte by byte goes out as it is."""
     writes: bool
@@ -125,6 +127,13 @@ def framing_view(
         streaming=streaming,
         writers=tuple(names.senders[name] for name in streaming),
         puts=puts,
+        unset=tuple(
+            dict.fromkeys(
+                place.unset_function
+                for item in message_frames
+                if (place := item.view.in_place) and place.unset
+            )
+        ),
         stateless=is_stateless(protocol),
         writes=any(f"{protocol.name}_write(" in text for text in (*puts, *used)),
         cut_checks=frozenset(
@@ -177,7 +186,7 @@ def _message_frames(
         own = {frames[name].decoder.name: name for name in senders}
         for frame_name, name in own.items() if message.name in views else ():
             suffix = from_sender(frame_name) if len(own) > 1 else ""
-            called = claim_frame(names, message.name, suffix)
+            called = claim_frame(names, message, suffix)
             yield of_sender[name].view(message, views[message.name], called)
 
 

@@ -191,9 +191,16 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
         """Parameters of the function that sends."""
         return (*self._given(), f"{put} put", "void *user")
 
+    @property
+    def end_arguments(self) -> tuple[str, ...]:
+        """Parameters of the function that ends a frame that was begun in its buffer."""
+        return (*self._parts(), "uint8_t *frame", "size_t *size")
+
     def _given(self) -> tuple[str, ...]:
-        parts = (f"{item.type} {item.name}" for item in self.arguments)
-        return (f"const {self.view.struct} *message", *parts)
+        return (f"const {self.view.struct} *message", *self._parts())
+
+    def _parts(self) -> tuple[str, ...]:
+        return tuple(f"{item.type} {item.name}" for item in self.arguments)
 
 
 class SenderFrames:

@@ -1,4 +1,4 @@
-"""Inline functions that read an element of an array straight out of a payload."""
+"""Inline functions that read a value, or an element of an array, straight out of a payload."""
 
 from __future__ import annotations
 
@@ -49,13 +49,28 @@ def accessor(
     """The function that reads an element, where it `is_readable` and has anything to read."""
     if not isinstance(step, RepeatStep) or not is_readable(step):
         return None
-    field, element = step.field, step.element
-    body = Lines()
+    field, size = step.field, step.element.sizes.greatest
     start = f"payload + {unsigned(field.position)}" if field.position else "payload"
-    size = element.sizes.greatest
-    place = f"const uint8_t *at = {start} + {f'{unsigned(size)} * index' if size > 1 else 'index'};"
-    body.add(place)
-    arguments: tuple[str, ...] = ("const uint8_t *payload", "size_t index")
+    place = f"{start} + {f'{unsigned(size)} * index' if size > 1 else 'index'}"
+    doc = f"Reads {field.name}[index] from a payload that was received, unchecked."
+    name = claim_accessor(names, record, field.name)
+    return reader(name, ("size_t index",), place, doc, step.element, helpers, records)
+
+
+def reader(
+    name: str,
+    arguments: tuple[str, ...],
+    place: str,
+    doc: str,
+    element: AnyStep,
+    helpers: Helpers,
+    records: Records,
+) -> str | None:
+    """The inline function that reads what lies at a place of a payload; None if that is nothing."""
+    declaration = f"const uint8_t *at = {place};"
+    body = Lines()
+    body.add(declaration)
+    arguments = ("const uint8_t *payload", *arguments)
     with helpers.public():
         match element:
             case IntegerStep():
@@ -77,11 +92,9 @@ def accessor(
             case _:
                 raise AssertionError(element)
     body.drop_unused_places()
-    if place not in map(str.strip, body.lines):
+    if declaration not in map(str.strip, body.lines):
         return None
-    name = claim_accessor(names, record, field.name)
-    doc = comment([f"Reads {field.name}[index] from a payload that was received, unchecked."])
-    return "\n".join([*doc, function(f"static inline {type_} {name}", arguments, body)])
+    return "\n".join([*comment([doc]), function(f"static inline {type_} {name}", arguments, body)])
 
 
 def _read(type_: NumberType, body: Lines) -> None:

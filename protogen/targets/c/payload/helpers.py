@@ -297,7 +297,7 @@ class Helpers:
 
     def store(self, type_: NumberType) -> str:
         """The function that writes an unsigned number."""
-        layout = _cut(type_)
+        layout = cut(type_)
         arguments = ("uint8_t *at", f"{unsigned_type(type_.bits)} value")
         body = _stored(layout)
         name, is_short = f"store_{layout_name(layout)}", layout.size <= _SHORT
@@ -305,7 +305,7 @@ class Helpers:
 
     def write(self, type_: NumberType) -> str:
         """The function that hands an unsigned number to a writer, byte by byte."""
-        layout, names = _cut(type_), self._names
+        layout, names = cut(type_), self._names
         body = _written(layout, f"{names.prefix}_write({names.writing}")
         arguments = (names.writer, f"{unsigned_type(type_.bits)} value")
         # A writer is one argument; a function and what it is called with are two, which have to be
@@ -419,7 +419,7 @@ def widened(type_: NumberType) -> NumberType:
     return replace(type_.unsigned, bits=bits) if is_same else type_.unsigned
 
 
-def _cut(type_: NumberType) -> NumberType:
+def cut(type_: NumberType) -> NumberType:
     """The layout that a writer needs: of a signed number the bits above its own are cut off."""
     is_unpadded = is_whole(type_) or type_.bits == type_.byte_bits * type_.size
     return type_ if type_.signed and not is_unpadded else widened(type_)

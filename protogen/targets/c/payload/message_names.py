@@ -13,6 +13,7 @@ from protogen.model.protocol import Sender
 from protogen.targets import naming
 from protogen.targets.c.named import Macro, claim_fields
 from protogen.targets.c.payload.accessors import claim_accessor, is_readable
+from protogen.targets.c.payload.in_place import claim_in_place, is_written_in_place
 from protogen.targets.c.spelling import Names, from_sender
 
 _FUNCTIONS = "check load validate refused measure store put encode decode"
@@ -43,14 +44,21 @@ class FrameNames(msgspec.Struct, frozen=True):
     """The macro for the greatest frame."""
     room: str
     """The macro for the bytes of a buffer that suffice for every frame."""
+    begin: str
+    """The function that begins a frame in its buffer; of a message that is written in its place."""
+    end: str
+    """The function that ends it."""
     suffix: str
     """What tells them from those of other senders."""
 
 
-def claim_frame(names: Names, message: str, suffix: str) -> FrameNames:
+def claim_frame(names: Names, item: Message, suffix: str) -> FrameNames:
     """The names of a message's frames; `suffix` tells those of other senders apart."""
+    message, is_begun = item.name, is_written_in_place(item)
     thing, words = naming.message(message), f"{message}{suffix}"
     return FrameNames(
+        begin=names.claim(thing, message, f"begin{suffix}") if is_begun else "",
+        end=names.claim(thing, message, f"end{suffix}") if is_begun else "",
         function=names.claim(thing, message, f"frame{suffix}"),
         send=names.claim(thing, message, f"send{suffix}"),
         max=names.claim_macro(thing, words, "frame_max"),
@@ -69,7 +77,7 @@ def claim_all(names: Names, item: Message, senders: Sequence[Sender]) -> None:
     others = [from_sender(sender.name) for sender in senders] if len(senders) > 1 else []
     for suffix in ("", *others):
         claim_handler(names, item.name, suffix)
-        claim_frame(names, item.name, suffix)
+        claim_frame(names, item, suffix)
     claim_message(names, item)
     claim_init(names, item)
     constants_of(item, senders[0], names)
@@ -77,6 +85,8 @@ def claim_all(names: Names, item: Message, senders: Sequence[Sender]) -> None:
     for step in item.plan.steps:
         if is_readable(step):
             claim_accessor(names, item.name, step.name)
+    if is_written_in_place(item):
+        claim_in_place(names, item)
 
 
 def constants_of(item: Message, sender: Sender, names: Names) -> tuple[Macro, ...]:

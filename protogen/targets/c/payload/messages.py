@@ -22,6 +22,7 @@ from protogen.targets.c.payload.checking import Checker
 from protogen.targets.c.payload.held import HeldNumber, from_parts, held_numbers
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.images import copied, is_image
+from protogen.targets.c.payload.in_place import InPlace, in_place
 from protogen.targets.c.payload.initial import initialiser
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.measuring import Measure
@@ -85,6 +86,8 @@ class MessageView(msgspec.Struct, frozen=True):
     """The lines of `RN1_GYRO_INIT`."""
     prototypes: tuple[str, ...]
     accessors: tuple[str, ...]
+    in_place: InPlace | None
+    """What writes it in its frame, field by field."""
     functions: tuple[str, ...]
     """All functions of the payload but `put`."""
     put_function: str
@@ -123,7 +126,10 @@ class MessagePrinter(msgspec.Struct, frozen=True):
         read = (
             accessor(item.name, step, names, self.helpers, self.records) for step in item.plan.steps
         )
+        place = in_place(item, names, self.helpers, self.records)
         accessors = tuple(text for text in read if text)
+        if place is not None:
+            accessors += (*place.getters, *place.setters)
         zeros = f"{names.prefix.upper()}_ZEROS"
         codec = _Codec(self, item, f"struct {tag}", called)
         return MessageView(
@@ -142,6 +148,7 @@ class MessagePrinter(msgspec.Struct, frozen=True):
             initialiser=initialiser(claim_init(names, item), zeros, item.plan.steps),
             prototypes=codec.prototypes(),
             accessors=accessors,
+            in_place=place,
             functions=codec.functions(),
             put_function=codec.put(),
             refused_prototype=codec.prototype("refused") if codec.validates else "",
