@@ -53,10 +53,10 @@ void {name}_write({writer}, uint8_t byte) {{
 }}
 """
 _PUT = """
-size_t shim_{prefix}_put(const {struct} *message, uint8_t *bytes) {{
+size_t shim_{prefix}_put({parameter}uint8_t *bytes) {{
     uint8_t *next = bytes;
     struct {name}_writer writer = {{&next}};
-    {put}(message, {writing});
+    {put}({writing});
     return (size_t)(next - bytes);
 }}
 """
@@ -95,10 +95,16 @@ def shim_of(protocol: Protocol, module: Module) -> str:
         given = {
             "name": module.name,
             "prefix": message.name,
-            "struct": message.struct,
+            "parameter": f"const {message.struct} *message, " if message.struct else "",
             "put": message.put,
             "check": message.check,
-            "writing": "NULL, &writer" if stateless else "&writer",
+            "writing": ", ".join(
+                [
+                    *(["message"] if message.struct else []),
+                    *(["NULL"] if stateless else []),
+                    "&writer",
+                ]
+            ),
         }
         parts += [message.put_function, _PUT.format(**given)]
         parts += [_check_of(module, message)] if message.checks else []
@@ -204,7 +210,7 @@ class _Codec:
         size = ctypes.c_size_t(12345)
         payload = ctypes.byref(buffer, _GUARDS)
         result = self._encode(
-            ctypes.byref(record), payload, ctypes.c_size_t(room), ctypes.byref(size)
+            *self._given(record), payload, ctypes.c_size_t(room), ctypes.byref(size)
         )
         written = size.value if result == OK else 0
         around = bytes(buffer[:_GUARDS]) + bytes(buffer[_GUARDS + written :])
@@ -214,7 +220,7 @@ class _Codec:
     def put(self, values: Values) -> bytes:
         """The bytes that a writer is given."""
         buffer = (ctypes.c_uint8 * (self.view.greatest + 1))()
-        size = self._put(ctypes.byref(self.record(values)), buffer)
+        size = self._put(*self._given(self.record(values)), buffer)
         return bytes(buffer[:size])
 
     def decode(self, payload: bytes, held: Mapping[str, int]) -> Decoded:
@@ -224,10 +230,15 @@ class _Codec:
         ctypes.memmove(ctypes.byref(record), before, len(before))
         given = (ctypes.c_uint8 * max(1, len(payload)))(*payload)
         size = ctypes.c_size_t(len(payload))
-        result = self._decode(ctypes.byref(record), given, size, *self._arguments(held))
+        message = self._given(record)
+        result = self._decode(*message, given, size, *self._arguments(held))
         intact = bytes(record) == before
         values = read(record, self._message.fields, {}) if result == OK else None
         return Decoded(result, values, intact)
+
+    def _given(self, record: Any) -> list[Any]:
+        """The message as an argument, where it has a struct."""
+        return [ctypes.byref(record)] if self.view.struct else []
 
     def _arguments(self, held: Mapping[str, int]) -> list[Any]:
         """The numbers of the frame as further arguments."""

@@ -49,7 +49,7 @@ _SIGNED = {8: ctypes.c_int8, 16: ctypes.c_int16, 32: ctypes.c_int32, 64: ctypes.
 def structure_of(fields: Sequence[Field]) -> type[ctypes.Structure]:
     """The struct of a message or struct with these fields."""
     members = [member for field in fields for member in _members(fields, field)]
-    return _structure(members or [("unused", ctypes.c_uint8)])
+    return _structure(members)
 
 
 def _structure(members: list[tuple[str, Any]]) -> type[ctypes.Structure]:

@@ -105,12 +105,13 @@ class _Printer:
         for forms in self.cpp.together:
             yield from self.forms(forms)
 
-    def made(self, name: str, parameters: str, call: str) -> Function:
+    def made(self, name: str, given: Sequence[str], call: str) -> Function:
         """A function that fills a buffer."""
+        parameters = ", ".join([*given, "uint8_t *to", "size_t capacity", "size_t *size"])
         return (
             name,
             f"""
-enum {self.name}_result cpp_{name}({parameters}, uint8_t *to, size_t capacity, size_t *size) {{
+enum {self.name}_result cpp_{name}({parameters}) {{
     const {self.space}::encoded made = {self.space}::{call};
     if (made) {{
         if (made.data() != to || made.end() - made.begin() != static_cast<long>(made.size())) {{
@@ -124,33 +125,42 @@ enum {self.name}_result cpp_{name}({parameters}, uint8_t *to, size_t capacity, s
 
     def payload(self, item: CppMessage) -> Iterator[Function]:
         view, held = item.view, item.view.held
-        yield self.made(
-            view.encode, f"const {view.struct} *message", "encode(*message, {to, capacity})"
-        )
+        yield self.made(view.encode, view.parameter, f"encode({self.sent(item)}, {{to, capacity}})")
         taken = "".join(f", {number.type} {number.name}" for number in held)
         given = "".join(f", {number.name}" for number in held)
-        parameters = f"{view.struct} *message, const uint8_t *payload, size_t size{taken}"
+        message = f"{view.struct} *message, " if view.struct else ""
+        parameters = f"{message}const uint8_t *payload, size_t size{taken}"
+        own = "" if view.struct else f"{self.space}::{item.name} own;"
+        read = "*message" if view.struct else "own"
         yield (
             view.decode,
             f"""
 enum {self.name}_result cpp_{view.decode}({parameters}) {{
-    return {self.space}::raw({self.space}::decode(*message, {{payload, size}}{given}));
+    {own}
+    return {self.space}::raw({self.space}::decode({read}, {{payload, size}}{given}));
 }}""",
         )
 
+    def sent(self, item: CppMessage) -> str:
+        """The message that is given; one of its own where C has none."""
+        return "*message" if item.view.struct else f"{self.space}::{item.name}()"
+
     def frames(self, frame: CppFrame) -> Iterator[Function]:
-        item, given = frame.item, f"const {frame.item.view.struct} *message{frame.parts}"
+        item = frame.item
+        given = [*item.view.parameter, *(f"{it.type} {it.name}" for it in item.arguments)]
         parts = "".join(f", {argument.name}" for argument in item.arguments)
-        call = f"{frame.frame}(*message{parts}, {{to, capacity}})"
+        message = f"{self.sent(frame.message)}{parts}"
+        call = f"{frame.frame}({message}, {{to, capacity}})"
         yield self.made(item.called.function, given, call)
         if frame.send:
             name = item.called.send
+            parameters = ", ".join([*given, f"{self.name}_put put", "void *user"])
             yield (
                 name,
                 f"""
-enum {self.name}_result cpp_{name}({given}, {self.name}_put put, void *user) {{
+enum {self.name}_result cpp_{name}({parameters}) {{
     return {self.space}::raw(
-        {self.space}::{frame.send}(*message{parts}, [=](uint8_t byte) {{ put(user, byte); }}));
+        {self.space}::{frame.send}({message}, [=](uint8_t byte) {{ put(user, byte); }}));
 }}""",
             )
 
@@ -176,9 +186,13 @@ enum {self.name}_result cpp_{name}({given}, {self.name}_put put, void *user) {{
         parts = f"const {self.space}::{item.parts} &parts"
         return [
             f"[user](const {self.space}::{received.message.name} &message, {parts}) "
-            f"{{ {handler}(user, &message, &parts); }}"
+            f"{{ (void)message; {handler}(user, {self.passed(received.message)}&parts); }}"
             for received, handler in zip(item.received, self.handlers[item.view.name], strict=True)
         ]
+
+    def passed(self, item: CppMessage) -> str:
+        """The message as an argument in front of others, where C has one."""
+        return "&message, " if item.view.struct else ""
 
     def dispatch(self, prefix: str, calls: Sequence[str]) -> Function:
         given = "".join(f",\n        {call}" for call in calls)

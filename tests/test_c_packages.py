@@ -37,11 +37,10 @@ PROGRAM = """\
 #include "matty.h"
 
 int main(void) {
-    const struct matty_stop stop = {0};
     uint8_t frame[MATTY_STOP_FRAME_ROOM];
     size_t size = 0;
     size_t index;
-    if (matty_stop_frame(&stop, 7, frame, sizeof frame, &size) != MATTY_OK) {
+    if (matty_stop_frame(7, frame, sizeof frame, &size) != MATTY_OK) {
         return 1;
     }
     for (index = 0; index < size; index++) {

@@ -647,17 +647,15 @@ enum dagny_result dagny_reflex_decode(struct dagny_reflex *message, const uint8_
 
 /* --- power_down ------------------------------------------------------------------------------- */
 
-DAGNY_INLINE void dagny_power_down_store(const struct dagny_power_down *message, uint8_t *payload) {
-    (void)message;
+DAGNY_INLINE void dagny_power_down_store(uint8_t *payload) {
     payload[0] = 0x03U;
 }
 
-enum dagny_result dagny_power_down_encode(const struct dagny_power_down *message, uint8_t *payload,
-                                          size_t capacity, size_t *size) {
+enum dagny_result dagny_power_down_encode(uint8_t *payload, size_t capacity, size_t *size) {
     if (capacity < 1U) {
         return DAGNY_ERROR_SPACE;
     }
-    dagny_power_down_store(message, payload);
+    dagny_power_down_store(payload);
     *size = 1U;
     return DAGNY_OK;
 }
@@ -673,18 +671,11 @@ static enum dagny_result dagny_power_down_check(const uint8_t *payload, size_t s
     return DAGNY_OK;
 }
 
-void dagny_power_down_load(struct dagny_power_down *message, const uint8_t *payload) {
-    (void)payload;
-    message->unused = 0U;
-}
-
-enum dagny_result dagny_power_down_decode(struct dagny_power_down *message, const uint8_t *payload,
-                                          size_t size) {
+enum dagny_result dagny_power_down_decode(const uint8_t *payload, size_t size) {
     const enum dagny_result result = dagny_power_down_check(payload, size, NULL);
     if (result != DAGNY_OK) {
         return result;
     }
-    dagny_power_down_load(message, payload);
     return DAGNY_OK;
 }
 
@@ -1245,14 +1236,13 @@ enum dagny_result dagny_reflex_send(const struct dagny_reflex *message, dagny_pu
     return DAGNY_OK;
 }
 
-enum dagny_result dagny_power_down_frame(const struct dagny_power_down *message, uint8_t *frame,
-                                         size_t capacity, size_t *size) {
+enum dagny_result dagny_power_down_frame(uint8_t *frame, size_t capacity, size_t *size) {
     const size_t payload = 1U;
     size_t wire;
     if (capacity < dagny_host_room(payload)) {
         return DAGNY_ERROR_SPACE;
     }
-    dagny_power_down_store(message, dagny_host_payload(frame, payload));
+    dagny_power_down_store(dagny_host_payload(frame, payload));
     wire = dagny_host_wrap(frame, payload, 0x50U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;

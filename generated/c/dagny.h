@@ -113,7 +113,8 @@ enum dagny_power_code {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
+ * no struct, nothing to load, and functions that take none.
  */
 
 /* --- sonar ------------------------------------------------------------------------------------ */
@@ -445,19 +446,9 @@ static inline uint8_t dagny_reflex_reflex_number_set(uint8_t raw, uint8_t value)
 #define DAGNY_POWER_DOWN_SPEC_HASH "2a7985e735e09a5be0e918c863b3788b97ca2227c2c63520850858473a9db1d1"
 
 /** Powers the robot down after a time (line 45). */
-struct dagny_power_down {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define DAGNY_POWER_DOWN_INIT \
-    { 0 }
-
-DAGNY_API enum dagny_result dagny_power_down_encode(const struct dagny_power_down *message,
-                                                    uint8_t *payload, size_t capacity,
+DAGNY_API enum dagny_result dagny_power_down_encode(uint8_t *payload, size_t capacity,
                                                     size_t *size);
-DAGNY_API enum dagny_result dagny_power_down_decode(struct dagny_power_down *message,
-                                                    const uint8_t *payload, size_t size);
-DAGNY_API void dagny_power_down_load(struct dagny_power_down *message, const uint8_t *payload);
+DAGNY_API enum dagny_result dagny_power_down_decode(const uint8_t *payload, size_t size);
 
 /* --- power ------------------------------------------------------------------------------------ */
 
@@ -675,8 +666,7 @@ DAGNY_API enum dagny_result dagny_reflex_send(const struct dagny_reflex *message
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_POWER_DOWN_FRAME_MAX 4U
 #define DAGNY_POWER_DOWN_FRAME_ROOM 4U
-DAGNY_API enum dagny_result dagny_power_down_frame(const struct dagny_power_down *message,
-                                                   uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_API enum dagny_result dagny_power_down_frame(uint8_t *frame, size_t capacity, size_t *size);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_POWER_FRAME_MAX 4U

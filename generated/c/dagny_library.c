@@ -545,9 +545,7 @@ enum dagny_library_result dagny_library_laser_decode(struct dagny_library_laser 
 
 /* --- shutdown --------------------------------------------------------------------------------- */
 
-DAGNY_LIBRARY_INLINE void dagny_library_shutdown_store(const struct dagny_library_shutdown *message,
-                                                       uint8_t *payload) {
-    (void)message;
+DAGNY_LIBRARY_INLINE void dagny_library_shutdown_store(uint8_t *payload) {
     payload[0] = 0x5AU;
     payload[1] = 0x5AU;
     payload[2] = 0x5AU;
@@ -557,12 +555,12 @@ DAGNY_LIBRARY_INLINE void dagny_library_shutdown_store(const struct dagny_librar
     payload[6] = 0x5AU;
 }
 
-enum dagny_library_result dagny_library_shutdown_encode(
-    const struct dagny_library_shutdown *message, uint8_t *payload, size_t capacity, size_t *size) {
+enum dagny_library_result dagny_library_shutdown_encode(uint8_t *payload, size_t capacity,
+                                                        size_t *size) {
     if (capacity < 7U) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
-    dagny_library_shutdown_store(message, payload);
+    dagny_library_shutdown_store(payload);
     *size = 7U;
     return DAGNY_LIBRARY_OK;
 }
@@ -597,18 +595,11 @@ static enum dagny_library_result dagny_library_shutdown_check(const uint8_t *pay
     return DAGNY_LIBRARY_OK;
 }
 
-void dagny_library_shutdown_load(struct dagny_library_shutdown *message, const uint8_t *payload) {
-    (void)payload;
-    message->unused = 0U;
-}
-
-enum dagny_library_result dagny_library_shutdown_decode(struct dagny_library_shutdown *message,
-                                                        const uint8_t *payload, size_t size) {
+enum dagny_library_result dagny_library_shutdown_decode(const uint8_t *payload, size_t size) {
     const enum dagny_library_result result = dagny_library_shutdown_check(payload, size, NULL);
     if (result != DAGNY_LIBRARY_OK) {
         return result;
     }
-    dagny_library_shutdown_load(message, payload);
     return DAGNY_LIBRARY_OK;
 }
 
@@ -824,9 +815,7 @@ DAGNY_LIBRARY_INLINE void dagny_library_laser_put(const struct dagny_library_las
     dagny_library_write_bytes(writer, message->readings, message->readings_count);
 }
 
-DAGNY_LIBRARY_INLINE void dagny_library_shutdown_put(const struct dagny_library_shutdown *message,
-                                                     struct dagny_library_writer *writer) {
-    (void)message;
+DAGNY_LIBRARY_INLINE void dagny_library_shutdown_put(struct dagny_library_writer *writer) {
     dagny_library_write(writer, 0x5AU);
     dagny_library_write(writer, 0x5AU);
     dagny_library_write(writer, 0x5AU);
@@ -1136,20 +1125,18 @@ enum dagny_library_result dagny_library_laser_send(const struct dagny_library_la
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_shutdown_frame(const struct dagny_library_shutdown *message,
-                                                       uint8_t *frame, size_t capacity,
+enum dagny_library_result dagny_library_shutdown_frame(uint8_t *frame, size_t capacity,
                                                        size_t *size) {
     const size_t payload = 7U;
     if (capacity < dagny_library_host_room(payload)) {
         return DAGNY_LIBRARY_ERROR_SPACE;
     }
-    dagny_library_shutdown_store(message, dagny_library_host_payload(frame, payload));
+    dagny_library_shutdown_store(dagny_library_host_payload(frame, payload));
     *size = dagny_library_host_wrap(frame, payload, 0x5AU);
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_shutdown_send(const struct dagny_library_shutdown *message,
-                                                      dagny_library_put put, void *user) {
+enum dagny_library_result dagny_library_shutdown_send(dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
     const size_t payload = 7U;
     writer.put = put;
@@ -1157,7 +1144,7 @@ enum dagny_library_result dagny_library_shutdown_send(const struct dagny_library
     writer.sender = 0;
     writer.flags = 0;
     dagny_library_host_send_head(&writer, payload, 0x5AU);
-    dagny_library_shutdown_put(message, &writer);
+    dagny_library_shutdown_put(&writer);
     dagny_library_host_send_tail(&writer, payload, 0x5AU);
     return DAGNY_LIBRARY_OK;
 }
@@ -1978,12 +1965,9 @@ void dagny_library_host_dispatch(void *user, const struct dagny_library_host_eve
         dagny_library_on_laser_from_host(user, &message, &event->parts);
         break;
     }
-    case DAGNY_LIBRARY_MESSAGE_SHUTDOWN: {
-        struct dagny_library_shutdown message;
-        dagny_library_shutdown_load(&message, event->payload);
-        dagny_library_on_shutdown_from_host(user, &message, &event->parts);
+    case DAGNY_LIBRARY_MESSAGE_SHUTDOWN:
+        dagny_library_on_shutdown_from_host(user, &event->parts);
         break;
-    }
     default:
         break;
     }
@@ -2027,12 +2011,9 @@ void dagny_library_robot_dispatch(void *user, const struct dagny_library_robot_e
         dagny_library_on_laser_from_robot(user, &message, &event->parts);
         break;
     }
-    case DAGNY_LIBRARY_MESSAGE_SHUTDOWN: {
-        struct dagny_library_shutdown message;
-        dagny_library_shutdown_load(&message, event->payload);
-        dagny_library_on_shutdown_from_robot(user, &message, &event->parts);
+    case DAGNY_LIBRARY_MESSAGE_SHUTDOWN:
+        dagny_library_on_shutdown_from_robot(user, &event->parts);
         break;
-    }
     default:
         break;
     }
@@ -2089,10 +2070,8 @@ __attribute__((weak)) void dagny_library_on_laser_from_host(
 }
 
 __attribute__((weak)) void dagny_library_on_shutdown_from_host(
-    void *user, const struct dagny_library_shutdown *message,
-    const struct dagny_library_host_parts *parts) {
+    void *user, const struct dagny_library_host_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
@@ -2144,10 +2123,8 @@ __attribute__((weak)) void dagny_library_on_laser_from_robot(
 }
 
 __attribute__((weak)) void dagny_library_on_shutdown_from_robot(
-    void *user, const struct dagny_library_shutdown *message,
-    const struct dagny_library_robot_parts *parts) {
+    void *user, const struct dagny_library_robot_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 

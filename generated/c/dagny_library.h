@@ -101,7 +101,8 @@ enum dagny_library_power_code {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
+ * no struct, nothing to load, and functions that take none.
  */
 
 /* --- sonar ------------------------------------------------------------------------------------ */
@@ -526,19 +527,11 @@ static inline uint8_t dagny_library_laser_readings_at(const uint8_t *payload, si
  *
  * Eight letters Z, the id included. The robot passes it on to the main board.
  */
-struct dagny_library_shutdown {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define DAGNY_LIBRARY_SHUTDOWN_INIT \
-    { 0 }
-
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_encode(
-    const struct dagny_library_shutdown *message, uint8_t *payload, size_t capacity, size_t *size);
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_decode(
-    struct dagny_library_shutdown *message, const uint8_t *payload, size_t size);
-DAGNY_LIBRARY_API void dagny_library_shutdown_load(struct dagny_library_shutdown *message,
-                                                   const uint8_t *payload);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_encode(uint8_t *payload,
+                                                                          size_t capacity,
+                                                                          size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_decode(const uint8_t *payload,
+                                                                          size_t size);
 
 /* --- frames ----------------------------------------------------------------------------------- */
 
@@ -682,10 +675,11 @@ DAGNY_LIBRARY_API enum dagny_library_result dagny_library_laser_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_SHUTDOWN_FRAME_MAX 16U
 #define DAGNY_LIBRARY_SHUTDOWN_FRAME_ROOM 17U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_frame(
-    const struct dagny_library_shutdown *message, uint8_t *frame, size_t capacity, size_t *size);
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_send(
-    const struct dagny_library_shutdown *message, dagny_library_put put, void *user);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_frame(uint8_t *frame,
+                                                                         size_t capacity,
+                                                                         size_t *size);
+DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_send(dagny_library_put put,
+                                                                        void *user);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
 
@@ -925,8 +919,7 @@ void dagny_library_on_laser_from_host(void *user, const struct dagny_library_las
                                       const struct dagny_library_host_parts *parts);
 
 /** shutdown came from host. */
-void dagny_library_on_shutdown_from_host(void *user, const struct dagny_library_shutdown *message,
-                                         const struct dagny_library_host_parts *parts);
+void dagny_library_on_shutdown_from_host(void *user, const struct dagny_library_host_parts *parts);
 
 /** Calls the functions above; give it to dagny_library_host_decoder_init. */
 DAGNY_LIBRARY_API void dagny_library_host_dispatch(void *user,
@@ -957,7 +950,7 @@ void dagny_library_on_laser_from_robot(void *user, const struct dagny_library_la
                                        const struct dagny_library_robot_parts *parts);
 
 /** shutdown came from robot. */
-void dagny_library_on_shutdown_from_robot(void *user, const struct dagny_library_shutdown *message,
+void dagny_library_on_shutdown_from_robot(void *user,
                                           const struct dagny_library_robot_parts *parts);
 
 /** Calls the functions above; give it to dagny_library_robot_decoder_init. */

@@ -80,59 +80,43 @@ static void matty_copy(void *to, const void *from, size_t size) {
 
 /* --- stop ------------------------------------------------------------------------------------- */
 
-MATTY_INLINE void matty_stop_store(const struct matty_stop *message, uint8_t *payload) {
-    (void)message;
+MATTY_INLINE void matty_stop_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum matty_result matty_stop_encode(const struct matty_stop *message, uint8_t *payload,
-                                    size_t capacity, size_t *size) {
+enum matty_result matty_stop_encode(uint8_t *payload, size_t capacity, size_t *size) {
     (void)capacity;
-    matty_stop_store(message, payload);
+    matty_stop_store(payload);
     *size = 0U;
     return MATTY_OK;
 }
 
-void matty_stop_load(struct matty_stop *message, const uint8_t *payload) {
+enum matty_result matty_stop_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum matty_result matty_stop_decode(struct matty_stop *message, const uint8_t *payload,
-                                    size_t size) {
     if (size != 0U) {
         return MATTY_ERROR_SIZE;
     }
-    matty_stop_load(message, payload);
     return MATTY_OK;
 }
 
 /* --- reset ------------------------------------------------------------------------------------ */
 
-MATTY_INLINE void matty_reset_store(const struct matty_reset *message, uint8_t *payload) {
-    (void)message;
+MATTY_INLINE void matty_reset_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum matty_result matty_reset_encode(const struct matty_reset *message, uint8_t *payload,
-                                     size_t capacity, size_t *size) {
+enum matty_result matty_reset_encode(uint8_t *payload, size_t capacity, size_t *size) {
     (void)capacity;
-    matty_reset_store(message, payload);
+    matty_reset_store(payload);
     *size = 0U;
     return MATTY_OK;
 }
 
-void matty_reset_load(struct matty_reset *message, const uint8_t *payload) {
+enum matty_result matty_reset_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum matty_result matty_reset_decode(struct matty_reset *message, const uint8_t *payload,
-                                     size_t size) {
     if (size != 0U) {
         return MATTY_ERROR_SIZE;
     }
-    matty_reset_load(message, payload);
     return MATTY_OK;
 }
 
@@ -288,58 +272,43 @@ enum matty_result matty_gps_mode_decode(struct matty_gps_mode *message, const ui
 
 /* --- ack -------------------------------------------------------------------------------------- */
 
-MATTY_INLINE void matty_ack_store(const struct matty_ack *message, uint8_t *payload) {
-    (void)message;
+MATTY_INLINE void matty_ack_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum matty_result matty_ack_encode(const struct matty_ack *message, uint8_t *payload,
-                                   size_t capacity, size_t *size) {
+enum matty_result matty_ack_encode(uint8_t *payload, size_t capacity, size_t *size) {
     (void)capacity;
-    matty_ack_store(message, payload);
+    matty_ack_store(payload);
     *size = 0U;
     return MATTY_OK;
 }
 
-void matty_ack_load(struct matty_ack *message, const uint8_t *payload) {
+enum matty_result matty_ack_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum matty_result matty_ack_decode(struct matty_ack *message, const uint8_t *payload, size_t size) {
     if (size != 0U) {
         return MATTY_ERROR_SIZE;
     }
-    matty_ack_load(message, payload);
     return MATTY_OK;
 }
 
 /* --- nack ------------------------------------------------------------------------------------- */
 
-MATTY_INLINE void matty_nack_store(const struct matty_nack *message, uint8_t *payload) {
-    (void)message;
+MATTY_INLINE void matty_nack_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum matty_result matty_nack_encode(const struct matty_nack *message, uint8_t *payload,
-                                    size_t capacity, size_t *size) {
+enum matty_result matty_nack_encode(uint8_t *payload, size_t capacity, size_t *size) {
     (void)capacity;
-    matty_nack_store(message, payload);
+    matty_nack_store(payload);
     *size = 0U;
     return MATTY_OK;
 }
 
-void matty_nack_load(struct matty_nack *message, const uint8_t *payload) {
+enum matty_result matty_nack_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum matty_result matty_nack_decode(struct matty_nack *message, const uint8_t *payload,
-                                    size_t size) {
     if (size != 0U) {
         return MATTY_ERROR_SIZE;
     }
-    matty_nack_load(message, payload);
     return MATTY_OK;
 }
 
@@ -722,13 +691,11 @@ static void matty_write_bytes(struct matty_writer *writer, const void *from, siz
     }
 }
 
-MATTY_INLINE void matty_stop_put(const struct matty_stop *message, struct matty_writer *writer) {
-    (void)message;
+MATTY_INLINE void matty_stop_put(struct matty_writer *writer) {
     (void)writer;
 }
 
-MATTY_INLINE void matty_reset_put(const struct matty_reset *message, struct matty_writer *writer) {
-    (void)message;
+MATTY_INLINE void matty_reset_put(struct matty_writer *writer) {
     (void)writer;
 }
 
@@ -758,13 +725,11 @@ MATTY_INLINE void matty_gps_mode_put(const struct matty_gps_mode *message,
     matty_write(writer, message->mode);
 }
 
-MATTY_INLINE void matty_ack_put(const struct matty_ack *message, struct matty_writer *writer) {
-    (void)message;
+MATTY_INLINE void matty_ack_put(struct matty_writer *writer) {
     (void)writer;
 }
 
-MATTY_INLINE void matty_nack_put(const struct matty_nack *message, struct matty_writer *writer) {
-    (void)message;
+MATTY_INLINE void matty_nack_put(struct matty_writer *writer) {
     (void)writer;
 }
 
@@ -786,19 +751,17 @@ MATTY_INLINE void matty_gps_put(const struct matty_gps *message, struct matty_wr
     matty_write_bytes(writer, message->nmea, message->nmea_size);
 }
 
-enum matty_result matty_stop_frame(const struct matty_stop *message, uint8_t counter,
-                                   uint8_t *frame, size_t capacity, size_t *size) {
+enum matty_result matty_stop_frame(uint8_t counter, uint8_t *frame, size_t capacity, size_t *size) {
     const size_t payload = 0U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
-    matty_stop_store(message, matty_pc_payload(frame, payload));
+    matty_stop_store(matty_pc_payload(frame, payload));
     *size = matty_pc_wrap(frame, payload, 0x53U, counter);
     return MATTY_OK;
 }
 
-enum matty_result matty_stop_send(const struct matty_stop *message, uint8_t counter, matty_put put,
-                                  void *user) {
+enum matty_result matty_stop_send(uint8_t counter, matty_put put, void *user) {
     struct matty_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -806,24 +769,23 @@ enum matty_result matty_stop_send(const struct matty_stop *message, uint8_t coun
     writer.sender = 0;
     writer.flags = 0;
     matty_pc_send_head(&writer, payload, 0x53U, counter);
-    matty_stop_put(message, &writer);
+    matty_stop_put(&writer);
     matty_pc_send_tail(&writer, payload, 0x53U, counter);
     return MATTY_OK;
 }
 
-enum matty_result matty_reset_frame(const struct matty_reset *message, uint8_t counter,
-                                    uint8_t *frame, size_t capacity, size_t *size) {
+enum matty_result matty_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity,
+                                    size_t *size) {
     const size_t payload = 0U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
-    matty_reset_store(message, matty_pc_payload(frame, payload));
+    matty_reset_store(matty_pc_payload(frame, payload));
     *size = matty_pc_wrap(frame, payload, 0x52U, counter);
     return MATTY_OK;
 }
 
-enum matty_result matty_reset_send(const struct matty_reset *message, uint8_t counter,
-                                   matty_put put, void *user) {
+enum matty_result matty_reset_send(uint8_t counter, matty_put put, void *user) {
     struct matty_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -831,7 +793,7 @@ enum matty_result matty_reset_send(const struct matty_reset *message, uint8_t co
     writer.sender = 0;
     writer.flags = 0;
     matty_pc_send_head(&writer, payload, 0x52U, counter);
-    matty_reset_put(message, &writer);
+    matty_reset_put(&writer);
     matty_pc_send_tail(&writer, payload, 0x52U, counter);
     return MATTY_OK;
 }
@@ -961,19 +923,17 @@ enum matty_result matty_gps_mode_send(const struct matty_gps_mode *message, uint
     return MATTY_OK;
 }
 
-enum matty_result matty_ack_frame(const struct matty_ack *message, uint8_t counter, uint8_t *frame,
-                                  size_t capacity, size_t *size) {
+enum matty_result matty_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity, size_t *size) {
     const size_t payload = 0U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
-    matty_ack_store(message, matty_pc_payload(frame, payload));
+    matty_ack_store(matty_pc_payload(frame, payload));
     *size = matty_pc_wrap(frame, payload, 0x41U, counter);
     return MATTY_OK;
 }
 
-enum matty_result matty_ack_send(const struct matty_ack *message, uint8_t counter, matty_put put,
-                                 void *user) {
+enum matty_result matty_ack_send(uint8_t counter, matty_put put, void *user) {
     struct matty_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -981,24 +941,22 @@ enum matty_result matty_ack_send(const struct matty_ack *message, uint8_t counte
     writer.sender = 0;
     writer.flags = 0;
     matty_pc_send_head(&writer, payload, 0x41U, counter);
-    matty_ack_put(message, &writer);
+    matty_ack_put(&writer);
     matty_pc_send_tail(&writer, payload, 0x41U, counter);
     return MATTY_OK;
 }
 
-enum matty_result matty_nack_frame(const struct matty_nack *message, uint8_t counter,
-                                   uint8_t *frame, size_t capacity, size_t *size) {
+enum matty_result matty_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity, size_t *size) {
     const size_t payload = 0U;
     if (capacity < matty_pc_room(payload)) {
         return MATTY_ERROR_SPACE;
     }
-    matty_nack_store(message, matty_pc_payload(frame, payload));
+    matty_nack_store(matty_pc_payload(frame, payload));
     *size = matty_pc_wrap(frame, payload, 0x4EU, counter);
     return MATTY_OK;
 }
 
-enum matty_result matty_nack_send(const struct matty_nack *message, uint8_t counter, matty_put put,
-                                  void *user) {
+enum matty_result matty_nack_send(uint8_t counter, matty_put put, void *user) {
     struct matty_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1006,7 +964,7 @@ enum matty_result matty_nack_send(const struct matty_nack *message, uint8_t coun
     writer.sender = 0;
     writer.flags = 0;
     matty_pc_send_head(&writer, payload, 0x4EU, counter);
-    matty_nack_put(message, &writer);
+    matty_nack_put(&writer);
     matty_pc_send_tail(&writer, payload, 0x4EU, counter);
     return MATTY_OK;
 }
@@ -2109,18 +2067,12 @@ void matty_esp_decoder_flush(struct matty_esp_decoder *decoder) {
 
 void matty_pc_dispatch(void *user, const struct matty_pc_event *event) {
     switch (event->message) {
-    case MATTY_MESSAGE_STOP: {
-        struct matty_stop message;
-        matty_stop_load(&message, event->payload);
-        matty_on_stop(user, &message, &event->parts);
+    case MATTY_MESSAGE_STOP:
+        matty_on_stop(user, &event->parts);
         break;
-    }
-    case MATTY_MESSAGE_RESET: {
-        struct matty_reset message;
-        matty_reset_load(&message, event->payload);
-        matty_on_reset(user, &message, &event->parts);
+    case MATTY_MESSAGE_RESET:
+        matty_on_reset(user, &event->parts);
         break;
-    }
     case MATTY_MESSAGE_MODE: {
         struct matty_mode message;
         matty_mode_load(&message, event->payload);
@@ -2158,18 +2110,12 @@ void matty_pc_dispatch(void *user, const struct matty_pc_event *event) {
 
 void matty_esp_dispatch(void *user, const struct matty_esp_event *event) {
     switch (event->message) {
-    case MATTY_MESSAGE_ACK: {
-        struct matty_ack message;
-        matty_ack_load(&message, event->payload);
-        matty_on_ack(user, &message, &event->parts);
+    case MATTY_MESSAGE_ACK:
+        matty_on_ack(user, &event->parts);
         break;
-    }
-    case MATTY_MESSAGE_NACK: {
-        struct matty_nack message;
-        matty_nack_load(&message, event->payload);
-        matty_on_nack(user, &message, &event->parts);
+    case MATTY_MESSAGE_NACK:
+        matty_on_nack(user, &event->parts);
         break;
-    }
     case MATTY_MESSAGE_STATUS: {
         struct matty_status message;
         matty_status_load(&message, event->payload);
@@ -2189,17 +2135,13 @@ void matty_esp_dispatch(void *user, const struct matty_esp_event *event) {
 
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(MATTY_NO_WEAK)
 
-__attribute__((weak)) void matty_on_stop(void *user, const struct matty_stop *message,
-                                         const struct matty_pc_parts *parts) {
+__attribute__((weak)) void matty_on_stop(void *user, const struct matty_pc_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void matty_on_reset(void *user, const struct matty_reset *message,
-                                          const struct matty_pc_parts *parts) {
+__attribute__((weak)) void matty_on_reset(void *user, const struct matty_pc_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
@@ -2238,17 +2180,13 @@ __attribute__((weak)) void matty_on_gps_mode(void *user, const struct matty_gps_
     (void)parts;
 }
 
-__attribute__((weak)) void matty_on_ack(void *user, const struct matty_ack *message,
-                                        const struct matty_esp_parts *parts) {
+__attribute__((weak)) void matty_on_ack(void *user, const struct matty_esp_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void matty_on_nack(void *user, const struct matty_nack *message,
-                                         const struct matty_esp_parts *parts) {
+__attribute__((weak)) void matty_on_nack(void *user, const struct matty_esp_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 

@@ -114,7 +114,8 @@ enum matty_gps_mode_mode {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
+ * no struct, nothing to load, and functions that take none.
  */
 
 /* --- stop ------------------------------------------------------------------------------------- */
@@ -130,18 +131,8 @@ enum matty_gps_mode_mode {
  *
  * Switches the drives off.
  */
-struct matty_stop {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define MATTY_STOP_INIT \
-    { 0 }
-
-MATTY_API enum matty_result matty_stop_encode(const struct matty_stop *message, uint8_t *payload,
-                                              size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_stop_decode(struct matty_stop *message, const uint8_t *payload,
-                                              size_t size);
-MATTY_API void matty_stop_load(struct matty_stop *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_stop_encode(uint8_t *payload, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_stop_decode(const uint8_t *payload, size_t size);
 
 /* --- reset ------------------------------------------------------------------------------------ */
 
@@ -152,18 +143,8 @@ MATTY_API void matty_stop_load(struct matty_stop *message, const uint8_t *payloa
 #define MATTY_RESET_SPEC_HASH "a17f3a6417d5a08ad126dbe1637857495214272ba832fc4d5a565f16a5354a01"
 
 /** Stops the robot and sets its encoders to zero (line 17). */
-struct matty_reset {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define MATTY_RESET_INIT \
-    { 0 }
-
-MATTY_API enum matty_result matty_reset_encode(const struct matty_reset *message, uint8_t *payload,
-                                               size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_reset_decode(struct matty_reset *message, const uint8_t *payload,
-                                               size_t size);
-MATTY_API void matty_reset_load(struct matty_reset *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_reset_encode(uint8_t *payload, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_reset_decode(const uint8_t *payload, size_t size);
 
 /* --- mode ------------------------------------------------------------------------------------- */
 
@@ -304,18 +285,8 @@ MATTY_API void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t
  *
  * The frame's counter is that of the command.
  */
-struct matty_ack {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define MATTY_ACK_INIT \
-    { 0 }
-
-MATTY_API enum matty_result matty_ack_encode(const struct matty_ack *message, uint8_t *payload,
-                                             size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_ack_decode(struct matty_ack *message, const uint8_t *payload,
-                                             size_t size);
-MATTY_API void matty_ack_load(struct matty_ack *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_ack_encode(uint8_t *payload, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_ack_decode(const uint8_t *payload, size_t size);
 
 /* --- nack ------------------------------------------------------------------------------------- */
 
@@ -330,18 +301,8 @@ MATTY_API void matty_ack_load(struct matty_ack *message, const uint8_t *payload)
  *
  * The frame's counter is that of the last command that was understood.
  */
-struct matty_nack {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define MATTY_NACK_INIT \
-    { 0 }
-
-MATTY_API enum matty_result matty_nack_encode(const struct matty_nack *message, uint8_t *payload,
-                                              size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_nack_decode(struct matty_nack *message, const uint8_t *payload,
-                                              size_t size);
-MATTY_API void matty_nack_load(struct matty_nack *message, const uint8_t *payload);
+MATTY_API enum matty_result matty_nack_encode(uint8_t *payload, size_t capacity, size_t *size);
+MATTY_API enum matty_result matty_nack_decode(const uint8_t *payload, size_t size);
 
 /* --- status ----------------------------------------------------------------------------------- */
 
@@ -477,18 +438,16 @@ static inline bool matty_transmitted(struct matty_transmission *frame) {
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_STOP_FRAME_MAX 7U
 #define MATTY_STOP_FRAME_ROOM 10U
-MATTY_API enum matty_result matty_stop_frame(const struct matty_stop *message, uint8_t counter,
-                                             uint8_t *frame, size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_stop_send(const struct matty_stop *message, uint8_t counter,
-                                            matty_put put, void *user);
+MATTY_API enum matty_result matty_stop_frame(uint8_t counter, uint8_t *frame, size_t capacity,
+                                             size_t *size);
+MATTY_API enum matty_result matty_stop_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_RESET_FRAME_MAX 7U
 #define MATTY_RESET_FRAME_ROOM 10U
-MATTY_API enum matty_result matty_reset_frame(const struct matty_reset *message, uint8_t counter,
-                                              uint8_t *frame, size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_reset_send(const struct matty_reset *message, uint8_t counter,
-                                             matty_put put, void *user);
+MATTY_API enum matty_result matty_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity,
+                                              size_t *size);
+MATTY_API enum matty_result matty_reset_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_MODE_FRAME_MAX 8U
@@ -534,18 +493,16 @@ MATTY_API enum matty_result matty_gps_mode_send(const struct matty_gps_mode *mes
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_ACK_FRAME_MAX 6U
 #define MATTY_ACK_FRAME_ROOM 10U
-MATTY_API enum matty_result matty_ack_frame(const struct matty_ack *message, uint8_t counter,
-                                            uint8_t *frame, size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_ack_send(const struct matty_ack *message, uint8_t counter,
-                                           matty_put put, void *user);
+MATTY_API enum matty_result matty_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity,
+                                            size_t *size);
+MATTY_API enum matty_result matty_ack_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_NACK_FRAME_MAX 6U
 #define MATTY_NACK_FRAME_ROOM 10U
-MATTY_API enum matty_result matty_nack_frame(const struct matty_nack *message, uint8_t counter,
-                                             uint8_t *frame, size_t capacity, size_t *size);
-MATTY_API enum matty_result matty_nack_send(const struct matty_nack *message, uint8_t counter,
-                                            matty_put put, void *user);
+MATTY_API enum matty_result matty_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity,
+                                             size_t *size);
+MATTY_API enum matty_result matty_nack_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_STATUS_FRAME_MAX 42U
@@ -760,12 +717,10 @@ MATTY_API void matty_esp_decoder_flush(struct matty_esp_decoder *decoder);
  */
 
 /** stop came from pc. */
-void matty_on_stop(void *user, const struct matty_stop *message,
-                   const struct matty_pc_parts *parts);
+void matty_on_stop(void *user, const struct matty_pc_parts *parts);
 
 /** reset came from pc. */
-void matty_on_reset(void *user, const struct matty_reset *message,
-                    const struct matty_pc_parts *parts);
+void matty_on_reset(void *user, const struct matty_pc_parts *parts);
 
 /** mode came from pc. */
 void matty_on_mode(void *user, const struct matty_mode *message,
@@ -790,11 +745,10 @@ void matty_on_gps_mode(void *user, const struct matty_gps_mode *message,
 MATTY_API void matty_pc_dispatch(void *user, const struct matty_pc_event *event);
 
 /** ack came from esp. */
-void matty_on_ack(void *user, const struct matty_ack *message, const struct matty_esp_parts *parts);
+void matty_on_ack(void *user, const struct matty_esp_parts *parts);
 
 /** nack came from esp. */
-void matty_on_nack(void *user, const struct matty_nack *message,
-                   const struct matty_esp_parts *parts);
+void matty_on_nack(void *user, const struct matty_esp_parts *parts);
 
 /** status came from esp. */
 void matty_on_status(void *user, const struct matty_status *message,

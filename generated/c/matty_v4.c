@@ -119,30 +119,22 @@ enum matty_v4_result matty_v4_stop_decode(struct matty_v4_stop *message, const u
 
 /* --- reset ------------------------------------------------------------------------------------ */
 
-MATTY_V4_INLINE void matty_v4_reset_store(const struct matty_v4_reset *message, uint8_t *payload) {
-    (void)message;
+MATTY_V4_INLINE void matty_v4_reset_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum matty_v4_result matty_v4_reset_encode(const struct matty_v4_reset *message, uint8_t *payload,
-                                           size_t capacity, size_t *size) {
+enum matty_v4_result matty_v4_reset_encode(uint8_t *payload, size_t capacity, size_t *size) {
     (void)capacity;
-    matty_v4_reset_store(message, payload);
+    matty_v4_reset_store(payload);
     *size = 0U;
     return MATTY_V4_OK;
 }
 
-void matty_v4_reset_load(struct matty_v4_reset *message, const uint8_t *payload) {
+enum matty_v4_result matty_v4_reset_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum matty_v4_result matty_v4_reset_decode(struct matty_v4_reset *message, const uint8_t *payload,
-                                           size_t size) {
     if (size != 0U) {
         return MATTY_V4_ERROR_SIZE;
     }
-    matty_v4_reset_load(message, payload);
     return MATTY_V4_OK;
 }
 
@@ -302,32 +294,23 @@ enum matty_v4_result matty_v4_gps_mode_decode(struct matty_v4_gps_mode *message,
 
 /* --- version_query ---------------------------------------------------------------------------- */
 
-MATTY_V4_INLINE void matty_v4_version_query_store(const struct matty_v4_version_query *message,
-                                                  uint8_t *payload) {
-    (void)message;
+MATTY_V4_INLINE void matty_v4_version_query_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum matty_v4_result matty_v4_version_query_encode(const struct matty_v4_version_query *message,
-                                                   uint8_t *payload, size_t capacity,
+enum matty_v4_result matty_v4_version_query_encode(uint8_t *payload, size_t capacity,
                                                    size_t *size) {
     (void)capacity;
-    matty_v4_version_query_store(message, payload);
+    matty_v4_version_query_store(payload);
     *size = 0U;
     return MATTY_V4_OK;
 }
 
-void matty_v4_version_query_load(struct matty_v4_version_query *message, const uint8_t *payload) {
+enum matty_v4_result matty_v4_version_query_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum matty_v4_result matty_v4_version_query_decode(struct matty_v4_version_query *message,
-                                                   const uint8_t *payload, size_t size) {
     if (size != 0U) {
         return MATTY_V4_ERROR_SIZE;
     }
-    matty_v4_version_query_load(message, payload);
     return MATTY_V4_OK;
 }
 
@@ -375,59 +358,43 @@ enum matty_v4_result matty_v4_led_decode(struct matty_v4_led *message, const uin
 
 /* --- ack -------------------------------------------------------------------------------------- */
 
-MATTY_V4_INLINE void matty_v4_ack_store(const struct matty_v4_ack *message, uint8_t *payload) {
-    (void)message;
+MATTY_V4_INLINE void matty_v4_ack_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum matty_v4_result matty_v4_ack_encode(const struct matty_v4_ack *message, uint8_t *payload,
-                                         size_t capacity, size_t *size) {
+enum matty_v4_result matty_v4_ack_encode(uint8_t *payload, size_t capacity, size_t *size) {
     (void)capacity;
-    matty_v4_ack_store(message, payload);
+    matty_v4_ack_store(payload);
     *size = 0U;
     return MATTY_V4_OK;
 }
 
-void matty_v4_ack_load(struct matty_v4_ack *message, const uint8_t *payload) {
+enum matty_v4_result matty_v4_ack_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum matty_v4_result matty_v4_ack_decode(struct matty_v4_ack *message, const uint8_t *payload,
-                                         size_t size) {
     if (size != 0U) {
         return MATTY_V4_ERROR_SIZE;
     }
-    matty_v4_ack_load(message, payload);
     return MATTY_V4_OK;
 }
 
 /* --- nack ------------------------------------------------------------------------------------- */
 
-MATTY_V4_INLINE void matty_v4_nack_store(const struct matty_v4_nack *message, uint8_t *payload) {
-    (void)message;
+MATTY_V4_INLINE void matty_v4_nack_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum matty_v4_result matty_v4_nack_encode(const struct matty_v4_nack *message, uint8_t *payload,
-                                          size_t capacity, size_t *size) {
+enum matty_v4_result matty_v4_nack_encode(uint8_t *payload, size_t capacity, size_t *size) {
     (void)capacity;
-    matty_v4_nack_store(message, payload);
+    matty_v4_nack_store(payload);
     *size = 0U;
     return MATTY_V4_OK;
 }
 
-void matty_v4_nack_load(struct matty_v4_nack *message, const uint8_t *payload) {
+enum matty_v4_result matty_v4_nack_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum matty_v4_result matty_v4_nack_decode(struct matty_v4_nack *message, const uint8_t *payload,
-                                          size_t size) {
     if (size != 0U) {
         return MATTY_V4_ERROR_SIZE;
     }
-    matty_v4_nack_load(message, payload);
     return MATTY_V4_OK;
 }
 
@@ -861,9 +828,7 @@ MATTY_V4_INLINE void matty_v4_stop_put(const struct matty_v4_stop *message,
     matty_v4_write(writer, message->mode);
 }
 
-MATTY_V4_INLINE void matty_v4_reset_put(const struct matty_v4_reset *message,
-                                        struct matty_v4_writer *writer) {
-    (void)message;
+MATTY_V4_INLINE void matty_v4_reset_put(struct matty_v4_writer *writer) {
     (void)writer;
 }
 
@@ -895,9 +860,7 @@ MATTY_V4_INLINE void matty_v4_gps_mode_put(const struct matty_v4_gps_mode *messa
     matty_v4_write(writer, message->mode);
 }
 
-MATTY_V4_INLINE void matty_v4_version_query_put(const struct matty_v4_version_query *message,
-                                                struct matty_v4_writer *writer) {
-    (void)message;
+MATTY_V4_INLINE void matty_v4_version_query_put(struct matty_v4_writer *writer) {
     (void)writer;
 }
 
@@ -907,15 +870,11 @@ MATTY_V4_INLINE void matty_v4_led_put(const struct matty_v4_led *message,
     matty_v4_write_u24le(writer, message->rgb);
 }
 
-MATTY_V4_INLINE void matty_v4_ack_put(const struct matty_v4_ack *message,
-                                      struct matty_v4_writer *writer) {
-    (void)message;
+MATTY_V4_INLINE void matty_v4_ack_put(struct matty_v4_writer *writer) {
     (void)writer;
 }
 
-MATTY_V4_INLINE void matty_v4_nack_put(const struct matty_v4_nack *message,
-                                       struct matty_v4_writer *writer) {
-    (void)message;
+MATTY_V4_INLINE void matty_v4_nack_put(struct matty_v4_writer *writer) {
     (void)writer;
 }
 
@@ -972,19 +931,18 @@ enum matty_v4_result matty_v4_stop_send(const struct matty_v4_stop *message, uin
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_reset_frame(const struct matty_v4_reset *message, uint8_t counter,
-                                          uint8_t *frame, size_t capacity, size_t *size) {
+enum matty_v4_result matty_v4_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity,
+                                          size_t *size) {
     const size_t payload = 0U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
-    matty_v4_reset_store(message, matty_v4_pc_payload(frame, payload));
+    matty_v4_reset_store(matty_v4_pc_payload(frame, payload));
     *size = matty_v4_pc_wrap(frame, payload, 0x52U, counter);
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_reset_send(const struct matty_v4_reset *message, uint8_t counter,
-                                         matty_v4_put put, void *user) {
+enum matty_v4_result matty_v4_reset_send(uint8_t counter, matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -992,7 +950,7 @@ enum matty_v4_result matty_v4_reset_send(const struct matty_v4_reset *message, u
     writer.sender = 0;
     writer.flags = 0;
     matty_v4_pc_send_head(&writer, payload, 0x52U, counter);
-    matty_v4_reset_put(message, &writer);
+    matty_v4_reset_put(&writer);
     matty_v4_pc_send_tail(&writer, payload, 0x52U, counter);
     return MATTY_V4_OK;
 }
@@ -1123,20 +1081,18 @@ enum matty_v4_result matty_v4_gps_mode_send(const struct matty_v4_gps_mode *mess
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_version_query_frame(const struct matty_v4_version_query *message,
-                                                  uint8_t counter, uint8_t *frame, size_t capacity,
+enum matty_v4_result matty_v4_version_query_frame(uint8_t counter, uint8_t *frame, size_t capacity,
                                                   size_t *size) {
     const size_t payload = 0U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
-    matty_v4_version_query_store(message, matty_v4_pc_payload(frame, payload));
+    matty_v4_version_query_store(matty_v4_pc_payload(frame, payload));
     *size = matty_v4_pc_wrap(frame, payload, 0x56U, counter);
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_version_query_send(const struct matty_v4_version_query *message,
-                                                 uint8_t counter, matty_v4_put put, void *user) {
+enum matty_v4_result matty_v4_version_query_send(uint8_t counter, matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1144,7 +1100,7 @@ enum matty_v4_result matty_v4_version_query_send(const struct matty_v4_version_q
     writer.sender = 0;
     writer.flags = 0;
     matty_v4_pc_send_head(&writer, payload, 0x56U, counter);
-    matty_v4_version_query_put(message, &writer);
+    matty_v4_version_query_put(&writer);
     matty_v4_pc_send_tail(&writer, payload, 0x56U, counter);
     return MATTY_V4_OK;
 }
@@ -1182,19 +1138,18 @@ enum matty_v4_result matty_v4_led_send(const struct matty_v4_led *message, uint8
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_ack_frame(const struct matty_v4_ack *message, uint8_t counter,
-                                        uint8_t *frame, size_t capacity, size_t *size) {
+enum matty_v4_result matty_v4_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity,
+                                        size_t *size) {
     const size_t payload = 0U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
-    matty_v4_ack_store(message, matty_v4_pc_payload(frame, payload));
+    matty_v4_ack_store(matty_v4_pc_payload(frame, payload));
     *size = matty_v4_pc_wrap(frame, payload, 0x41U, counter);
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_ack_send(const struct matty_v4_ack *message, uint8_t counter,
-                                       matty_v4_put put, void *user) {
+enum matty_v4_result matty_v4_ack_send(uint8_t counter, matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1202,24 +1157,23 @@ enum matty_v4_result matty_v4_ack_send(const struct matty_v4_ack *message, uint8
     writer.sender = 0;
     writer.flags = 0;
     matty_v4_pc_send_head(&writer, payload, 0x41U, counter);
-    matty_v4_ack_put(message, &writer);
+    matty_v4_ack_put(&writer);
     matty_v4_pc_send_tail(&writer, payload, 0x41U, counter);
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_nack_frame(const struct matty_v4_nack *message, uint8_t counter,
-                                         uint8_t *frame, size_t capacity, size_t *size) {
+enum matty_v4_result matty_v4_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity,
+                                         size_t *size) {
     const size_t payload = 0U;
     if (capacity < matty_v4_pc_room(payload)) {
         return MATTY_V4_ERROR_SPACE;
     }
-    matty_v4_nack_store(message, matty_v4_pc_payload(frame, payload));
+    matty_v4_nack_store(matty_v4_pc_payload(frame, payload));
     *size = matty_v4_pc_wrap(frame, payload, 0x4EU, counter);
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_nack_send(const struct matty_v4_nack *message, uint8_t counter,
-                                        matty_v4_put put, void *user) {
+enum matty_v4_result matty_v4_nack_send(uint8_t counter, matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1227,7 +1181,7 @@ enum matty_v4_result matty_v4_nack_send(const struct matty_v4_nack *message, uin
     writer.sender = 0;
     writer.flags = 0;
     matty_v4_pc_send_head(&writer, payload, 0x4EU, counter);
-    matty_v4_nack_put(message, &writer);
+    matty_v4_nack_put(&writer);
     matty_v4_pc_send_tail(&writer, payload, 0x4EU, counter);
     return MATTY_V4_OK;
 }
@@ -2376,12 +2330,9 @@ void matty_v4_pc_dispatch(void *user, const struct matty_v4_pc_event *event) {
         matty_v4_on_stop(user, &message, &event->parts);
         break;
     }
-    case MATTY_V4_MESSAGE_RESET: {
-        struct matty_v4_reset message;
-        matty_v4_reset_load(&message, event->payload);
-        matty_v4_on_reset(user, &message, &event->parts);
+    case MATTY_V4_MESSAGE_RESET:
+        matty_v4_on_reset(user, &event->parts);
         break;
-    }
     case MATTY_V4_MESSAGE_MODE: {
         struct matty_v4_mode message;
         matty_v4_mode_load(&message, event->payload);
@@ -2412,12 +2363,9 @@ void matty_v4_pc_dispatch(void *user, const struct matty_v4_pc_event *event) {
         matty_v4_on_gps_mode(user, &message, &event->parts);
         break;
     }
-    case MATTY_V4_MESSAGE_VERSION_QUERY: {
-        struct matty_v4_version_query message;
-        matty_v4_version_query_load(&message, event->payload);
-        matty_v4_on_version_query(user, &message, &event->parts);
+    case MATTY_V4_MESSAGE_VERSION_QUERY:
+        matty_v4_on_version_query(user, &event->parts);
         break;
-    }
     case MATTY_V4_MESSAGE_LED: {
         struct matty_v4_led message;
         matty_v4_led_load(&message, event->payload);
@@ -2431,18 +2379,12 @@ void matty_v4_pc_dispatch(void *user, const struct matty_v4_pc_event *event) {
 
 void matty_v4_esp_dispatch(void *user, const struct matty_v4_esp_event *event) {
     switch (event->message) {
-    case MATTY_V4_MESSAGE_ACK: {
-        struct matty_v4_ack message;
-        matty_v4_ack_load(&message, event->payload);
-        matty_v4_on_ack(user, &message, &event->parts);
+    case MATTY_V4_MESSAGE_ACK:
+        matty_v4_on_ack(user, &event->parts);
         break;
-    }
-    case MATTY_V4_MESSAGE_NACK: {
-        struct matty_v4_nack message;
-        matty_v4_nack_load(&message, event->payload);
-        matty_v4_on_nack(user, &message, &event->parts);
+    case MATTY_V4_MESSAGE_NACK:
+        matty_v4_on_nack(user, &event->parts);
         break;
-    }
     case MATTY_V4_MESSAGE_STATUS: {
         struct matty_v4_status message;
         matty_v4_status_load(&message, event->payload);
@@ -2475,10 +2417,8 @@ __attribute__((weak)) void matty_v4_on_stop(void *user, const struct matty_v4_st
     (void)parts;
 }
 
-__attribute__((weak)) void matty_v4_on_reset(void *user, const struct matty_v4_reset *message,
-                                             const struct matty_v4_pc_parts *parts) {
+__attribute__((weak)) void matty_v4_on_reset(void *user, const struct matty_v4_pc_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
@@ -2518,10 +2458,8 @@ __attribute__((weak)) void matty_v4_on_gps_mode(void *user, const struct matty_v
 }
 
 __attribute__((weak)) void matty_v4_on_version_query(void *user,
-                                                     const struct matty_v4_version_query *message,
                                                      const struct matty_v4_pc_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
@@ -2532,17 +2470,13 @@ __attribute__((weak)) void matty_v4_on_led(void *user, const struct matty_v4_led
     (void)parts;
 }
 
-__attribute__((weak)) void matty_v4_on_ack(void *user, const struct matty_v4_ack *message,
-                                           const struct matty_v4_esp_parts *parts) {
+__attribute__((weak)) void matty_v4_on_ack(void *user, const struct matty_v4_esp_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void matty_v4_on_nack(void *user, const struct matty_v4_nack *message,
-                                            const struct matty_v4_esp_parts *parts) {
+__attribute__((weak)) void matty_v4_on_nack(void *user, const struct matty_v4_esp_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 

@@ -126,7 +126,8 @@ enum matty_v4_gps_mode_mode {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
+ * no struct, nothing to load, and functions that take none.
  */
 
 /* --- stop ------------------------------------------------------------------------------------- */
@@ -165,19 +166,9 @@ MATTY_V4_API void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_
 #define MATTY_V4_RESET_SPEC_HASH "a17f3a6417d5a08ad126dbe1637857495214272ba832fc4d5a565f16a5354a01"
 
 /** Stops the robot and sets its encoders to zero (004_bc163d01a5f01dc1.txt, line 17). */
-struct matty_v4_reset {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define MATTY_V4_RESET_INIT \
-    { 0 }
-
-MATTY_V4_API enum matty_v4_result matty_v4_reset_encode(const struct matty_v4_reset *message,
-                                                        uint8_t *payload, size_t capacity,
+MATTY_V4_API enum matty_v4_result matty_v4_reset_encode(uint8_t *payload, size_t capacity,
                                                         size_t *size);
-MATTY_V4_API enum matty_v4_result matty_v4_reset_decode(struct matty_v4_reset *message,
-                                                        const uint8_t *payload, size_t size);
-MATTY_V4_API void matty_v4_reset_load(struct matty_v4_reset *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_reset_decode(const uint8_t *payload, size_t size);
 
 /* --- mode ------------------------------------------------------------------------------------- */
 
@@ -327,19 +318,10 @@ MATTY_V4_API void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, cons
 #define MATTY_V4_VERSION_QUERY_SPEC_HASH "ffd6db923d8dc0882ca430ef06d902068f46072abdae23a640766c6b0ec8d2f7"
 
 /** Asks for the version (esp/matty-v4.txt, line 23). */
-struct matty_v4_version_query {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define MATTY_V4_VERSION_QUERY_INIT \
-    { 0 }
-
-MATTY_V4_API enum matty_v4_result matty_v4_version_query_encode(
-    const struct matty_v4_version_query *message, uint8_t *payload, size_t capacity, size_t *size);
-MATTY_V4_API enum matty_v4_result matty_v4_version_query_decode(
-    struct matty_v4_version_query *message, const uint8_t *payload, size_t size);
-MATTY_V4_API void matty_v4_version_query_load(struct matty_v4_version_query *message,
-                                              const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_version_query_encode(uint8_t *payload, size_t capacity,
+                                                                size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_version_query_decode(const uint8_t *payload,
+                                                                size_t size);
 
 /* --- led -------------------------------------------------------------------------------------- */
 
@@ -379,19 +361,9 @@ MATTY_V4_API void matty_v4_led_load(struct matty_v4_led *message, const uint8_t 
  *
  * The frame's counter is that of the command.
  */
-struct matty_v4_ack {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define MATTY_V4_ACK_INIT \
-    { 0 }
-
-MATTY_V4_API enum matty_v4_result matty_v4_ack_encode(const struct matty_v4_ack *message,
-                                                      uint8_t *payload, size_t capacity,
+MATTY_V4_API enum matty_v4_result matty_v4_ack_encode(uint8_t *payload, size_t capacity,
                                                       size_t *size);
-MATTY_V4_API enum matty_v4_result matty_v4_ack_decode(struct matty_v4_ack *message,
-                                                      const uint8_t *payload, size_t size);
-MATTY_V4_API void matty_v4_ack_load(struct matty_v4_ack *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_ack_decode(const uint8_t *payload, size_t size);
 
 /* --- nack ------------------------------------------------------------------------------------- */
 
@@ -406,19 +378,9 @@ MATTY_V4_API void matty_v4_ack_load(struct matty_v4_ack *message, const uint8_t 
  *
  * The frame's counter is that of the last command that was understood.
  */
-struct matty_v4_nack {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define MATTY_V4_NACK_INIT \
-    { 0 }
-
-MATTY_V4_API enum matty_v4_result matty_v4_nack_encode(const struct matty_v4_nack *message,
-                                                       uint8_t *payload, size_t capacity,
+MATTY_V4_API enum matty_v4_result matty_v4_nack_encode(uint8_t *payload, size_t capacity,
                                                        size_t *size);
-MATTY_V4_API enum matty_v4_result matty_v4_nack_decode(struct matty_v4_nack *message,
-                                                       const uint8_t *payload, size_t size);
-MATTY_V4_API void matty_v4_nack_load(struct matty_v4_nack *message, const uint8_t *payload);
+MATTY_V4_API enum matty_v4_result matty_v4_nack_decode(const uint8_t *payload, size_t size);
 
 /* --- status ----------------------------------------------------------------------------------- */
 
@@ -608,11 +570,9 @@ MATTY_V4_API enum matty_v4_result matty_v4_stop_send(const struct matty_v4_stop 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_RESET_FRAME_MAX 7U
 #define MATTY_V4_RESET_FRAME_ROOM 10U
-MATTY_V4_API enum matty_v4_result matty_v4_reset_frame(const struct matty_v4_reset *message,
-                                                       uint8_t counter, uint8_t *frame,
+MATTY_V4_API enum matty_v4_result matty_v4_reset_frame(uint8_t counter, uint8_t *frame,
                                                        size_t capacity, size_t *size);
-MATTY_V4_API enum matty_v4_result matty_v4_reset_send(const struct matty_v4_reset *message,
-                                                      uint8_t counter, matty_v4_put put,
+MATTY_V4_API enum matty_v4_result matty_v4_reset_send(uint8_t counter, matty_v4_put put,
                                                       void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
@@ -666,11 +626,10 @@ MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_send(const struct matty_v4_g
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_VERSION_QUERY_FRAME_MAX 7U
 #define MATTY_V4_VERSION_QUERY_FRAME_ROOM 10U
-MATTY_V4_API enum matty_v4_result matty_v4_version_query_frame(
-    const struct matty_v4_version_query *message, uint8_t counter, uint8_t *frame, size_t capacity,
-    size_t *size);
-MATTY_V4_API enum matty_v4_result matty_v4_version_query_send(
-    const struct matty_v4_version_query *message, uint8_t counter, matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_version_query_frame(uint8_t counter, uint8_t *frame,
+                                                               size_t capacity, size_t *size);
+MATTY_V4_API enum matty_v4_result matty_v4_version_query_send(uint8_t counter, matty_v4_put put,
+                                                              void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_LED_FRAME_MAX 14U
@@ -684,20 +643,16 @@ MATTY_V4_API enum matty_v4_result matty_v4_led_send(const struct matty_v4_led *m
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_ACK_FRAME_MAX 6U
 #define MATTY_V4_ACK_FRAME_ROOM 10U
-MATTY_V4_API enum matty_v4_result matty_v4_ack_frame(const struct matty_v4_ack *message,
-                                                     uint8_t counter, uint8_t *frame,
+MATTY_V4_API enum matty_v4_result matty_v4_ack_frame(uint8_t counter, uint8_t *frame,
                                                      size_t capacity, size_t *size);
-MATTY_V4_API enum matty_v4_result matty_v4_ack_send(const struct matty_v4_ack *message,
-                                                    uint8_t counter, matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_ack_send(uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_NACK_FRAME_MAX 6U
 #define MATTY_V4_NACK_FRAME_ROOM 10U
-MATTY_V4_API enum matty_v4_result matty_v4_nack_frame(const struct matty_v4_nack *message,
-                                                      uint8_t counter, uint8_t *frame,
+MATTY_V4_API enum matty_v4_result matty_v4_nack_frame(uint8_t counter, uint8_t *frame,
                                                       size_t capacity, size_t *size);
-MATTY_V4_API enum matty_v4_result matty_v4_nack_send(const struct matty_v4_nack *message,
-                                                     uint8_t counter, matty_v4_put put, void *user);
+MATTY_V4_API enum matty_v4_result matty_v4_nack_send(uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_STATUS_FRAME_MAX 54U
@@ -929,8 +884,7 @@ void matty_v4_on_stop(void *user, const struct matty_v4_stop *message,
                       const struct matty_v4_pc_parts *parts);
 
 /** reset came from pc. */
-void matty_v4_on_reset(void *user, const struct matty_v4_reset *message,
-                       const struct matty_v4_pc_parts *parts);
+void matty_v4_on_reset(void *user, const struct matty_v4_pc_parts *parts);
 
 /** mode came from pc. */
 void matty_v4_on_mode(void *user, const struct matty_v4_mode *message,
@@ -953,8 +907,7 @@ void matty_v4_on_gps_mode(void *user, const struct matty_v4_gps_mode *message,
                           const struct matty_v4_pc_parts *parts);
 
 /** version_query came from pc. */
-void matty_v4_on_version_query(void *user, const struct matty_v4_version_query *message,
-                               const struct matty_v4_pc_parts *parts);
+void matty_v4_on_version_query(void *user, const struct matty_v4_pc_parts *parts);
 
 /** led came from pc. */
 void matty_v4_on_led(void *user, const struct matty_v4_led *message,
@@ -964,12 +917,10 @@ void matty_v4_on_led(void *user, const struct matty_v4_led *message,
 MATTY_V4_API void matty_v4_pc_dispatch(void *user, const struct matty_v4_pc_event *event);
 
 /** ack came from esp. */
-void matty_v4_on_ack(void *user, const struct matty_v4_ack *message,
-                     const struct matty_v4_esp_parts *parts);
+void matty_v4_on_ack(void *user, const struct matty_v4_esp_parts *parts);
 
 /** nack came from esp. */
-void matty_v4_on_nack(void *user, const struct matty_v4_nack *message,
-                      const struct matty_v4_esp_parts *parts);
+void matty_v4_on_nack(void *user, const struct matty_v4_esp_parts *parts);
 
 /** status came from esp. */
 void matty_v4_on_status(void *user, const struct matty_v4_status *message,

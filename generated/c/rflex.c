@@ -58,33 +58,23 @@ RFLEX_INLINE void rflex_store_u16be(uint8_t *at, uint16_t value) {
 
 /* --- request_system_status -------------------------------------------------------------------- */
 
-RFLEX_INLINE void rflex_request_system_status_store(
-    const struct rflex_request_system_status *message, uint8_t *payload) {
-    (void)message;
+RFLEX_INLINE void rflex_request_system_status_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum rflex_result rflex_request_system_status_encode(
-    const struct rflex_request_system_status *message, uint8_t *payload, size_t capacity,
-    size_t *size) {
+enum rflex_result rflex_request_system_status_encode(uint8_t *payload, size_t capacity,
+                                                     size_t *size) {
     (void)capacity;
-    rflex_request_system_status_store(message, payload);
+    rflex_request_system_status_store(payload);
     *size = 0U;
     return RFLEX_OK;
 }
 
-void rflex_request_system_status_load(struct rflex_request_system_status *message,
-                                      const uint8_t *payload) {
+enum rflex_result rflex_request_system_status_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum rflex_result rflex_request_system_status_decode(struct rflex_request_system_status *message,
-                                                     const uint8_t *payload, size_t size) {
     if (size != 0U) {
         return RFLEX_ERROR_SIZE;
     }
-    rflex_request_system_status_load(message, payload);
     return RFLEX_OK;
 }
 
@@ -227,59 +217,43 @@ enum rflex_result rflex_confirm_motor_command_decode(struct rflex_confirm_motor_
 
 /* --- motor_0a --------------------------------------------------------------------------------- */
 
-RFLEX_INLINE void rflex_motor_0a_store(const struct rflex_motor_0a *message, uint8_t *payload) {
-    (void)message;
+RFLEX_INLINE void rflex_motor_0a_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum rflex_result rflex_motor_0a_encode(const struct rflex_motor_0a *message, uint8_t *payload,
-                                        size_t capacity, size_t *size) {
+enum rflex_result rflex_motor_0a_encode(uint8_t *payload, size_t capacity, size_t *size) {
     (void)capacity;
-    rflex_motor_0a_store(message, payload);
+    rflex_motor_0a_store(payload);
     *size = 0U;
     return RFLEX_OK;
 }
 
-void rflex_motor_0a_load(struct rflex_motor_0a *message, const uint8_t *payload) {
+enum rflex_result rflex_motor_0a_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum rflex_result rflex_motor_0a_decode(struct rflex_motor_0a *message, const uint8_t *payload,
-                                        size_t size) {
     if (size != 0U) {
         return RFLEX_ERROR_SIZE;
     }
-    rflex_motor_0a_load(message, payload);
     return RFLEX_OK;
 }
 
 /* --- motor_0c --------------------------------------------------------------------------------- */
 
-RFLEX_INLINE void rflex_motor_0c_store(const struct rflex_motor_0c *message, uint8_t *payload) {
-    (void)message;
+RFLEX_INLINE void rflex_motor_0c_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum rflex_result rflex_motor_0c_encode(const struct rflex_motor_0c *message, uint8_t *payload,
-                                        size_t capacity, size_t *size) {
+enum rflex_result rflex_motor_0c_encode(uint8_t *payload, size_t capacity, size_t *size) {
     (void)capacity;
-    rflex_motor_0c_store(message, payload);
+    rflex_motor_0c_store(payload);
     *size = 0U;
     return RFLEX_OK;
 }
 
-void rflex_motor_0c_load(struct rflex_motor_0c *message, const uint8_t *payload) {
+enum rflex_result rflex_motor_0c_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum rflex_result rflex_motor_0c_decode(struct rflex_motor_0c *message, const uint8_t *payload,
-                                        size_t size) {
     if (size != 0U) {
         return RFLEX_ERROR_SIZE;
     }
-    rflex_motor_0c_load(message, payload);
     return RFLEX_OK;
 }
 
@@ -426,33 +400,23 @@ enum rflex_result rflex_confirm_start_stop_motor_packets_decode(
 
 /* --- request_joystick_data -------------------------------------------------------------------- */
 
-RFLEX_INLINE void rflex_request_joystick_data_store(
-    const struct rflex_request_joystick_data *message, uint8_t *payload) {
-    (void)message;
+RFLEX_INLINE void rflex_request_joystick_data_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum rflex_result rflex_request_joystick_data_encode(
-    const struct rflex_request_joystick_data *message, uint8_t *payload, size_t capacity,
-    size_t *size) {
+enum rflex_result rflex_request_joystick_data_encode(uint8_t *payload, size_t capacity,
+                                                     size_t *size) {
     (void)capacity;
-    rflex_request_joystick_data_store(message, payload);
+    rflex_request_joystick_data_store(payload);
     *size = 0U;
     return RFLEX_OK;
 }
 
-void rflex_request_joystick_data_load(struct rflex_request_joystick_data *message,
-                                      const uint8_t *payload) {
+enum rflex_result rflex_request_joystick_data_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum rflex_result rflex_request_joystick_data_decode(struct rflex_request_joystick_data *message,
-                                                     const uint8_t *payload, size_t size) {
     if (size != 0U) {
         return RFLEX_ERROR_SIZE;
     }
-    rflex_request_joystick_data_load(message, payload);
     return RFLEX_OK;
 }
 
@@ -1141,9 +1105,7 @@ static void rflex_write_u16be(struct rflex_writer *writer, uint16_t value) {
     rflex_write(writer, (uint8_t)value);
 }
 
-RFLEX_INLINE void rflex_request_system_status_put(const struct rflex_request_system_status *message,
-                                                  struct rflex_writer *writer) {
-    (void)message;
+RFLEX_INLINE void rflex_request_system_status_put(struct rflex_writer *writer) {
     (void)writer;
 }
 
@@ -1175,15 +1137,11 @@ RFLEX_INLINE void rflex_confirm_motor_command_put(const struct rflex_confirm_mot
     rflex_write(writer, message->axis);
 }
 
-RFLEX_INLINE void rflex_motor_0a_put(const struct rflex_motor_0a *message,
-                                     struct rflex_writer *writer) {
-    (void)message;
+RFLEX_INLINE void rflex_motor_0a_put(struct rflex_writer *writer) {
     (void)writer;
 }
 
-RFLEX_INLINE void rflex_motor_0c_put(const struct rflex_motor_0c *message,
-                                     struct rflex_writer *writer) {
-    (void)message;
+RFLEX_INLINE void rflex_motor_0c_put(struct rflex_writer *writer) {
     (void)writer;
 }
 
@@ -1216,9 +1174,7 @@ RFLEX_INLINE void rflex_confirm_start_stop_motor_packets_put(
     rflex_write_u32be(writer, message->timestamp);
 }
 
-RFLEX_INLINE void rflex_request_joystick_data_put(const struct rflex_request_joystick_data *message,
-                                                  struct rflex_writer *writer) {
-    (void)message;
+RFLEX_INLINE void rflex_request_joystick_data_put(struct rflex_writer *writer) {
     (void)writer;
 }
 
@@ -1291,20 +1247,18 @@ RFLEX_INLINE void rflex_changed_byte_put(const struct rflex_changed_byte *messag
     rflex_write_u16be(writer, message->value);
 }
 
-enum rflex_result rflex_request_system_status_frame(
-    const struct rflex_request_system_status *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+enum rflex_result rflex_request_system_status_frame(uint8_t number, uint8_t *frame, size_t capacity,
+                                                    size_t *size) {
     const size_t payload = 0U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
-    rflex_request_system_status_store(message, rflex_linux_payload(frame, payload));
+    rflex_request_system_status_store(rflex_linux_payload(frame, payload));
     *size = rflex_linux_wrap(frame, payload, 0x01U, 0x01U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_request_system_status_send(
-    const struct rflex_request_system_status *message, uint8_t number, rflex_put put, void *user) {
+enum rflex_result rflex_request_system_status_send(uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1312,7 +1266,7 @@ enum rflex_result rflex_request_system_status_send(
     writer.sender = 0;
     writer.flags = 0;
     rflex_linux_send_head(&writer, payload, 0x01U, 0x01U, number);
-    rflex_request_system_status_put(message, &writer);
+    rflex_request_system_status_put(&writer);
     rflex_linux_send_tail(&writer, payload, 0x01U, 0x01U, number);
     return RFLEX_OK;
 }
@@ -1420,19 +1374,18 @@ enum rflex_result rflex_confirm_motor_command_send(
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_motor_0a_frame(const struct rflex_motor_0a *message, uint8_t number,
-                                       uint8_t *frame, size_t capacity, size_t *size) {
+enum rflex_result rflex_motor_0a_frame(uint8_t number, uint8_t *frame, size_t capacity,
+                                       size_t *size) {
     const size_t payload = 0U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
-    rflex_motor_0a_store(message, rflex_linux_payload(frame, payload));
+    rflex_motor_0a_store(rflex_linux_payload(frame, payload));
     *size = rflex_linux_wrap(frame, payload, 0x02U, 0x0AU, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_motor_0a_send(const struct rflex_motor_0a *message, uint8_t number,
-                                      rflex_put put, void *user) {
+enum rflex_result rflex_motor_0a_send(uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1440,24 +1393,23 @@ enum rflex_result rflex_motor_0a_send(const struct rflex_motor_0a *message, uint
     writer.sender = 0;
     writer.flags = 0;
     rflex_linux_send_head(&writer, payload, 0x02U, 0x0AU, number);
-    rflex_motor_0a_put(message, &writer);
+    rflex_motor_0a_put(&writer);
     rflex_linux_send_tail(&writer, payload, 0x02U, 0x0AU, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_motor_0c_frame(const struct rflex_motor_0c *message, uint8_t number,
-                                       uint8_t *frame, size_t capacity, size_t *size) {
+enum rflex_result rflex_motor_0c_frame(uint8_t number, uint8_t *frame, size_t capacity,
+                                       size_t *size) {
     const size_t payload = 0U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
-    rflex_motor_0c_store(message, rflex_linux_payload(frame, payload));
+    rflex_motor_0c_store(rflex_linux_payload(frame, payload));
     *size = rflex_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_motor_0c_send(const struct rflex_motor_0c *message, uint8_t number,
-                                      rflex_put put, void *user) {
+enum rflex_result rflex_motor_0c_send(uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1465,7 +1417,7 @@ enum rflex_result rflex_motor_0c_send(const struct rflex_motor_0c *message, uint
     writer.sender = 0;
     writer.flags = 0;
     rflex_linux_send_head(&writer, payload, 0x02U, 0x0CU, number);
-    rflex_motor_0c_put(message, &writer);
+    rflex_motor_0c_put(&writer);
     rflex_linux_send_tail(&writer, payload, 0x02U, 0x0CU, number);
     return RFLEX_OK;
 }
@@ -1575,20 +1527,18 @@ enum rflex_result rflex_confirm_start_stop_motor_packets_send(
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_request_joystick_data_frame(
-    const struct rflex_request_joystick_data *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+enum rflex_result rflex_request_joystick_data_frame(uint8_t number, uint8_t *frame, size_t capacity,
+                                                    size_t *size) {
     const size_t payload = 0U;
     if (capacity < rflex_linux_room(payload)) {
         return RFLEX_ERROR_SPACE;
     }
-    rflex_request_joystick_data_store(message, rflex_linux_payload(frame, payload));
+    rflex_request_joystick_data_store(rflex_linux_payload(frame, payload));
     *size = rflex_linux_wrap(frame, payload, 0x03U, 0x00U, number);
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_request_joystick_data_send(
-    const struct rflex_request_joystick_data *message, uint8_t number, rflex_put put, void *user) {
+enum rflex_result rflex_request_joystick_data_send(uint8_t number, rflex_put put, void *user) {
     struct rflex_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1596,7 +1546,7 @@ enum rflex_result rflex_request_joystick_data_send(
     writer.sender = 0;
     writer.flags = 0;
     rflex_linux_send_head(&writer, payload, 0x03U, 0x00U, number);
-    rflex_request_joystick_data_put(message, &writer);
+    rflex_request_joystick_data_put(&writer);
     rflex_linux_send_tail(&writer, payload, 0x03U, 0x00U, number);
     return RFLEX_OK;
 }
@@ -3292,12 +3242,9 @@ void rflex_flex_decoder_flush(struct rflex_flex_decoder *decoder) {
 
 void rflex_linux_dispatch(void *user, const struct rflex_linux_event *event) {
     switch (event->message) {
-    case RFLEX_MESSAGE_REQUEST_SYSTEM_STATUS: {
-        struct rflex_request_system_status message;
-        rflex_request_system_status_load(&message, event->payload);
-        rflex_on_request_system_status(user, &message, &event->parts);
+    case RFLEX_MESSAGE_REQUEST_SYSTEM_STATUS:
+        rflex_on_request_system_status(user, &event->parts);
         break;
-    }
     case RFLEX_MESSAGE_MOTOR_00: {
         struct rflex_motor_00 message;
         rflex_motor_00_load(&message, event->payload);
@@ -3310,30 +3257,21 @@ void rflex_linux_dispatch(void *user, const struct rflex_linux_event *event) {
         rflex_on_motor_command(user, &message, &event->parts);
         break;
     }
-    case RFLEX_MESSAGE_MOTOR_0A: {
-        struct rflex_motor_0a message;
-        rflex_motor_0a_load(&message, event->payload);
-        rflex_on_motor_0a(user, &message, &event->parts);
+    case RFLEX_MESSAGE_MOTOR_0A:
+        rflex_on_motor_0a(user, &event->parts);
         break;
-    }
-    case RFLEX_MESSAGE_MOTOR_0C: {
-        struct rflex_motor_0c message;
-        rflex_motor_0c_load(&message, event->payload);
-        rflex_on_motor_0c(user, &message, &event->parts);
+    case RFLEX_MESSAGE_MOTOR_0C:
+        rflex_on_motor_0c(user, &event->parts);
         break;
-    }
     case RFLEX_MESSAGE_START_STOP_MOTOR_PACKETS: {
         struct rflex_start_stop_motor_packets message;
         rflex_start_stop_motor_packets_load(&message, event->payload);
         rflex_on_start_stop_motor_packets(user, &message, &event->parts);
         break;
     }
-    case RFLEX_MESSAGE_REQUEST_JOYSTICK_DATA: {
-        struct rflex_request_joystick_data message;
-        rflex_request_joystick_data_load(&message, event->payload);
-        rflex_on_request_joystick_data(user, &message, &event->parts);
+    case RFLEX_MESSAGE_REQUEST_JOYSTICK_DATA:
+        rflex_on_request_joystick_data(user, &event->parts);
         break;
-    }
     case RFLEX_MESSAGE_START_STOP_SONAR_PACKETS: {
         struct rflex_start_stop_sonar_packets message;
         rflex_start_stop_sonar_packets_load(&message, event->payload);
@@ -3438,11 +3376,9 @@ void rflex_flex_dispatch(void *user, const struct rflex_flex_event *event) {
 
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(RFLEX_NO_WEAK)
 
-__attribute__((weak)) void rflex_on_request_system_status(
-    void *user, const struct rflex_request_system_status *message,
-    const struct rflex_linux_parts *parts) {
+__attribute__((weak)) void rflex_on_request_system_status(void *user,
+                                                          const struct rflex_linux_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
@@ -3461,17 +3397,13 @@ __attribute__((weak)) void rflex_on_motor_command(void *user,
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_on_motor_0a(void *user, const struct rflex_motor_0a *message,
-                                             const struct rflex_linux_parts *parts) {
+__attribute__((weak)) void rflex_on_motor_0a(void *user, const struct rflex_linux_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_on_motor_0c(void *user, const struct rflex_motor_0c *message,
-                                             const struct rflex_linux_parts *parts) {
+__attribute__((weak)) void rflex_on_motor_0c(void *user, const struct rflex_linux_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
@@ -3483,11 +3415,9 @@ __attribute__((weak)) void rflex_on_start_stop_motor_packets(
     (void)parts;
 }
 
-__attribute__((weak)) void rflex_on_request_joystick_data(
-    void *user, const struct rflex_request_joystick_data *message,
-    const struct rflex_linux_parts *parts) {
+__attribute__((weak)) void rflex_on_request_joystick_data(void *user,
+                                                          const struct rflex_linux_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 

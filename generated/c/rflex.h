@@ -160,7 +160,8 @@ struct rflex_sonar_data_readings {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
+ * no struct, nothing to load, and functions that take none.
  */
 
 /* What the functions below share that read an element of an array. */
@@ -179,20 +180,9 @@ static inline uint16_t rflex_load_u16be(const uint8_t *at) {
 #define RFLEX_REQUEST_SYSTEM_STATUS_SPEC_HASH "a865c2ec5a653a6e30dc475277bfec8bd7c5c11eeb1e4eb98f822f17a97dd739"
 
 /** Requests the system status (lines 52, 55). */
-struct rflex_request_system_status {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define RFLEX_REQUEST_SYSTEM_STATUS_INIT \
-    { 0 }
-
-RFLEX_API enum rflex_result rflex_request_system_status_encode(
-    const struct rflex_request_system_status *message, uint8_t *payload, size_t capacity,
-    size_t *size);
-RFLEX_API enum rflex_result rflex_request_system_status_decode(
-    struct rflex_request_system_status *message, const uint8_t *payload, size_t size);
-RFLEX_API void rflex_request_system_status_load(struct rflex_request_system_status *message,
-                                                const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_request_system_status_encode(uint8_t *payload, size_t capacity,
+                                                               size_t *size);
+RFLEX_API enum rflex_result rflex_request_system_status_decode(const uint8_t *payload, size_t size);
 
 /* --- system_status ---------------------------------------------------------------------------- */
 
@@ -320,18 +310,8 @@ RFLEX_API void rflex_confirm_motor_command_load(struct rflex_confirm_motor_comma
 /**
  * Motor packet 0A, whose purpose the document does not know; sent at startup (lines 101, 105, 295).
  */
-struct rflex_motor_0a {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define RFLEX_MOTOR_0A_INIT \
-    { 0 }
-
-RFLEX_API enum rflex_result rflex_motor_0a_encode(const struct rflex_motor_0a *message,
-                                                  uint8_t *payload, size_t capacity, size_t *size);
-RFLEX_API enum rflex_result rflex_motor_0a_decode(struct rflex_motor_0a *message,
-                                                  const uint8_t *payload, size_t size);
-RFLEX_API void rflex_motor_0a_load(struct rflex_motor_0a *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_motor_0a_encode(uint8_t *payload, size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_motor_0a_decode(const uint8_t *payload, size_t size);
 
 /* --- motor_0c --------------------------------------------------------------------------------- */
 
@@ -346,18 +326,8 @@ RFLEX_API void rflex_motor_0a_load(struct rflex_motor_0a *message, const uint8_t
  * Motor packet 0C, whose purpose the document does not know; sent at startup (lines 108, 111, 114,
  * 296).
  */
-struct rflex_motor_0c {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define RFLEX_MOTOR_0C_INIT \
-    { 0 }
-
-RFLEX_API enum rflex_result rflex_motor_0c_encode(const struct rflex_motor_0c *message,
-                                                  uint8_t *payload, size_t capacity, size_t *size);
-RFLEX_API enum rflex_result rflex_motor_0c_decode(struct rflex_motor_0c *message,
-                                                  const uint8_t *payload, size_t size);
-RFLEX_API void rflex_motor_0c_load(struct rflex_motor_0c *message, const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_motor_0c_encode(uint8_t *payload, size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_motor_0c_decode(const uint8_t *payload, size_t size);
 
 /* --- motor_0c_answer -------------------------------------------------------------------------- */
 
@@ -485,20 +455,9 @@ RFLEX_API void rflex_confirm_start_stop_motor_packets_load(
 #define RFLEX_REQUEST_JOYSTICK_DATA_SPEC_HASH "4178bbc0919d044a811df8ef72739a9374c67dd13cdeaefed2a163b3b4fec5e7"
 
 /** Requests one packet with joystick data (lines 157, 160). */
-struct rflex_request_joystick_data {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define RFLEX_REQUEST_JOYSTICK_DATA_INIT \
-    { 0 }
-
-RFLEX_API enum rflex_result rflex_request_joystick_data_encode(
-    const struct rflex_request_joystick_data *message, uint8_t *payload, size_t capacity,
-    size_t *size);
-RFLEX_API enum rflex_result rflex_request_joystick_data_decode(
-    struct rflex_request_joystick_data *message, const uint8_t *payload, size_t size);
-RFLEX_API void rflex_request_joystick_data_load(struct rflex_request_joystick_data *message,
-                                                const uint8_t *payload);
+RFLEX_API enum rflex_result rflex_request_joystick_data_encode(uint8_t *payload, size_t capacity,
+                                                               size_t *size);
+RFLEX_API enum rflex_result rflex_request_joystick_data_decode(const uint8_t *payload, size_t size);
 
 /* --- joystick_data ---------------------------------------------------------------------------- */
 
@@ -871,11 +830,10 @@ static inline bool rflex_transmitted(struct rflex_transmission *frame) {
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_MAX 11U
 #define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23U
-RFLEX_API enum rflex_result rflex_request_system_status_frame(
-    const struct rflex_request_system_status *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
-RFLEX_API enum rflex_result rflex_request_system_status_send(
-    const struct rflex_request_system_status *message, uint8_t number, rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_request_system_status_frame(uint8_t number, uint8_t *frame,
+                                                              size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_request_system_status_send(uint8_t number, rflex_put put,
+                                                             void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_SYSTEM_STATUS_FRAME_MAX 40U
@@ -916,20 +874,16 @@ RFLEX_API enum rflex_result rflex_confirm_motor_command_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_0A_FRAME_MAX 11U
 #define RFLEX_MOTOR_0A_FRAME_ROOM 23U
-RFLEX_API enum rflex_result rflex_motor_0a_frame(const struct rflex_motor_0a *message,
-                                                 uint8_t number, uint8_t *frame, size_t capacity,
+RFLEX_API enum rflex_result rflex_motor_0a_frame(uint8_t number, uint8_t *frame, size_t capacity,
                                                  size_t *size);
-RFLEX_API enum rflex_result rflex_motor_0a_send(const struct rflex_motor_0a *message,
-                                                uint8_t number, rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_motor_0a_send(uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_0C_FRAME_MAX 11U
 #define RFLEX_MOTOR_0C_FRAME_ROOM 23U
-RFLEX_API enum rflex_result rflex_motor_0c_frame(const struct rflex_motor_0c *message,
-                                                 uint8_t number, uint8_t *frame, size_t capacity,
+RFLEX_API enum rflex_result rflex_motor_0c_frame(uint8_t number, uint8_t *frame, size_t capacity,
                                                  size_t *size);
-RFLEX_API enum rflex_result rflex_motor_0c_send(const struct rflex_motor_0c *message,
-                                                uint8_t number, rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_motor_0c_send(uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_0C_ANSWER_FRAME_MAX 35U
@@ -972,11 +926,10 @@ RFLEX_API enum rflex_result rflex_confirm_start_stop_motor_packets_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_MAX 11U
 #define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_ROOM 23U
-RFLEX_API enum rflex_result rflex_request_joystick_data_frame(
-    const struct rflex_request_joystick_data *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
-RFLEX_API enum rflex_result rflex_request_joystick_data_send(
-    const struct rflex_request_joystick_data *message, uint8_t number, rflex_put put, void *user);
+RFLEX_API enum rflex_result rflex_request_joystick_data_frame(uint8_t number, uint8_t *frame,
+                                                              size_t capacity, size_t *size);
+RFLEX_API enum rflex_result rflex_request_joystick_data_send(uint8_t number, rflex_put put,
+                                                             void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_JOYSTICK_DATA_FRAME_MAX 52U
@@ -1290,8 +1243,7 @@ RFLEX_API void rflex_flex_decoder_flush(struct rflex_flex_decoder *decoder);
  */
 
 /** request_system_status came from linux. */
-void rflex_on_request_system_status(void *user, const struct rflex_request_system_status *message,
-                                    const struct rflex_linux_parts *parts);
+void rflex_on_request_system_status(void *user, const struct rflex_linux_parts *parts);
 
 /** motor_00 came from linux. */
 void rflex_on_motor_00(void *user, const struct rflex_motor_00 *message,
@@ -1302,12 +1254,10 @@ void rflex_on_motor_command(void *user, const struct rflex_motor_command *messag
                             const struct rflex_linux_parts *parts);
 
 /** motor_0a came from linux. */
-void rflex_on_motor_0a(void *user, const struct rflex_motor_0a *message,
-                       const struct rflex_linux_parts *parts);
+void rflex_on_motor_0a(void *user, const struct rflex_linux_parts *parts);
 
 /** motor_0c came from linux. */
-void rflex_on_motor_0c(void *user, const struct rflex_motor_0c *message,
-                       const struct rflex_linux_parts *parts);
+void rflex_on_motor_0c(void *user, const struct rflex_linux_parts *parts);
 
 /** start_stop_motor_packets came from linux. */
 void rflex_on_start_stop_motor_packets(void *user,
@@ -1315,8 +1265,7 @@ void rflex_on_start_stop_motor_packets(void *user,
                                        const struct rflex_linux_parts *parts);
 
 /** request_joystick_data came from linux. */
-void rflex_on_request_joystick_data(void *user, const struct rflex_request_joystick_data *message,
-                                    const struct rflex_linux_parts *parts);
+void rflex_on_request_joystick_data(void *user, const struct rflex_linux_parts *parts);
 
 /** start_stop_sonar_packets came from linux. */
 void rflex_on_start_stop_sonar_packets(void *user,

@@ -67,33 +67,25 @@ RFLEX_DRIVERS_INLINE void rflex_drivers_store_u16be(uint8_t *at, uint16_t value)
 
 /* --- request_system_status -------------------------------------------------------------------- */
 
-RFLEX_DRIVERS_INLINE void rflex_drivers_request_system_status_store(
-    const struct rflex_drivers_request_system_status *message, uint8_t *payload) {
-    (void)message;
+RFLEX_DRIVERS_INLINE void rflex_drivers_request_system_status_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum rflex_drivers_result rflex_drivers_request_system_status_encode(
-    const struct rflex_drivers_request_system_status *message, uint8_t *payload, size_t capacity,
-    size_t *size) {
+enum rflex_drivers_result rflex_drivers_request_system_status_encode(uint8_t *payload,
+                                                                     size_t capacity,
+                                                                     size_t *size) {
     (void)capacity;
-    rflex_drivers_request_system_status_store(message, payload);
+    rflex_drivers_request_system_status_store(payload);
     *size = 0U;
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_request_system_status_load(struct rflex_drivers_request_system_status *message,
-                                              const uint8_t *payload) {
+enum rflex_drivers_result rflex_drivers_request_system_status_decode(const uint8_t *payload,
+                                                                     size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum rflex_drivers_result rflex_drivers_request_system_status_decode(
-    struct rflex_drivers_request_system_status *message, const uint8_t *payload, size_t size) {
     if (size != 0U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
-    rflex_drivers_request_system_status_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
@@ -322,96 +314,67 @@ enum rflex_drivers_result rflex_drivers_confirm_motor_command_decode(
 
 /* --- set_defaults ----------------------------------------------------------------------------- */
 
-RFLEX_DRIVERS_INLINE void rflex_drivers_set_defaults_store(
-    const struct rflex_drivers_set_defaults *message, uint8_t *payload) {
-    (void)message;
+RFLEX_DRIVERS_INLINE void rflex_drivers_set_defaults_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum rflex_drivers_result rflex_drivers_set_defaults_encode(
-    const struct rflex_drivers_set_defaults *message, uint8_t *payload, size_t capacity,
-    size_t *size) {
+enum rflex_drivers_result rflex_drivers_set_defaults_encode(uint8_t *payload, size_t capacity,
+                                                            size_t *size) {
     (void)capacity;
-    rflex_drivers_set_defaults_store(message, payload);
+    rflex_drivers_set_defaults_store(payload);
     *size = 0U;
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_set_defaults_load(struct rflex_drivers_set_defaults *message,
-                                     const uint8_t *payload) {
+enum rflex_drivers_result rflex_drivers_set_defaults_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum rflex_drivers_result rflex_drivers_set_defaults_decode(
-    struct rflex_drivers_set_defaults *message, const uint8_t *payload, size_t size) {
     if (size != 0U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
-    rflex_drivers_set_defaults_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
 /* --- brake_set -------------------------------------------------------------------------------- */
 
-RFLEX_DRIVERS_INLINE void rflex_drivers_brake_set_store(
-    const struct rflex_drivers_brake_set *message, uint8_t *payload) {
-    (void)message;
+RFLEX_DRIVERS_INLINE void rflex_drivers_brake_set_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_set_encode(
-    const struct rflex_drivers_brake_set *message, uint8_t *payload, size_t capacity,
-    size_t *size) {
+enum rflex_drivers_result rflex_drivers_brake_set_encode(uint8_t *payload, size_t capacity,
+                                                         size_t *size) {
     (void)capacity;
-    rflex_drivers_brake_set_store(message, payload);
+    rflex_drivers_brake_set_store(payload);
     *size = 0U;
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_brake_set_load(struct rflex_drivers_brake_set *message, const uint8_t *payload) {
+enum rflex_drivers_result rflex_drivers_brake_set_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum rflex_drivers_result rflex_drivers_brake_set_decode(struct rflex_drivers_brake_set *message,
-                                                         const uint8_t *payload, size_t size) {
     if (size != 0U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
-    rflex_drivers_brake_set_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
 /* --- brake_release ---------------------------------------------------------------------------- */
 
-RFLEX_DRIVERS_INLINE void rflex_drivers_brake_release_store(
-    const struct rflex_drivers_brake_release *message, uint8_t *payload) {
-    (void)message;
+RFLEX_DRIVERS_INLINE void rflex_drivers_brake_release_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_encode(
-    const struct rflex_drivers_brake_release *message, uint8_t *payload, size_t capacity,
-    size_t *size) {
+enum rflex_drivers_result rflex_drivers_brake_release_encode(uint8_t *payload, size_t capacity,
+                                                             size_t *size) {
     (void)capacity;
-    rflex_drivers_brake_release_store(message, payload);
+    rflex_drivers_brake_release_store(payload);
     *size = 0U;
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_brake_release_load(struct rflex_drivers_brake_release *message,
-                                      const uint8_t *payload) {
+enum rflex_drivers_result rflex_drivers_brake_release_decode(const uint8_t *payload, size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum rflex_drivers_result rflex_drivers_brake_release_decode(
-    struct rflex_drivers_brake_release *message, const uint8_t *payload, size_t size) {
     if (size != 0U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
-    rflex_drivers_brake_release_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
@@ -564,33 +527,25 @@ enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_decode(
 
 /* --- request_joystick_data -------------------------------------------------------------------- */
 
-RFLEX_DRIVERS_INLINE void rflex_drivers_request_joystick_data_store(
-    const struct rflex_drivers_request_joystick_data *message, uint8_t *payload) {
-    (void)message;
+RFLEX_DRIVERS_INLINE void rflex_drivers_request_joystick_data_store(uint8_t *payload) {
     (void)payload;
 }
 
-enum rflex_drivers_result rflex_drivers_request_joystick_data_encode(
-    const struct rflex_drivers_request_joystick_data *message, uint8_t *payload, size_t capacity,
-    size_t *size) {
+enum rflex_drivers_result rflex_drivers_request_joystick_data_encode(uint8_t *payload,
+                                                                     size_t capacity,
+                                                                     size_t *size) {
     (void)capacity;
-    rflex_drivers_request_joystick_data_store(message, payload);
+    rflex_drivers_request_joystick_data_store(payload);
     *size = 0U;
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_request_joystick_data_load(struct rflex_drivers_request_joystick_data *message,
-                                              const uint8_t *payload) {
+enum rflex_drivers_result rflex_drivers_request_joystick_data_decode(const uint8_t *payload,
+                                                                     size_t size) {
     (void)payload;
-    message->unused = 0U;
-}
-
-enum rflex_drivers_result rflex_drivers_request_joystick_data_decode(
-    struct rflex_drivers_request_joystick_data *message, const uint8_t *payload, size_t size) {
     if (size != 0U) {
         return RFLEX_DRIVERS_ERROR_SIZE;
     }
-    rflex_drivers_request_joystick_data_load(message, payload);
     return RFLEX_DRIVERS_OK;
 }
 
@@ -1407,9 +1362,7 @@ static void rflex_drivers_write_u16be(struct rflex_drivers_writer *writer, uint1
 }
 
 RFLEX_DRIVERS_INLINE void rflex_drivers_request_system_status_put(
-    const struct rflex_drivers_request_system_status *message,
     struct rflex_drivers_writer *writer) {
-    (void)message;
     (void)writer;
 }
 
@@ -1450,21 +1403,15 @@ RFLEX_DRIVERS_INLINE void rflex_drivers_confirm_motor_command_put(
     rflex_drivers_write(writer, message->axis);
 }
 
-RFLEX_DRIVERS_INLINE void rflex_drivers_set_defaults_put(
-    const struct rflex_drivers_set_defaults *message, struct rflex_drivers_writer *writer) {
-    (void)message;
+RFLEX_DRIVERS_INLINE void rflex_drivers_set_defaults_put(struct rflex_drivers_writer *writer) {
     (void)writer;
 }
 
-RFLEX_DRIVERS_INLINE void rflex_drivers_brake_set_put(const struct rflex_drivers_brake_set *message,
-                                                      struct rflex_drivers_writer *writer) {
-    (void)message;
+RFLEX_DRIVERS_INLINE void rflex_drivers_brake_set_put(struct rflex_drivers_writer *writer) {
     (void)writer;
 }
 
-RFLEX_DRIVERS_INLINE void rflex_drivers_brake_release_put(
-    const struct rflex_drivers_brake_release *message, struct rflex_drivers_writer *writer) {
-    (void)message;
+RFLEX_DRIVERS_INLINE void rflex_drivers_brake_release_put(struct rflex_drivers_writer *writer) {
     (void)writer;
 }
 
@@ -1500,9 +1447,7 @@ RFLEX_DRIVERS_INLINE void rflex_drivers_confirm_start_stop_motor_packets_put(
 }
 
 RFLEX_DRIVERS_INLINE void rflex_drivers_request_joystick_data_put(
-    const struct rflex_drivers_request_joystick_data *message,
     struct rflex_drivers_writer *writer) {
-    (void)message;
     (void)writer;
 }
 
@@ -1595,21 +1540,20 @@ RFLEX_DRIVERS_INLINE void rflex_drivers_ir_report_put(const struct rflex_drivers
     rflex_drivers_write_bytes(writer, message->data, message->data_size);
 }
 
-enum rflex_drivers_result rflex_drivers_request_system_status_frame(
-    const struct rflex_drivers_request_system_status *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+enum rflex_drivers_result rflex_drivers_request_system_status_frame(uint8_t number, uint8_t *frame,
+                                                                    size_t capacity, size_t *size) {
     const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
-    rflex_drivers_request_system_status_store(message, rflex_drivers_linux_payload(frame, payload));
+    rflex_drivers_request_system_status_store(rflex_drivers_linux_payload(frame, payload));
     *size = rflex_drivers_linux_wrap(frame, payload, 0x01U, 0x01U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_request_system_status_send(
-    const struct rflex_drivers_request_system_status *message, uint8_t number,
-    rflex_drivers_put put, void *user) {
+enum rflex_drivers_result rflex_drivers_request_system_status_send(uint8_t number,
+                                                                   rflex_drivers_put put,
+                                                                   void *user) {
     struct rflex_drivers_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1617,7 +1561,7 @@ enum rflex_drivers_result rflex_drivers_request_system_status_send(
     writer.sender = 0;
     writer.flags = 0;
     rflex_drivers_linux_send_head(&writer, payload, 0x01U, 0x01U, number);
-    rflex_drivers_request_system_status_put(message, &writer);
+    rflex_drivers_request_system_status_put(&writer);
     rflex_drivers_linux_send_tail(&writer, payload, 0x01U, 0x01U, number);
     return RFLEX_DRIVERS_OK;
 }
@@ -1767,21 +1711,19 @@ enum rflex_drivers_result rflex_drivers_confirm_motor_command_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_set_defaults_frame(
-    const struct rflex_drivers_set_defaults *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+enum rflex_drivers_result rflex_drivers_set_defaults_frame(uint8_t number, uint8_t *frame,
+                                                           size_t capacity, size_t *size) {
     const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
-    rflex_drivers_set_defaults_store(message, rflex_drivers_linux_payload(frame, payload));
+    rflex_drivers_set_defaults_store(rflex_drivers_linux_payload(frame, payload));
     *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0AU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_set_defaults_send(
-    const struct rflex_drivers_set_defaults *message, uint8_t number, rflex_drivers_put put,
-    void *user) {
+enum rflex_drivers_result rflex_drivers_set_defaults_send(uint8_t number, rflex_drivers_put put,
+                                                          void *user) {
     struct rflex_drivers_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1789,26 +1731,24 @@ enum rflex_drivers_result rflex_drivers_set_defaults_send(
     writer.sender = 0;
     writer.flags = 0;
     rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x0AU, number);
-    rflex_drivers_set_defaults_put(message, &writer);
+    rflex_drivers_set_defaults_put(&writer);
     rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x0AU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_set_frame(
-    const struct rflex_drivers_brake_set *message, uint8_t number, uint8_t *frame, size_t capacity,
-    size_t *size) {
+enum rflex_drivers_result rflex_drivers_brake_set_frame(uint8_t number, uint8_t *frame,
+                                                        size_t capacity, size_t *size) {
     const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
-    rflex_drivers_brake_set_store(message, rflex_drivers_linux_payload(frame, payload));
+    rflex_drivers_brake_set_store(rflex_drivers_linux_payload(frame, payload));
     *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0BU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_set_send(
-    const struct rflex_drivers_brake_set *message, uint8_t number, rflex_drivers_put put,
-    void *user) {
+enum rflex_drivers_result rflex_drivers_brake_set_send(uint8_t number, rflex_drivers_put put,
+                                                       void *user) {
     struct rflex_drivers_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1816,26 +1756,24 @@ enum rflex_drivers_result rflex_drivers_brake_set_send(
     writer.sender = 0;
     writer.flags = 0;
     rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x0BU, number);
-    rflex_drivers_brake_set_put(message, &writer);
+    rflex_drivers_brake_set_put(&writer);
     rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x0BU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_frame(
-    const struct rflex_drivers_brake_release *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+enum rflex_drivers_result rflex_drivers_brake_release_frame(uint8_t number, uint8_t *frame,
+                                                            size_t capacity, size_t *size) {
     const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
-    rflex_drivers_brake_release_store(message, rflex_drivers_linux_payload(frame, payload));
+    rflex_drivers_brake_release_store(rflex_drivers_linux_payload(frame, payload));
     *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_send(
-    const struct rflex_drivers_brake_release *message, uint8_t number, rflex_drivers_put put,
-    void *user) {
+enum rflex_drivers_result rflex_drivers_brake_release_send(uint8_t number, rflex_drivers_put put,
+                                                           void *user) {
     struct rflex_drivers_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1843,7 +1781,7 @@ enum rflex_drivers_result rflex_drivers_brake_release_send(
     writer.sender = 0;
     writer.flags = 0;
     rflex_drivers_linux_send_head(&writer, payload, 0x02U, 0x0CU, number);
-    rflex_drivers_brake_release_put(message, &writer);
+    rflex_drivers_brake_release_put(&writer);
     rflex_drivers_linux_send_tail(&writer, payload, 0x02U, 0x0CU, number);
     return RFLEX_DRIVERS_OK;
 }
@@ -1959,21 +1897,20 @@ enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_request_joystick_data_frame(
-    const struct rflex_drivers_request_joystick_data *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+enum rflex_drivers_result rflex_drivers_request_joystick_data_frame(uint8_t number, uint8_t *frame,
+                                                                    size_t capacity, size_t *size) {
     const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
         return RFLEX_DRIVERS_ERROR_SPACE;
     }
-    rflex_drivers_request_joystick_data_store(message, rflex_drivers_linux_payload(frame, payload));
+    rflex_drivers_request_joystick_data_store(rflex_drivers_linux_payload(frame, payload));
     *size = rflex_drivers_linux_wrap(frame, payload, 0x03U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_request_joystick_data_send(
-    const struct rflex_drivers_request_joystick_data *message, uint8_t number,
-    rflex_drivers_put put, void *user) {
+enum rflex_drivers_result rflex_drivers_request_joystick_data_send(uint8_t number,
+                                                                   rflex_drivers_put put,
+                                                                   void *user) {
     struct rflex_drivers_writer writer;
     const size_t payload = 0U;
     writer.put = put;
@@ -1981,7 +1918,7 @@ enum rflex_drivers_result rflex_drivers_request_joystick_data_send(
     writer.sender = 0;
     writer.flags = 0;
     rflex_drivers_linux_send_head(&writer, payload, 0x03U, 0x00U, number);
-    rflex_drivers_request_joystick_data_put(message, &writer);
+    rflex_drivers_request_joystick_data_put(&writer);
     rflex_drivers_linux_send_tail(&writer, payload, 0x03U, 0x00U, number);
     return RFLEX_DRIVERS_OK;
 }
@@ -3798,12 +3735,9 @@ void rflex_drivers_flex_decoder_flush(struct rflex_drivers_flex_decoder *decoder
 
 void rflex_drivers_linux_dispatch(void *user, const struct rflex_drivers_linux_event *event) {
     switch (event->message) {
-    case RFLEX_DRIVERS_MESSAGE_REQUEST_SYSTEM_STATUS: {
-        struct rflex_drivers_request_system_status message;
-        rflex_drivers_request_system_status_load(&message, event->payload);
-        rflex_drivers_on_request_system_status(user, &message, &event->parts);
+    case RFLEX_DRIVERS_MESSAGE_REQUEST_SYSTEM_STATUS:
+        rflex_drivers_on_request_system_status(user, &event->parts);
         break;
-    }
     case RFLEX_DRIVERS_MESSAGE_AXIS_GET_SYSTEM: {
         struct rflex_drivers_axis_get_system message;
         rflex_drivers_axis_get_system_load(&message, event->payload);
@@ -3816,36 +3750,24 @@ void rflex_drivers_linux_dispatch(void *user, const struct rflex_drivers_linux_e
         rflex_drivers_on_motor_command(user, &message, &event->parts);
         break;
     }
-    case RFLEX_DRIVERS_MESSAGE_SET_DEFAULTS: {
-        struct rflex_drivers_set_defaults message;
-        rflex_drivers_set_defaults_load(&message, event->payload);
-        rflex_drivers_on_set_defaults(user, &message, &event->parts);
+    case RFLEX_DRIVERS_MESSAGE_SET_DEFAULTS:
+        rflex_drivers_on_set_defaults(user, &event->parts);
         break;
-    }
-    case RFLEX_DRIVERS_MESSAGE_BRAKE_SET: {
-        struct rflex_drivers_brake_set message;
-        rflex_drivers_brake_set_load(&message, event->payload);
-        rflex_drivers_on_brake_set(user, &message, &event->parts);
+    case RFLEX_DRIVERS_MESSAGE_BRAKE_SET:
+        rflex_drivers_on_brake_set(user, &event->parts);
         break;
-    }
-    case RFLEX_DRIVERS_MESSAGE_BRAKE_RELEASE: {
-        struct rflex_drivers_brake_release message;
-        rflex_drivers_brake_release_load(&message, event->payload);
-        rflex_drivers_on_brake_release(user, &message, &event->parts);
+    case RFLEX_DRIVERS_MESSAGE_BRAKE_RELEASE:
+        rflex_drivers_on_brake_release(user, &event->parts);
         break;
-    }
     case RFLEX_DRIVERS_MESSAGE_START_STOP_MOTOR_PACKETS: {
         struct rflex_drivers_start_stop_motor_packets message;
         rflex_drivers_start_stop_motor_packets_load(&message, event->payload);
         rflex_drivers_on_start_stop_motor_packets(user, &message, &event->parts);
         break;
     }
-    case RFLEX_DRIVERS_MESSAGE_REQUEST_JOYSTICK_DATA: {
-        struct rflex_drivers_request_joystick_data message;
-        rflex_drivers_request_joystick_data_load(&message, event->payload);
-        rflex_drivers_on_request_joystick_data(user, &message, &event->parts);
+    case RFLEX_DRIVERS_MESSAGE_REQUEST_JOYSTICK_DATA:
+        rflex_drivers_on_request_joystick_data(user, &event->parts);
         break;
-    }
     case RFLEX_DRIVERS_MESSAGE_START_STOP_SONAR_PACKETS: {
         struct rflex_drivers_start_stop_sonar_packets message;
         rflex_drivers_start_stop_sonar_packets_load(&message, event->payload);
@@ -3969,10 +3891,8 @@ void rflex_drivers_flex_dispatch(void *user, const struct rflex_drivers_flex_eve
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(RFLEX_DRIVERS_NO_WEAK)
 
 __attribute__((weak)) void rflex_drivers_on_request_system_status(
-    void *user, const struct rflex_drivers_request_system_status *message,
-    const struct rflex_drivers_linux_parts *parts) {
+    void *user, const struct rflex_drivers_linux_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
@@ -3993,26 +3913,20 @@ __attribute__((weak)) void rflex_drivers_on_motor_command(
 }
 
 __attribute__((weak)) void rflex_drivers_on_set_defaults(
-    void *user, const struct rflex_drivers_set_defaults *message,
-    const struct rflex_drivers_linux_parts *parts) {
+    void *user, const struct rflex_drivers_linux_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
 __attribute__((weak)) void rflex_drivers_on_brake_set(
-    void *user, const struct rflex_drivers_brake_set *message,
-    const struct rflex_drivers_linux_parts *parts) {
+    void *user, const struct rflex_drivers_linux_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
 __attribute__((weak)) void rflex_drivers_on_brake_release(
-    void *user, const struct rflex_drivers_brake_release *message,
-    const struct rflex_drivers_linux_parts *parts) {
+    void *user, const struct rflex_drivers_linux_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 
@@ -4025,10 +3939,8 @@ __attribute__((weak)) void rflex_drivers_on_start_stop_motor_packets(
 }
 
 __attribute__((weak)) void rflex_drivers_on_request_joystick_data(
-    void *user, const struct rflex_drivers_request_joystick_data *message,
-    const struct rflex_drivers_linux_parts *parts) {
+    void *user, const struct rflex_drivers_linux_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
 }
 

@@ -165,7 +165,8 @@ struct rflex_drivers_sonar_data_readings {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
+ * no struct, nothing to load, and functions that take none.
  */
 
 /* What the functions below share that read an element of an array. */
@@ -184,20 +185,10 @@ static inline uint16_t rflex_drivers_load_u16be(const uint8_t *at) {
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_SPEC_HASH "a865c2ec5a653a6e30dc475277bfec8bd7c5c11eeb1e4eb98f822f17a97dd739"
 
 /** Requests the system status (003_037af2f07b705118.txt, lines 52, 55). */
-struct rflex_drivers_request_system_status {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_INIT \
-    { 0 }
-
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_encode(
-    const struct rflex_drivers_request_system_status *message, uint8_t *payload, size_t capacity,
-    size_t *size);
+    uint8_t *payload, size_t capacity, size_t *size);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_decode(
-    struct rflex_drivers_request_system_status *message, const uint8_t *payload, size_t size);
-RFLEX_DRIVERS_API void rflex_drivers_request_system_status_load(
-    struct rflex_drivers_request_system_status *message, const uint8_t *payload);
+    const uint8_t *payload, size_t size);
 
 /* --- system_status ---------------------------------------------------------------------------- */
 
@@ -372,20 +363,11 @@ RFLEX_DRIVERS_API void rflex_drivers_confirm_motor_command_load(
 #define RFLEX_DRIVERS_SET_DEFAULTS_SPEC_HASH "027e7f79090619562eb1962bb56f3c748e71a45fe39608c06671a8e708a5da79"
 
 /** Sets the motor defaults (003_037af2f07b705118.txt, lines 101, 105, 295). */
-struct rflex_drivers_set_defaults {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define RFLEX_DRIVERS_SET_DEFAULTS_INIT \
-    { 0 }
-
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_encode(
-    const struct rflex_drivers_set_defaults *message, uint8_t *payload, size_t capacity,
-    size_t *size);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_encode(uint8_t *payload,
+                                                                              size_t capacity,
+                                                                              size_t *size);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_decode(
-    struct rflex_drivers_set_defaults *message, const uint8_t *payload, size_t size);
-RFLEX_DRIVERS_API void rflex_drivers_set_defaults_load(struct rflex_drivers_set_defaults *message,
-                                                       const uint8_t *payload);
+    const uint8_t *payload, size_t size);
 
 /* --- brake_set -------------------------------------------------------------------------------- */
 
@@ -397,19 +379,11 @@ RFLEX_DRIVERS_API void rflex_drivers_set_defaults_load(struct rflex_drivers_set_
 #define RFLEX_DRIVERS_BRAKE_SET_SPEC_HASH "871d16df5645c08defe12cafbc1cdefeb39931838cf57ee00af91f9c49b9a1a3"
 
 /** Sets the brake (rflex-protocol.txt, MOT_BRAKE_SET). */
-struct rflex_drivers_brake_set {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define RFLEX_DRIVERS_BRAKE_SET_INIT \
-    { 0 }
-
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_encode(
-    const struct rflex_drivers_brake_set *message, uint8_t *payload, size_t capacity, size_t *size);
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_decode(
-    struct rflex_drivers_brake_set *message, const uint8_t *payload, size_t size);
-RFLEX_DRIVERS_API void rflex_drivers_brake_set_load(struct rflex_drivers_brake_set *message,
-                                                    const uint8_t *payload);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_encode(uint8_t *payload,
+                                                                           size_t capacity,
+                                                                           size_t *size);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_decode(const uint8_t *payload,
+                                                                           size_t size);
 
 /* --- brake_release ---------------------------------------------------------------------------- */
 
@@ -421,20 +395,11 @@ RFLEX_DRIVERS_API void rflex_drivers_brake_set_load(struct rflex_drivers_brake_s
 #define RFLEX_DRIVERS_BRAKE_RELEASE_SPEC_HASH "22b1357d8ecf36c73e83d8604b04d65aa7088ab80a32fa5d0f58c43a00944e43"
 
 /** Releases the brake (003_037af2f07b705118.txt, lines 108, 111, 114, 296). */
-struct rflex_drivers_brake_release {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define RFLEX_DRIVERS_BRAKE_RELEASE_INIT \
-    { 0 }
-
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_encode(
-    const struct rflex_drivers_brake_release *message, uint8_t *payload, size_t capacity,
-    size_t *size);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_encode(uint8_t *payload,
+                                                                               size_t capacity,
+                                                                               size_t *size);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_decode(
-    struct rflex_drivers_brake_release *message, const uint8_t *payload, size_t size);
-RFLEX_DRIVERS_API void rflex_drivers_brake_release_load(struct rflex_drivers_brake_release *message,
-                                                        const uint8_t *payload);
+    const uint8_t *payload, size_t size);
 
 /* --- brake_release_answer --------------------------------------------------------------------- */
 
@@ -580,20 +545,10 @@ RFLEX_DRIVERS_API void rflex_drivers_confirm_start_stop_motor_packets_load(
 #define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_SPEC_HASH "4178bbc0919d044a811df8ef72739a9374c67dd13cdeaefed2a163b3b4fec5e7"
 
 /** Requests one packet with joystick data (003_037af2f07b705118.txt, lines 157, 160). */
-struct rflex_drivers_request_joystick_data {
-    /** There are no fields, and C has no empty structs. */
-    uint8_t unused;
-};
-#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_INIT \
-    { 0 }
-
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_encode(
-    const struct rflex_drivers_request_joystick_data *message, uint8_t *payload, size_t capacity,
-    size_t *size);
+    uint8_t *payload, size_t capacity, size_t *size);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_decode(
-    struct rflex_drivers_request_joystick_data *message, const uint8_t *payload, size_t size);
-RFLEX_DRIVERS_API void rflex_drivers_request_joystick_data_load(
-    struct rflex_drivers_request_joystick_data *message, const uint8_t *payload);
+    const uint8_t *payload, size_t size);
 
 /* --- joystick_data ---------------------------------------------------------------------------- */
 
@@ -1055,11 +1010,9 @@ static inline bool rflex_drivers_transmitted(struct rflex_drivers_transmission *
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_MAX 13U
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23U
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_frame(
-    const struct rflex_drivers_request_system_status *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    uint8_t number, uint8_t *frame, size_t capacity, size_t *size);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_send(
-    const struct rflex_drivers_request_system_status *message, uint8_t number,
-    rflex_drivers_put put, void *user);
+    uint8_t number, rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_SYSTEM_STATUS_FRAME_MAX 38U
@@ -1114,32 +1067,35 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_motor_command_
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_MAX 11U
 #define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_ROOM 23U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_frame(
-    const struct rflex_drivers_set_defaults *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_send(
-    const struct rflex_drivers_set_defaults *message, uint8_t number, rflex_drivers_put put,
-    void *user);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_frame(uint8_t number,
+                                                                             uint8_t *frame,
+                                                                             size_t capacity,
+                                                                             size_t *size);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_send(uint8_t number,
+                                                                            rflex_drivers_put put,
+                                                                            void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_BRAKE_SET_FRAME_MAX 11U
 #define RFLEX_DRIVERS_BRAKE_SET_FRAME_ROOM 23U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_frame(
-    const struct rflex_drivers_brake_set *message, uint8_t number, uint8_t *frame, size_t capacity,
-    size_t *size);
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_send(
-    const struct rflex_drivers_brake_set *message, uint8_t number, rflex_drivers_put put,
-    void *user);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_frame(uint8_t number,
+                                                                          uint8_t *frame,
+                                                                          size_t capacity,
+                                                                          size_t *size);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_send(uint8_t number,
+                                                                         rflex_drivers_put put,
+                                                                         void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_MAX 11U
 #define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_ROOM 23U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_frame(
-    const struct rflex_drivers_brake_release *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_send(
-    const struct rflex_drivers_brake_release *message, uint8_t number, rflex_drivers_put put,
-    void *user);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_frame(uint8_t number,
+                                                                              uint8_t *frame,
+                                                                              size_t capacity,
+                                                                              size_t *size);
+RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_send(uint8_t number,
+                                                                             rflex_drivers_put put,
+                                                                             void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_FRAME_MAX 35U
@@ -1185,11 +1141,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_mot
 #define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_MAX 11U
 #define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_ROOM 23U
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_frame(
-    const struct rflex_drivers_request_joystick_data *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    uint8_t number, uint8_t *frame, size_t capacity, size_t *size);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_send(
-    const struct rflex_drivers_request_joystick_data *message, uint8_t number,
-    rflex_drivers_put put, void *user);
+    uint8_t number, rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_JOYSTICK_DATA_FRAME_MAX 50U
@@ -1536,9 +1490,8 @@ RFLEX_DRIVERS_API void rflex_drivers_flex_decoder_flush(struct rflex_drivers_fle
  */
 
 /** request_system_status came from linux. */
-void rflex_drivers_on_request_system_status(
-    void *user, const struct rflex_drivers_request_system_status *message,
-    const struct rflex_drivers_linux_parts *parts);
+void rflex_drivers_on_request_system_status(void *user,
+                                            const struct rflex_drivers_linux_parts *parts);
 
 /** axis_get_system came from linux. */
 void rflex_drivers_on_axis_get_system(void *user,
@@ -1550,16 +1503,13 @@ void rflex_drivers_on_motor_command(void *user, const struct rflex_drivers_motor
                                     const struct rflex_drivers_linux_parts *parts);
 
 /** set_defaults came from linux. */
-void rflex_drivers_on_set_defaults(void *user, const struct rflex_drivers_set_defaults *message,
-                                   const struct rflex_drivers_linux_parts *parts);
+void rflex_drivers_on_set_defaults(void *user, const struct rflex_drivers_linux_parts *parts);
 
 /** brake_set came from linux. */
-void rflex_drivers_on_brake_set(void *user, const struct rflex_drivers_brake_set *message,
-                                const struct rflex_drivers_linux_parts *parts);
+void rflex_drivers_on_brake_set(void *user, const struct rflex_drivers_linux_parts *parts);
 
 /** brake_release came from linux. */
-void rflex_drivers_on_brake_release(void *user, const struct rflex_drivers_brake_release *message,
-                                    const struct rflex_drivers_linux_parts *parts);
+void rflex_drivers_on_brake_release(void *user, const struct rflex_drivers_linux_parts *parts);
 
 /** start_stop_motor_packets came from linux. */
 void rflex_drivers_on_start_stop_motor_packets(
@@ -1567,9 +1517,8 @@ void rflex_drivers_on_start_stop_motor_packets(
     const struct rflex_drivers_linux_parts *parts);
 
 /** request_joystick_data came from linux. */
-void rflex_drivers_on_request_joystick_data(
-    void *user, const struct rflex_drivers_request_joystick_data *message,
-    const struct rflex_drivers_linux_parts *parts);
+void rflex_drivers_on_request_joystick_data(void *user,
+                                            const struct rflex_drivers_linux_parts *parts);
 
 /** start_stop_sonar_packets came from linux. */
 void rflex_drivers_on_start_stop_sonar_packets(

@@ -89,7 +89,8 @@ enum uherobot_message {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
+ * no struct, nothing to load, and functions that take none.
  */
 
 /* --- motors_servos_leds ----------------------------------------------------------------------- */

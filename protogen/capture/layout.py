@@ -111,8 +111,13 @@ def message_record(message: Message, taken: Sequence[str] = ()) -> Record:
     return record(_columns(message.plan.steps, taken, taken))
 
 
-def struct_sizes(message: Message) -> tuple[int, int]:
-    """Bytes of a message's struct in C: on 32-bit machines, and on an AVR, which aligns nothing."""
+def struct_sizes(message: Message) -> tuple[int, int] | None:
+    """Bytes of a message's struct in C: on 32-bit machines, and on an AVR, which aligns nothing.
+
+    None where no field has a value: there is no struct.
+    """
+    if not message.plan.holds_values:
+        return None
     record = message_record(message)
     return record.size, _packed_size(record)
 

@@ -133,7 +133,7 @@ def _messages(unit: Unit) -> list[_Owner]:
         own = [frame for frame in frames if frame.message.name == message.name]
         roles += [("frame", frame.called.function) for frame in own]
         roles += [("send", frame.called.send) for frame in own if frame.sends]
-        owners.append(_Owner(message.name, tuple(roles), message.struct))
+        owners.append(_Owner(message.name, tuple(roles), message.struct or None))
     return owners
 
 

@@ -58,6 +58,7 @@ class DrivenMessage(msgspec.Struct, frozen=True):
 
     model: Message
     struct: str
+    """Empty where no field has a value: functions take no message."""
     exchange: str
     """The function that takes or writes the struct's values."""
     encode: str
@@ -71,6 +72,7 @@ class DrivenFrame(msgspec.Struct, frozen=True):
 
     index: int
     message: int
+    has_struct: bool
     function: str
     send: str
     """Empty where frames can't be sent byte by byte."""

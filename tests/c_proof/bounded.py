@@ -25,7 +25,7 @@ uint32_t nondet_uint32_t(void);
 size_t nondet_size_t(void);
 """
 _DECODE = re.compile(
-    r"enum \w+ (\w+)_decode\( ?struct (\w+) \*message, const uint8_t \*payload, "
+    r"enum \w+ (\w+)_decode\( ?(?:struct (\w+) \*message, )?const uint8_t \*payload, "
     r"size_t size((?:, \w+ \w+)*)\);"
 )
 _GREATEST = re.compile(r"#define (\w+)_PAYLOAD_MAX (\d+)[uU]")
@@ -33,9 +33,9 @@ _PAYLOAD = """
 static void prove_{prefix}_decode(void) {{
     uint8_t bytes[{room}]; /* Any bytes, of which the payload is the last ones. */
     const size_t size = nondet_size_t();
-{held}    struct {struct} message;
+{held}    {message}
     __ESBMC_assume(size <= {room}U);
-    (void){prefix}_decode(&message, &bytes[{room}U - size], size{arguments});
+    (void){prefix}_decode({given}&bytes[{room}U - size], size{arguments});
 }}
 """
 _ARRAY = re.compile(r"^    (\w+) (\w+)\[(\d+)\];\n", re.MULTILINE)
@@ -143,7 +143,8 @@ def decode_harness(protocol: Protocol, header: str, source: str, message: str) -
     names = re.findall(r"(\w+) (\w+)", held)
     text = _head(protocol, source) + _PAYLOAD.format(
         prefix=prefix,
-        struct=struct,
+        message=f"struct {struct} message;" if struct else "",
+        given="&message, " if struct else "",
         room=greatest[prefix.upper()] + MORE,
         held="".join(f"    const {type_} {name} = nondet_{type_}();\n" for type_, name in names),
         arguments="".join(f", {name}" for _, name in names),

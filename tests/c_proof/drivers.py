@@ -24,7 +24,7 @@ STATES = "-eva-slevel=1200"
 PATHS = 4000
 """States that are followed alone at one place."""
 _DECODE = re.compile(
-    r"enum \w+ (\w+)_decode\( ?struct (\w+) \*message, const uint8_t \*payload, "
+    r"enum \w+ (\w+)_decode\( ?(?:struct (\w+) \*message, )?const uint8_t \*payload, "
     r"size_t size((?:, \w+ \w+)*)\);"
 )
 _GREATEST = re.compile(r"#define (\w+)_PAYLOAD_MAX (\d+)[uU]")
@@ -146,9 +146,9 @@ static void prove_{prefix}_decode_of(size_t size) {{
     uint8_t bytes[{room}];
     /* The payload ends where the array does, so that no byte behind it can be read. */
     const uint8_t *const payload = &bytes[sizeof bytes - size];
-    struct {struct} message;
+    {message}
     Frama_C_make_unknown((char *)bytes, sizeof bytes);
-{splits}    (void){prefix}_decode(&message, payload, size{held});
+{splits}    (void){prefix}_decode({given}payload, size{held});
 }}
 
 static void prove_{prefix}_decode(void) {{
@@ -202,8 +202,10 @@ def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
             _HELD.format(type=type_, index=index, any=_ANY[type_])
             for index, type_ in enumerate(types)
         )
-        given = {"prefix": prefix, "struct": struct, "room": room, "steps": room + 2}
+        given = {"prefix": prefix, "room": room, "steps": room + 2}
         given["held"] = "".join(f", held_{index}" for index in range(len(types)))
+        given["message"] = f"struct {struct} message;" if struct else ""
+        given["given"] = "&message, " if struct else ""
         parts.append(_PAYLOAD.format(splits=splits, **given))
         proofs.append(f"{prefix}_decode")
     # Bytes that are copied are all alike: to follow each of them takes most of the time.

@@ -15,7 +15,7 @@ from protogen.model.protocol import Protocol
 GREATEST = 64
 """Greater payloads take minutes: EVA follows each of their sizes, and each byte that is stuffed."""
 _ENCODERS = re.compile(
-    r"enum \w+ ((\w+)_(encode|frame|send))\( ?const struct (\w+) \*message, ([^)]*)\);"
+    r"enum \w+ ((\w+)_(encode|frame|send))\( ?(?:const struct (\w+) \*message, )?([^)]*)\);"
 )
 _ROOM = re.compile(r"#define (\w+_(?:PAYLOAD_MAX|FRAME_ROOM)) (\d+)[uU]")
 _STRUCT = re.compile(r"^struct (\w+) \{\n((?:.*\n)*?)\};\n", re.MULTILINE)
@@ -28,16 +28,15 @@ _WRAP = re.compile(r"^( +)for \(; from < stuffed; from\+\+\) \{\n", re.MULTILINE
 _BUFFER = """
 static void prove_{function}_into(bool fits) {{
     uint8_t bytes[{room} + 1]; /* C has no empty arrays. */
-    struct {struct} message;
-    size_t size = 0;
-{values}    const size_t payload = {payload};
+{values}    size_t size = 0;
+    const size_t payload = {payload};
     const size_t needed = payload;
     const size_t asked = {asks};
     const size_t most = payload <= {greatest} && asked <= {room} ? asked : {room};
     const size_t capacity = fits || most == 0 ? most : Frama_C_unsigned_long_interval(0, most - 1);
     (void)needed;
     /* It ends where the array does, so that no byte behind it can be written. */
-    if ({function}(&message, {parts}&bytes[sizeof bytes - capacity], capacity, &size) == 0) {{
+    if ({function}({given}{parts}&bytes[sizeof bytes - capacity], capacity, &size) == 0) {{
         //@ assert size <= capacity;
     }}
 }}
@@ -49,9 +48,8 @@ static void prove_{function}(void) {{
 """
 _STREAM = """
 static void prove_{function}(void) {{
-    struct {struct} message;
-    uint8_t last = 0;
-{values}    (void){function}(&message, {parts}put, &last);
+{values}    uint8_t last = 0;
+    (void){function}({given}{parts}put, &last);
 }}
 """
 _PUT = """
@@ -72,13 +70,14 @@ def send_driver(protocol: Protocol, header: str, source: str) -> Driver:
         greatest = rooms[f"{prefix.upper()}_PAYLOAD_MAX"]
         if greatest > GREATEST:
             continue
-        values = ["Frama_C_make_unknown((char *)&message, sizeof message);"]
-        values += [f"message.{name} = any != 0;" for name in truths[struct]]
+        values = [f"struct {struct} message;"] if struct else []
+        values += ["Frama_C_make_unknown((char *)&message, sizeof message);"] if struct else []
+        values += [f"message.{name} = any != 0;" for name in truths.get(struct, ())]
         for count in sorted(set(_COUNT.findall(measure))):
             values += [f"//@ split message.{count};", ";"]
         given = {
             "function": function,
-            "struct": struct,
+            "given": "&message, " if struct else "",
             "parts": "".join(f"({type_})any, " for type_ in _parts_of(arguments)),
             "values": "".join(f"    {value}\n" for value in values),
         }

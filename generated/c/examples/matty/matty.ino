@@ -5,10 +5,8 @@
 static struct matty_pc_decoder decoder;
 static bool lit = false;
 
-extern "C" void matty_on_stop(void *user, const struct matty_stop *message,
-                              const struct matty_pc_parts *parts) {
+extern "C" void matty_on_stop(void *user, const struct matty_pc_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
     lit = !lit;
     digitalWrite(LED_BUILTIN, lit ? HIGH : LOW);

@@ -5,11 +5,8 @@
 static struct rflex_linux_decoder decoder;
 static bool lit = false;
 
-extern "C" void rflex_on_request_system_status(void *user,
-                                               const struct rflex_request_system_status *message,
-                                               const struct rflex_linux_parts *parts) {
+extern "C" void rflex_on_request_system_status(void *user, const struct rflex_linux_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
     lit = !lit;
     digitalWrite(LED_BUILTIN, lit ? HIGH : LOW);

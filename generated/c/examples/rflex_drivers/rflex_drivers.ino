@@ -6,10 +6,8 @@ static struct rflex_drivers_linux_decoder decoder;
 static bool lit = false;
 
 extern "C" void rflex_drivers_on_request_system_status(
-    void *user, const struct rflex_drivers_request_system_status *message,
-    const struct rflex_drivers_linux_parts *parts) {
+    void *user, const struct rflex_drivers_linux_parts *parts) {
     (void)user;
-    (void)message;
     (void)parts;
     lit = !lit;
     digitalWrite(LED_BUILTIN, lit ? HIGH : LOW);

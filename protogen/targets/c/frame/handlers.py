@@ -24,7 +24,7 @@ class Handler(msgspec.Struct, frozen=True):
     @property
     def arguments(self) -> tuple[str, ...]:
         """Parameters of the function."""
-        return ("void *user", f"const {self.message.struct} *message", f"const {self.parts} *parts")
+        return ("void *user", *self.message.parameter, f"const {self.parts} *parts")
 
 
 class Dispatch(msgspec.Struct, frozen=True):

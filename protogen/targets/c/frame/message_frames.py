@@ -197,7 +197,7 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
         return (*self._parts(), "uint8_t *frame", "size_t *size")
 
     def _given(self) -> tuple[str, ...]:
-        return (f"const {self.view.struct} *message", *self._parts())
+        return (*self.view.parameter, *self._parts())
 
     def _parts(self) -> tuple[str, ...]:
         return tuple(f"{item.type} {item.name}" for item in self.arguments)

@@ -92,7 +92,9 @@ def _messages(unit: Unit) -> tuple[DrivenMessage, ...]:
         DrivenMessage(
             model := unit.protocol.message(item.name),
             item.struct,
-            exchange_function(f"exchange_{index}", item.struct, model.plan, unit.names),
+            exchange_function(f"exchange_{index}", item.struct, model.plan, unit.names)
+            if item.struct
+            else "",
             item.encode,
             item.decode,
             tuple(DrivenField(held.field, held.type) for held in item.held),
@@ -106,6 +108,7 @@ def _frames(unit: Unit, indices: Mapping[str, int]) -> tuple[DrivenFrame, ...]:
         DrivenFrame(
             index,
             indices[item.message.name],
+            bool(item.view.struct),
             item.called.function,
             item.called.send if item.sends else "",
             # By their names in the schema; those of arguments may differ.

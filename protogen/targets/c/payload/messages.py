@@ -43,7 +43,7 @@ class MessageView(msgspec.Struct, frozen=True):
     name: str
     """The name in the schema."""
     struct: str
-    """`struct rn1_gyro`."""
+    """`struct rn1_gyro`; empty where no field has a value, and functions take no message."""
     constant: str
     """Its value of `enum rn1_message`."""
     fixed: int | None
@@ -95,6 +95,11 @@ class MessageView(msgspec.Struct, frozen=True):
     """Empty, as the function is, if there is no function `validate`."""
     refused_function: str
 
+    @property
+    def parameter(self) -> tuple[str, ...]:
+        """The parameter for a message that is sent or was received."""
+        return (f"const {self.struct} *message",) if self.struct else ()
+
     def given(self, parts: str) -> str:
         """The numbers of the frame as arguments behind others; `parts` leads to an event's."""
         return from_parts(self.held, parts)
@@ -131,10 +136,11 @@ class MessagePrinter(msgspec.Struct, frozen=True):
         if place is not None:
             accessors += (*place.getters, *place.setters)
         zeros = f"{names.prefix.upper()}_ZEROS"
-        codec = _Codec(self, item, f"struct {tag}", called)
+        struct = f"struct {tag}" if has_struct(item) else ""
+        codec = _Codec(self, item, struct, called)
         return MessageView(
             name=item.name,
-            struct=f"struct {tag}",
+            struct=struct,
             constant=constant,
             fixed=codec.fixed,
             greatest=item.sizes.greatest,
@@ -145,7 +151,9 @@ class MessagePrinter(msgspec.Struct, frozen=True):
             held=codec.held,
             is_image=codec.is_image,
             record=record,
-            initialiser=initialiser(claim_init(names, item), zeros, item.plan.steps),
+            initialiser=initialiser(claim_init(names, item), zeros, item.plan.steps)
+            if struct
+            else (),
             prototypes=codec.prototypes(),
             accessors=accessors,
             in_place=place,
@@ -186,20 +194,22 @@ class _Codec:
         self.held = held_numbers(item, printer.names)
         held = tuple(f"{number.type} {number.name}" for number in self.held)
         result = f"enum {self._prefix}_result"
-        message, given = f"{struct} *message", f"const {struct} *message"
+        self._struct = struct
+        message = (f"{struct} *message",) if struct else ()
+        given = (f"const {struct} *message",) if struct else ()
         payload = "const uint8_t *payload"
         size = ("size_t size",) if self.fixed is None else ()
         inline = f"{self._upper}_INLINE"
         self._signatures: dict[str, tuple[str, tuple[str, ...]]] = {
-            "measure": ("static size_t", (given,)),
-            "validate": (f"{inline} {result}", (given,)),
-            "refused": ("const char *", (given,)),
-            "store": (f"{inline} void", (given, "uint8_t *payload")),
-            "put": (f"{inline} void", (given, printer.names.writer)),
-            "encode": (result, (given, "uint8_t *payload", "size_t capacity", "size_t *size")),
+            "measure": ("static size_t", given),
+            "validate": (f"{inline} {result}", given),
+            "refused": ("const char *", given),
+            "store": (f"{inline} void", (*given, "uint8_t *payload")),
+            "put": (f"{inline} void", (*given, printer.names.writer)),
+            "encode": (result, (*given, "uint8_t *payload", "size_t capacity", "size_t *size")),
             "check": (f"static {result}", (payload, "size_t size", "size_t *need", *held)),
-            "load": ("void", (message, payload, *size, *held)),
-            "decode": (result, (message, payload, "size_t size", *held)),
+            "load": ("void", (*message, payload, *size, *held)),
+            "decode": (result, (*message, payload, "size_t size", *held)),
         }
         """Result and arguments of each function."""
 
@@ -209,7 +219,8 @@ class _Codec:
 
     def prototypes(self) -> tuple[str, ...]:
         """Declarations for the header."""
-        return tuple(map(self.prototype, ("encode", "decode", "load")))
+        words = ("encode", "decode", "load") if self._struct else ("encode", "decode")
+        return tuple(map(self.prototype, words))
 
     def prototype(self, word: str) -> str:
         """The declaration of a function for the header."""
@@ -224,7 +235,8 @@ class _Codec:
         found += [self._store(), self._encode()]
         if self.checks:
             found.append(self._check())
-        return (*found, self._load(), self._decode())
+        found += [self._load()] if self._struct else []
+        return (*found, self._decode())
 
     def _function(self, word: str, lines: Lines) -> str:
         head, arguments = self._head(word)
@@ -309,7 +321,8 @@ class _Codec:
             lines.add("(void)capacity;")
         else:
             self._refuse(lines, f"capacity < {size}", "SPACE")
-        lines.add(f"{self._names['store']}(message, payload);", f"*size = {size};")
+        message = "message, " if self._struct else ""
+        lines.add(f"{self._names['store']}({message}payload);", f"*size = {size};")
         lines.add(f"return {self._upper}_OK;")
         return self._function("encode", lines)
 
@@ -336,8 +349,6 @@ class _Codec:
         if self.fixed is not None and load.reads_size:
             kind = "size_t" if load.moves_size else "const size_t"
             lines.put_first(f"{kind} size = {self.fixed}U;")
-        if not self._item.plan.holds_values:
-            lines.add("message->unused = 0U;")
         self._or_copy(lines, "message", "payload")
         return self._function("load", lines)
 
@@ -348,10 +359,15 @@ class _Codec:
         else:
             self._refuse(lines, f"size != {self.fixed}U", "SIZE")
         size = ", size" if self.fixed is None else ""
-        lines.add(
-            f"{self._names['load']}(message, payload{size}{held});", f"return {self._upper}_OK;"
-        )
+        if self._struct:
+            lines.add(f"{self._names['load']}(message, payload{size}{held});")
+        lines.add(f"return {self._upper}_OK;")
         return self._function("decode", lines)
+
+
+def has_struct(item: Message) -> bool:
+    """True if a message has a struct: some field has a value."""
+    return item.plan.holds_values
 
 
 def _unfit(item: Message) -> str:

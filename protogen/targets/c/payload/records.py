@@ -68,7 +68,7 @@ class Records:
         return f"struct {self._tags[type_.name]}"
 
     def _definition(self, tag: str, doc: list[str], steps: Sequence[AnyStep]) -> str:
-        """The definition of a struct for the values of these steps.
+        """The definition of a struct for the values of these steps; its comment if there are none.
 
         Constants need no room: an encoder writes them, and a decoder takes nothing else. What
         fills the payload has a second member, which says how much it is.
@@ -76,10 +76,8 @@ class Records:
         lines, members = Lines(0), Lines()
         for step in steps:
             self._field(members, step)
-        if not members:
-            members.add(
-                "/** There are no fields, and C has no empty structs. */", "uint8_t unused;"
-            )
+        if not members:  # C has no empty structs.
+            return "\n".join(comments.comment(doc))
         lines.add(*comments.comment(doc), f"struct {tag} {{")
         return "\n".join([*lines.lines, *members.lines, "};"])
 

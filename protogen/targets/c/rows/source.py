@@ -41,12 +41,15 @@ class _Spelling(msgspec.Struct, frozen=True):
     """Of its table."""
     function: str
     room: str
+    message: str
+    """The row's message; empty where there is none."""
     parts: str
 
     @property
     def call(self) -> str:
         """The call that makes the frame of a row."""
-        return f"{self.function}(&row->message{self.parts}, frame, {self.room}, &size)"
+        given = f"{self.message}{self.parts}, frame, {self.room}, &size"
+        return f"{self.function}({given.removeprefix(', ')})"
 
 
 class _Part(msgspec.Struct, frozen=True):
@@ -157,6 +160,7 @@ def _spellings(unit: Unit, tables: list[str], parts: _Parts) -> list[_Spelling]:
             tables.index(item.message.name),
             item.called.function,
             item.called.room,
+            "&row->message" if item.view.struct else "",
             _of_row([argument.part for argument in item.arguments], parts),
         )
         for item in unit.framing.messages

@@ -77,7 +77,9 @@ def _facts(context: Context, message: Message) -> Iterator[str]:
         if framing.per_second is not None:
             yield f"{rate(framing.per_second)} a second"
     yield f"payload {plural(message.sizes, 'byte')}"
-    yield _struct_size(*struct_sizes(message))
+    structs = struct_sizes(message)
+    if structs is not None:
+        yield _struct_size(*structs)
     source = place(message.about.source)
     if source:
         yield source
