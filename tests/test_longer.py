@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from c_engine import process_of
 from compiled import ROOT, module_at
 from passes_support import compile_text
 
@@ -12,6 +13,7 @@ from protogen.evolution.findings import findings
 from protogen.model.protocol import Protocol
 from protogen.model.reading.annotate import annotate
 from protogen.runtime.errors import DecodeError
+from protogen.targets.c.options import EVENTS, COptions, Events
 
 STATION = ROOT / "tests" / "framings" / "longer.yaml"
 ENGINES = ["fast", "construct"]
@@ -31,6 +33,15 @@ def test_an_event_has_the_whole_frame_and_the_known_fields(engine: str) -> None:
     line = event.as_json()
     assert line["raw"] == LONGER.hex()
     assert module.PROTOCOL.encode_line(line) == LONGER
+
+
+@pytest.mark.parametrize("events", EVENTS)
+def test_a_receiver_of_one_message_takes_its_longer_ones(events: Events) -> None:
+    process = process_of(STATION, COptions(only=("wind",), events=events))
+    [[event]] = process.do(process.calls.events("station", [("feed", LONGER)]))
+    assert (event.message, event.payload) == ("wind", bytes.fromhex("C0 00 DB FE"))
+    (same,) = process.module.Decoder("station").feed(LONGER)
+    assert same.message == process.module.Wind(direction=192, speed=-293)
 
 
 @pytest.mark.parametrize("engine", ENGINES)

@@ -24,8 +24,9 @@ def select(
     """The protocol with only these messages of these senders; None stands for all of them.
 
     No frame is longer than the greatest of a message that is left, so that a length beyond it is
-    wrong as soon as it is read. Types, exchanges and the spec hash stay. Raises KeyError where a
-    name is unknown.
+    wrong as soon as it is read; but where longer payloads are cut, newer versions of these messages
+    may be as long as a frame can be. Types, exchanges and the spec hash stay. Raises KeyError where
+    a name is unknown.
     """
     for name in messages or ():
         protocol.message(name)
@@ -64,7 +65,7 @@ def _sender(sender: Sender, messages: Collection[str] | None) -> Sender:
     left = tuple(message for message in sender.messages if message.name in messages)
     if not left:
         return replace(sender, messages=())
-    framing = _framing(sender.framing, left)
+    framing = _framing(sender.framing, left, is_cut=sender.plan.is_cut)
     overloads = tuple(_overloads(sender, {message.name for message in left}))
     plan = plan_frame(sender.frame, framing, left, overloads)
     return replace(
@@ -77,11 +78,13 @@ def _sender(sender: Sender, messages: Collection[str] | None) -> Sender:
     )
 
 
-def _framing(framing: Framing, messages: tuple[Message, ...]) -> Framing:
+def _framing(framing: Framing, messages: tuple[Message, ...], *, is_cut: bool) -> Framing:
     names = {message.name for message in messages}
     sizes = tuple(item for item in framing.messages if item.message in names)
     greatest = max(message.sizes.greatest for message in messages)
     payload = framing.payload
+    if is_cut:
+        return replace(framing, messages=sizes, least=min(item.least for item in sizes))
     return replace(
         framing,
         messages=sizes,
