@@ -31,6 +31,14 @@
 #define DAGNY_LIBRARY_AS_IN_MEMORY 0
 #endif
 #endif
+#if DAGNY_LIBRARY_AS_IN_MEMORY
+/* This does not compile where a struct is laid out in another way. */
+typedef char dagny_library_sonar_layout[offsetof(struct dagny_library_sonar, distances) == 0U ? 1
+                                                                                              : -1];
+typedef char dagny_library_odometry_layout[offsetof(struct dagny_library_odometry, steer) == 12U ? 1
+                                                                                                 : -1];
+typedef char dagny_library_gps_position_layout[offsetof(struct dagny_library_gps_position, longitude) == 4U ? 1 : -1];
+#endif
 
 static void dagny_library_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;

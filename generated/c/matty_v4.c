@@ -50,6 +50,10 @@
 #define MATTY_V4_AS_IN_MEMORY 0
 #endif
 #endif
+#if MATTY_V4_AS_IN_MEMORY
+/* This does not compile where a struct is laid out in another way. */
+typedef char matty_v4_status_layout[offsetof(struct matty_v4_status, yaw) == 22U ? 1 : -1];
+#endif
 
 MATTY_V4_INLINE void matty_v4_store_u16le(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)value;

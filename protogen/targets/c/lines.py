@@ -97,6 +97,11 @@ def _use_of(name: str) -> re.Pattern[str]:
     return re.compile(rf"{name}\b(?<![\w.>]{name})")
 
 
+def assertion(name: str, condition: str) -> str:
+    """A declaration that does not compile where a condition does not hold, in any C or C++."""
+    return f"typedef char {name}[{condition} ? 1 : -1];"
+
+
 def function(head: str, arguments: tuple[str, ...], body: Lines) -> str:
     """A function's definition."""
     return "\n".join([prototype(head, arguments, " {"), *body.lines, "}"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from math import ceil
 
@@ -14,6 +14,7 @@ from protogen.model.payload_plan import IntegerStep, RecordStep, every_step
 from protogen.model.protocol import Link, Protocol
 from protogen.targets import descriptions
 from protogen.targets.c import comments
+from protogen.targets.c.lines import assertion
 from protogen.targets.c.named import EnumView, enum_view, flags_view, string
 from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.helpers import Helpers
@@ -51,6 +52,8 @@ class Module(msgspec.Struct, frozen=True):
     """True if some of these have a way for SSE2."""
     has_images: bool
     """True if some message can be copied as a whole."""
+    assertions: tuple[str, ...]
+    """What the source takes for granted of each compiler, of floats."""
     sinks: tuple[str, ...]
     """Functions that what writes into a writer shares."""
     floats: frozenset[int]
@@ -103,10 +106,19 @@ def view(protocol: Protocol, options: COptions, names: Names, helpers: Helpers) 
         helpers=helpers.texts,
         public_helpers=helpers.public_texts,
         has_vectors=helpers.has_vectors,
-        has_images=any(message.is_image for message in messages),
+        has_images=any(message.image for message in messages),
+        assertions=tuple(_assertions(helpers.floats | sinks.floats, names)),
         sinks=sinks.texts,
         floats=frozenset(helpers.floats | sinks.floats),
     )
+
+
+def _assertions(floats: set[int], names: Names) -> Iterator[str]:
+    """Sizes of floats, whose bytes are copied."""
+    for bits in sorted(floats):
+        type_ = "float" if bits == 32 else f"{names.prefix}_float64"
+        name = names.claim_helper(f"float{bits}", "size")
+        yield assertion(name, f"sizeof({type_}) == {bits // 8}U")
 
 
 def _baud(link: Link) -> str | None:

@@ -69,6 +69,11 @@ class FramingView(msgspec.Struct, frozen=True):
         return any(message.sends for message in self.messages)
 
     @property
+    def greatest_room(self) -> int:
+        """Bytes of the greatest buffer that some frame needs."""
+        return max((message.room for message in self.messages), default=0)
+
+    @property
     def takes_whole(self) -> bool:
         """True if some decoder takes whole frames out of what it is fed."""
         return any(decoder.whole for decoder in self.decoders)

@@ -34,6 +34,12 @@ def is_image(plan: PayloadPlan) -> bool:
     return all(place % size == 0 for place, size in zip(places, sizes, strict=False))
 
 
+def last_place(plan: PayloadPlan) -> tuple[str, int]:
+    """The last member of such a message, and where it has to lie: then all others lie right."""
+    last = plan.steps[-1]
+    return last.name, sum(step.sizes.greatest for step in plan.steps) - last.sizes.greatest
+
+
 def _sizes(steps: Iterable[AnyStep]) -> Iterator[int]:
     """Yield the bytes of each number; 0 for what lies in memory in another way."""
     for step in steps:

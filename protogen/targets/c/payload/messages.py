@@ -15,13 +15,13 @@ from protogen.model.messages import Message
 from protogen.model.protocol import Protocol, Sender
 from protogen.passes.framing.capacity import is_delimited
 from protogen.targets import descriptions
-from protogen.targets.c.lines import Lines, function, mentions, prototype
+from protogen.targets.c.lines import Lines, assertion, function, mentions, prototype
 from protogen.targets.c.named import string
 from protogen.targets.c.payload.accessors import accessor
 from protogen.targets.c.payload.checking import Checker
 from protogen.targets.c.payload.held import HeldNumber, from_parts, held_numbers
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.payload.images import copied, is_image
+from protogen.targets.c.payload.images import copied, is_image, last_place
 from protogen.targets.c.payload.in_place import InPlace, in_place
 from protogen.targets.c.payload.initial import initialiser
 from protogen.targets.c.payload.loading import Load
@@ -60,8 +60,9 @@ class MessageView(msgspec.Struct, frozen=True):
     """True if there is a function `validate`; without it, every struct can be sent."""
     held: tuple[HeldNumber, ...]
     """The numbers of the frame among its members, arguments of the functions that read it."""
-    is_image: bool
-    """True if a little-endian machine can copy its struct as a whole."""
+    image: str
+    """The assertion that its struct lies in memory as its payload does, where a little-endian
+    machine can copy it as a whole; empty where none can."""
     check: str
     """(const uint8_t *payload, size_t size, size_t *need[, held]): enum rn1_result; `need` may be
     NULL."""
@@ -149,7 +150,7 @@ class MessagePrinter(msgspec.Struct, frozen=True):
             needs=codec.needs,
             validates=codec.validates,
             held=codec.held,
-            is_image=codec.is_image,
+            image=codec.image(),
             record=record,
             initialiser=initialiser(claim_init(names, item), zeros, item.plan.steps)
             if struct
@@ -291,6 +292,15 @@ class _Codec:
             Store(helpers, lines).message(self._item.plan)
         self._or_copy(lines, "payload", "message")
         return self._function("store", lines)
+
+    def image(self) -> str:
+        """The assertion that the last member lies where it does in the payload."""
+        if not self.is_image:
+            return ""
+        last, place = last_place(self._item.plan)
+        names = self._printer.names
+        name = names.claim_helper(self._item.name, "layout")
+        return assertion(name, f"offsetof({self._struct}, {names.member(last)}) == {place}U")
 
     def _or_copy(self, lines: Lines, to: str, source: str) -> None:
         """Print in front of statements what does the same where a struct is as on the wire."""
