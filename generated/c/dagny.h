@@ -710,6 +710,18 @@ enum dagny_reason {
     DAGNY_TRUNCATED  /**< The frame is cut off. */
 } DAGNY_PACKED;
 
+/** What came of a line, if a handler counts each event; all zeros at first. They wrap around. */
+struct dagny_counters {
+    /** Valid frames of messages. */
+    uint32_t messages;
+    /** Valid frames whose identity no message has. */
+    uint32_t unknown;
+    /** Frames, or what looked like one, whose checksum is wrong. */
+    uint32_t checksums;
+    /** Bytes that are in no valid frame. */
+    uint32_t lost;
+};
+
 /* --- what host sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of host on the wire, in bytes. */
@@ -736,6 +748,25 @@ struct dagny_host_event {
     const uint8_t *payload;
     struct dagny_host_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void dagny_host_count(struct dagny_counters *counters,
+                                    const struct dagny_host_event *event) {
+    switch (event->kind) {
+    case DAGNY_MESSAGE:
+        counters->messages++;
+        break;
+    case DAGNY_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == DAGNY_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*dagny_host_handler)(void *user, const struct dagny_host_event *event);
@@ -830,6 +861,25 @@ struct dagny_robot_event {
     const uint8_t *payload;
     struct dagny_robot_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void dagny_robot_count(struct dagny_counters *counters,
+                                     const struct dagny_robot_event *event) {
+    switch (event->kind) {
+    case DAGNY_MESSAGE:
+        counters->messages++;
+        break;
+    case DAGNY_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == DAGNY_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*dagny_robot_handler)(void *user, const struct dagny_robot_event *event);

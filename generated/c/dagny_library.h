@@ -703,6 +703,18 @@ enum dagny_library_reason {
     DAGNY_LIBRARY_TRUNCATED  /**< The frame is cut off. */
 } DAGNY_LIBRARY_PACKED;
 
+/** What came of a line, if a handler counts each event; all zeros at first. They wrap around. */
+struct dagny_library_counters {
+    /** Valid frames of messages. */
+    uint32_t messages;
+    /** Valid frames whose identity no message has. */
+    uint32_t unknown;
+    /** Frames, or what looked like one, whose checksum is wrong. */
+    uint32_t checksums;
+    /** Bytes that are in no valid frame. */
+    uint32_t lost;
+};
+
 /* --- what host sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of host on the wire, in bytes. */
@@ -729,6 +741,25 @@ struct dagny_library_host_event {
     const uint8_t *payload;
     struct dagny_library_host_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void dagny_library_host_count(struct dagny_library_counters *counters,
+                                            const struct dagny_library_host_event *event) {
+    switch (event->kind) {
+    case DAGNY_LIBRARY_MESSAGE:
+        counters->messages++;
+        break;
+    case DAGNY_LIBRARY_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == DAGNY_LIBRARY_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*dagny_library_host_handler)(void *user,
@@ -818,6 +849,25 @@ struct dagny_library_robot_event {
     const uint8_t *payload;
     struct dagny_library_robot_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void dagny_library_robot_count(struct dagny_library_counters *counters,
+                                             const struct dagny_library_robot_event *event) {
+    switch (event->kind) {
+    case DAGNY_LIBRARY_MESSAGE:
+        counters->messages++;
+        break;
+    case DAGNY_LIBRARY_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == DAGNY_LIBRARY_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*dagny_library_robot_handler)(void *user,

@@ -542,6 +542,18 @@ enum matty_reason {
     MATTY_TRUNCATED  /**< The frame is cut off. */
 } MATTY_PACKED;
 
+/** What came of a line, if a handler counts each event; all zeros at first. They wrap around. */
+struct matty_counters {
+    /** Valid frames of messages. */
+    uint32_t messages;
+    /** Valid frames whose identity no message has. */
+    uint32_t unknown;
+    /** Frames, or what looked like one, whose checksum is wrong. */
+    uint32_t checksums;
+    /** Bytes that are in no valid frame. */
+    uint32_t lost;
+};
+
 /* --- what pc sends ---------------------------------------------------------------------------- */
 
 /** The greatest frame of pc on the wire, in bytes. */
@@ -569,6 +581,25 @@ struct matty_pc_event {
     const uint8_t *payload;
     struct matty_pc_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void matty_pc_count(struct matty_counters *counters,
+                                  const struct matty_pc_event *event) {
+    switch (event->kind) {
+    case MATTY_MESSAGE:
+        counters->messages++;
+        break;
+    case MATTY_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == MATTY_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*matty_pc_handler)(void *user, const struct matty_pc_event *event);
@@ -650,6 +681,25 @@ struct matty_esp_event {
     const uint8_t *payload;
     struct matty_esp_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void matty_esp_count(struct matty_counters *counters,
+                                   const struct matty_esp_event *event) {
+    switch (event->kind) {
+    case MATTY_MESSAGE:
+        counters->messages++;
+        break;
+    case MATTY_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == MATTY_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*matty_esp_handler)(void *user, const struct matty_esp_event *event);

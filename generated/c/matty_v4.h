@@ -705,6 +705,18 @@ enum matty_v4_reason {
     MATTY_V4_TRUNCATED  /**< The frame is cut off. */
 } MATTY_V4_PACKED;
 
+/** What came of a line, if a handler counts each event; all zeros at first. They wrap around. */
+struct matty_v4_counters {
+    /** Valid frames of messages. */
+    uint32_t messages;
+    /** Valid frames whose identity no message has. */
+    uint32_t unknown;
+    /** Frames, or what looked like one, whose checksum is wrong. */
+    uint32_t checksums;
+    /** Bytes that are in no valid frame. */
+    uint32_t lost;
+};
+
 /* --- what pc sends ---------------------------------------------------------------------------- */
 
 /** The greatest frame of pc on the wire, in bytes. */
@@ -732,6 +744,25 @@ struct matty_v4_pc_event {
     const uint8_t *payload;
     struct matty_v4_pc_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void matty_v4_pc_count(struct matty_v4_counters *counters,
+                                     const struct matty_v4_pc_event *event) {
+    switch (event->kind) {
+    case MATTY_V4_MESSAGE:
+        counters->messages++;
+        break;
+    case MATTY_V4_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == MATTY_V4_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*matty_v4_pc_handler)(void *user, const struct matty_v4_pc_event *event);
@@ -813,6 +844,25 @@ struct matty_v4_esp_event {
     const uint8_t *payload;
     struct matty_v4_esp_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void matty_v4_esp_count(struct matty_v4_counters *counters,
+                                      const struct matty_v4_esp_event *event) {
+    switch (event->kind) {
+    case MATTY_V4_MESSAGE:
+        counters->messages++;
+        break;
+    case MATTY_V4_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == MATTY_V4_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*matty_v4_esp_handler)(void *user, const struct matty_v4_esp_event *event);

@@ -1046,6 +1046,18 @@ enum rflex_reason {
     RFLEX_TRUNCATED  /**< The frame is cut off. */
 } RFLEX_PACKED;
 
+/** What came of a line, if a handler counts each event; all zeros at first. They wrap around. */
+struct rflex_counters {
+    /** Valid frames of messages. */
+    uint32_t messages;
+    /** Valid frames whose identity no message has. */
+    uint32_t unknown;
+    /** Frames, or what looked like one, whose checksum is wrong. */
+    uint32_t checksums;
+    /** Bytes that are in no valid frame. */
+    uint32_t lost;
+};
+
 /* --- what linux sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of linux on the wire, in bytes. */
@@ -1074,6 +1086,25 @@ struct rflex_linux_event {
     const uint8_t *payload;
     struct rflex_linux_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void rflex_linux_count(struct rflex_counters *counters,
+                                     const struct rflex_linux_event *event) {
+    switch (event->kind) {
+    case RFLEX_MESSAGE:
+        counters->messages++;
+        break;
+    case RFLEX_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == RFLEX_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*rflex_linux_handler)(void *user, const struct rflex_linux_event *event);
@@ -1166,6 +1197,25 @@ struct rflex_flex_event {
     const uint8_t *payload;
     struct rflex_flex_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void rflex_flex_count(struct rflex_counters *counters,
+                                    const struct rflex_flex_event *event) {
+    switch (event->kind) {
+    case RFLEX_MESSAGE:
+        counters->messages++;
+        break;
+    case RFLEX_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == RFLEX_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*rflex_flex_handler)(void *user, const struct rflex_flex_event *event);

@@ -1286,6 +1286,18 @@ enum rflex_drivers_reason {
     RFLEX_DRIVERS_TRUNCATED  /**< The frame is cut off. */
 } RFLEX_DRIVERS_PACKED;
 
+/** What came of a line, if a handler counts each event; all zeros at first. They wrap around. */
+struct rflex_drivers_counters {
+    /** Valid frames of messages. */
+    uint32_t messages;
+    /** Valid frames whose identity no message has. */
+    uint32_t unknown;
+    /** Frames, or what looked like one, whose checksum is wrong. */
+    uint32_t checksums;
+    /** Bytes that are in no valid frame. */
+    uint32_t lost;
+};
+
 /* --- what linux sends ------------------------------------------------------------------------- */
 
 /** The greatest frame of linux on the wire, in bytes. */
@@ -1314,6 +1326,25 @@ struct rflex_drivers_linux_event {
     const uint8_t *payload;
     struct rflex_drivers_linux_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void rflex_drivers_linux_count(struct rflex_drivers_counters *counters,
+                                             const struct rflex_drivers_linux_event *event) {
+    switch (event->kind) {
+    case RFLEX_DRIVERS_MESSAGE:
+        counters->messages++;
+        break;
+    case RFLEX_DRIVERS_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == RFLEX_DRIVERS_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*rflex_drivers_linux_handler)(void *user,
@@ -1410,6 +1441,25 @@ struct rflex_drivers_flex_event {
     const uint8_t *payload;
     struct rflex_drivers_flex_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void rflex_drivers_flex_count(struct rflex_drivers_counters *counters,
+                                            const struct rflex_drivers_flex_event *event) {
+    switch (event->kind) {
+    case RFLEX_DRIVERS_MESSAGE:
+        counters->messages++;
+        break;
+    case RFLEX_DRIVERS_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == RFLEX_DRIVERS_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*rflex_drivers_flex_handler)(void *user,

@@ -878,6 +878,18 @@ enum rn1_firmware_reason {
     RN1_FIRMWARE_TRUNCATED  /**< The frame is cut off. */
 } RN1_FIRMWARE_PACKED;
 
+/** What came of a line, if a handler counts each event; all zeros at first. They wrap around. */
+struct rn1_firmware_counters {
+    /** Valid frames of messages. */
+    uint32_t messages;
+    /** Valid frames whose identity no message has. */
+    uint32_t unknown;
+    /** Frames, or what looked like one, whose checksum is wrong. */
+    uint32_t checksums;
+    /** Bytes that are in no valid frame. */
+    uint32_t lost;
+};
+
 /* --- what host sends -------------------------------------------------------------------------- */
 
 /** The greatest frame of host on the wire, in bytes. */
@@ -904,6 +916,25 @@ struct rn1_firmware_host_event {
     const uint8_t *payload;
     struct rn1_firmware_host_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void rn1_firmware_host_count(struct rn1_firmware_counters *counters,
+                                           const struct rn1_firmware_host_event *event) {
+    switch (event->kind) {
+    case RN1_FIRMWARE_MESSAGE:
+        counters->messages++;
+        break;
+    case RN1_FIRMWARE_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == RN1_FIRMWARE_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*rn1_firmware_host_handler)(void *user, const struct rn1_firmware_host_event *event);
@@ -987,6 +1018,25 @@ struct rn1_firmware_brain_event {
     const uint8_t *payload;
     struct rn1_firmware_brain_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void rn1_firmware_brain_count(struct rn1_firmware_counters *counters,
+                                            const struct rn1_firmware_brain_event *event) {
+    switch (event->kind) {
+    case RN1_FIRMWARE_MESSAGE:
+        counters->messages++;
+        break;
+    case RN1_FIRMWARE_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == RN1_FIRMWARE_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*rn1_firmware_brain_handler)(void *user,

@@ -333,6 +333,18 @@ enum uherobot_reason {
     UHEROBOT_TRUNCATED  /**< The frame is cut off. */
 } UHEROBOT_PACKED;
 
+/** What came of a line, if a handler counts each event; all zeros at first. They wrap around. */
+struct uherobot_counters {
+    /** Valid frames of messages. */
+    uint32_t messages;
+    /** Valid frames whose identity no message has. */
+    uint32_t unknown;
+    /** Frames, or what looked like one, whose checksum is wrong. */
+    uint32_t checksums;
+    /** Bytes that are in no valid frame. */
+    uint32_t lost;
+};
+
 /* --- what daemon sends ------------------------------------------------------------------------ */
 
 /** The greatest frame of daemon on the wire, in bytes. */
@@ -359,6 +371,25 @@ struct uherobot_daemon_event {
     const uint8_t *payload;
     struct uherobot_daemon_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void uherobot_daemon_count(struct uherobot_counters *counters,
+                                         const struct uherobot_daemon_event *event) {
+    switch (event->kind) {
+    case UHEROBOT_MESSAGE:
+        counters->messages++;
+        break;
+    case UHEROBOT_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == UHEROBOT_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*uherobot_daemon_handler)(void *user, const struct uherobot_daemon_event *event);
@@ -442,6 +473,25 @@ struct uherobot_board_event {
     const uint8_t *payload;
     struct uherobot_board_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void uherobot_board_count(struct uherobot_counters *counters,
+                                        const struct uherobot_board_event *event) {
+    switch (event->kind) {
+    case UHEROBOT_MESSAGE:
+        counters->messages++;
+        break;
+    case UHEROBOT_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == UHEROBOT_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*uherobot_board_handler)(void *user, const struct uherobot_board_event *event);

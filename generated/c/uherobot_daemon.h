@@ -293,6 +293,18 @@ enum uherobot_daemon_reason {
     UHEROBOT_DAEMON_TRUNCATED  /**< The frame is cut off. */
 } UHEROBOT_DAEMON_PACKED;
 
+/** What came of a line, if a handler counts each event; all zeros at first. They wrap around. */
+struct uherobot_daemon_counters {
+    /** Valid frames of messages. */
+    uint32_t messages;
+    /** Valid frames whose identity no message has. */
+    uint32_t unknown;
+    /** Frames, or what looked like one, whose checksum is wrong. */
+    uint32_t checksums;
+    /** Bytes that are in no valid frame. */
+    uint32_t lost;
+};
+
 /* --- what daemon sends ------------------------------------------------------------------------ */
 
 /** The greatest frame of daemon on the wire, in bytes. */
@@ -319,6 +331,25 @@ struct uherobot_daemon_daemon_event {
     const uint8_t *payload;
     struct uherobot_daemon_daemon_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void uherobot_daemon_daemon_count(struct uherobot_daemon_counters *counters,
+                                                const struct uherobot_daemon_daemon_event *event) {
+    switch (event->kind) {
+    case UHEROBOT_DAEMON_MESSAGE:
+        counters->messages++;
+        break;
+    case UHEROBOT_DAEMON_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == UHEROBOT_DAEMON_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*uherobot_daemon_daemon_handler)(void *user,
@@ -405,6 +436,25 @@ struct uherobot_daemon_board_event {
     const uint8_t *payload;
     struct uherobot_daemon_board_parts parts;
 };
+
+/** Adds an event to the counters of a line. */
+static inline void uherobot_daemon_board_count(struct uherobot_daemon_counters *counters,
+                                               const struct uherobot_daemon_board_event *event) {
+    switch (event->kind) {
+    case UHEROBOT_DAEMON_MESSAGE:
+        counters->messages++;
+        break;
+    case UHEROBOT_DAEMON_UNKNOWN:
+        counters->unknown++;
+        break;
+    default:
+        counters->lost += (uint32_t)event->size;
+        if (event->reason == UHEROBOT_DAEMON_CHECKSUM) {
+            counters->checksums++;
+        }
+        break;
+    }
+}
 
 /** Called for each event, in the order of the input. It must not call the decoder. */
 typedef void (*uherobot_daemon_board_handler)(void *user,

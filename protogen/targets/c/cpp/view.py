@@ -155,6 +155,11 @@ class CppModule(msgspec.Struct, frozen=True):
     physical: tuple[CppPhysical, ...]
 
     @property
+    def tells_all(self) -> bool:
+        """True if decoders yield all events, and not messages alone."""
+        return any(decoder.view.all_events for decoder in self.decoders)
+
+    @property
     def sends(self) -> bool:
         """True if some message can be sent byte by byte."""
         return any(frame.send for frame in self.frames)

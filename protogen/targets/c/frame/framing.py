@@ -69,6 +69,11 @@ class FramingView(msgspec.Struct, frozen=True):
         return any(message.sends for message in self.messages)
 
     @property
+    def tells_all(self) -> bool:
+        """True if decoders yield all events, and not messages alone."""
+        return any(decoder.all_events for decoder in self.decoders)
+
+    @property
     def greatest_room(self) -> int:
         """Bytes of the greatest buffer that some frame needs."""
         return max((message.room for message in self.messages), default=0)
