@@ -22,7 +22,9 @@ from protogen.model.protocol import Protocol
 from protogen.model.transparency import Insertion
 from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError
+from protogen.targets.c.emit import unit_of
 from protogen.targets.c.fuzz_driver.driver import driver_of
+from protogen.targets.c.options import COptions
 
 SAMPLERS = sorted((ROOT / "tests" / "c_schemas").glob("*.yaml"))
 SENT = [
@@ -116,6 +118,36 @@ def test_a_sum_of_many_high_bytes_does_not_overflow(size: int, tmp_path: Path) -
         data = bytes([byte]) * size
         made = process.do(process.calls.frame("host", "block", {"data": data.hex()}, {}))
         assert made.data == bytes([0x7E, *divmod(size, 256)]) + data + bytes([byte * size % 256])
+
+
+BLOCKS = """\
+protocol: blocks
+endpoints: {host: Host}
+byte_order: big
+frame:
+  payload: {}
+  sum:     {type: uint8, algorithm: sum-8, covers: payload}
+  end:     {literal: 0}
+transparency: {covers: payload..sum, encoding: cobs}
+messages:
+  block: {from: host, fields: {data: {type: bytes, size: {fill: true, max: MOST}}}}
+"""
+
+
+@pytest.mark.parametrize("most", [252, 253])
+def test_content_that_never_fills_a_group_of_cobs_is_stuffed_where_it_stands(
+    most: int, tmp_path: Path
+) -> None:
+    """With 253 bytes of data and their sum, content may be one full group."""
+    path = tmp_path / "blocks.yaml"
+    path.write_text(BLOCKS.replace("MOST", str(most)))
+    process, module = process_of(path), module_at(path)
+    framing = unit_of(protocol_of(path), COptions()).framing
+    assert framing.in_place == ({"host"} if most == 252 else set())
+    for size in (0, 1, 2, 251, most):
+        for data in (b"\x11" * size, bytes(size), (b"\x11" * size)[1:] + b"\0"[:size]):
+            made = process.do(process.calls.frame("host", "block", {"data": data.hex()}, {}))
+            assert made.data == module.encode(module.Block(data=data))
 
 
 @cache

@@ -164,8 +164,17 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
     @property
     def content_size(self) -> str:
         """Bytes of content."""
-        head, tail = self.plan.head_size, self.decoder.tail_for("payload")
-        return " + ".join(size for size in (f"{head}U", "payload", tail) if size != "0U")
+        return self._size(self.plan.head_size)
+
+    @property
+    def coded_size(self) -> str:
+        """Bytes of content and of the code in front of it."""
+        return self._size(1 + self.plan.head_size)
+
+    def _size(self, ahead: int) -> str:
+        """Bytes of payload and tail, and so many in front of them."""
+        sizes = (f"{ahead}U", "payload", self.decoder.tail_for("payload"))
+        return " + ".join(size for size in sizes if size != "0U")
 
     @property
     def length(self) -> str:
@@ -197,6 +206,13 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
     def is_cobs(self) -> bool:
         """True if the region is stuffed in groups."""
         return self._stuffing is not None and self._stuffing.is_cobs
+
+    @property
+    def is_one_region(self) -> bool:
+        """True if groups of COBS hold all content, and the zero of the end is right behind them."""
+        ends_in_zero = self.plan.end_bytes[:1] == b"\0"
+        is_whole = self.begins_at == 0 and self.decoder.region_to_end
+        return self.is_cobs and is_whole and ends_in_zero
 
     @property
     def worst(self) -> int:

@@ -50,6 +50,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """True if any of these hands over a byte."""
     cut_checks: frozenset[str]
     """The frames, by their sender, some of which a decoder might end too early."""
+    in_place: frozenset[str]
+    """Those in which no group of COBS is ever full, so that no byte moves when they are stuffed."""
     trims: frozenset[str]
     """Those in which zeros at the end of some payload may be left out."""
     cuts_sent: bool
@@ -130,6 +132,8 @@ def framing_view(
         cut_checks=frozenset(
             item.frame.decoder.name for item in message_frames if item.needs_cut_check
         ),
+        in_place=frozenset(frame.decoder.name for frame in distinct if frame.is_one_region)
+        - {item.frame.decoder.name for item in message_frames if item.may_fill_group},
         trims=frozenset(item.frame.decoder.name for item in message_frames if item.is_trimmed),
         cuts_sent=any(item.sends and item.is_trimmed for item in message_frames),
         idle_checks=frozenset(

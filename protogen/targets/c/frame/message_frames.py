@@ -14,6 +14,7 @@ from protogen.model.identities import Runs
 from protogen.model.messages import Message, given_parts
 from protogen.model.parts import ChoicePart, IdentityPart, NumberPart
 from protogen.model.protocol import Sender
+from protogen.model.transparency import FULL_GROUP
 from protogen.model.types import Field
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.frames import Argument, FrameView, argument_of, one_of
@@ -66,6 +67,12 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     def room(self) -> int:
         """Bytes of the buffer that suffice for every frame of the message."""
         return self.decoder.plan.room(min(self.message.sizes.greatest, self.greatest_payload))
+
+    @property
+    def may_fill_group(self) -> bool:
+        """True if its content may have as many bytes as a group of COBS has at most."""
+        greatest = min(self.message.sizes.greatest, self.greatest_payload)
+        return self.decoder.around + greatest >= FULL_GROUP
 
     @property
     def identity(self) -> tuple[str, ...]:
