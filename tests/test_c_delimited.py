@@ -100,7 +100,25 @@ SCHEMAS = {
     "digits_between": DIGITS,
     "newer_between_zeros": NEWER,
 }
-FLAT = {"newer_behind_starts": NEWER_BEHIND_STARTS}
+DIGITS_BEHIND_STARTS = """
+protocol: digits_behind_starts
+endpoints: {station: Weather station}
+byte_order: big
+frame:
+  start: {literal: 0x3A}
+  id: {type: uint8, id: true}
+  length: {type: uint8, counts: payload}
+  payload: {}
+  check: {type: uint8, algorithm: sum-8, covers: [id, length, payload]}
+transparency: {covers: id..check, encoding: base16-upper}
+messages:
+  text: {id: 1, from: station, fields: {data: {type: bytes, size: {fill: true, max: 120}}}}
+  wind: {id: 2, from: station, fields: {speed: uint16}}
+"""
+FLAT = {
+    "newer_behind_starts": NEWER_BEHIND_STARTS,
+    "digits_behind_starts": DIGITS_BEHIND_STARTS,
+}
 """Those whose frames are told by their start."""
 
 
@@ -113,11 +131,11 @@ def paths(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     return found
 
 
-@pytest.mark.parametrize("name", SCHEMAS)
+@pytest.mark.parametrize("name", [*SCHEMAS, "digits_behind_starts"])
 def test_streams_have_the_messages_that_python_finds(name: str, paths: dict[str, Path]) -> None:
     path = paths[name]
     [decoder] = unit_of(protocol_of(path), MESSAGES).framing.decoders
-    assert decoder.delimited
+    assert decoder.flat if name in FLAT else decoder.delimited
     process, material = process_of(path, MESSAGES), material_of(path, "station")
     marks = marks_of(path, "station")
     for seed in range(12):

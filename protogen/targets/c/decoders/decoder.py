@@ -66,7 +66,7 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
         """The condition that nothing of a frame is there."""
         if self.flat is not None:
             found = [f"decoder->{self.flat.idle_member} == {self.flat.idle_value}U"]
-            found += ["decoder->node == 0U"] if self.stuffing else []
+            found += ["decoder->node == 0U"] if self.flat.has_node else []
         else:
             found = [f"decoder->state == {self.protocol_upper}_SEEKING"]
             found += ["decoder->match == 0U"] if self.push.keeps_match else []

@@ -56,8 +56,9 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
 
     @cached_property
     def counter(self) -> str:
-        """The type of what counts bytes of the buffer, and one more."""
-        bits = next(bits for bits in (8, 16, 32) if self.buffer_size < (1 << bits) - 4)
+        """The type of what counts bytes of the buffer or their digits, and one byte more."""
+        most = self.counted(self.buffer_size)
+        bits = next(bits for bits in (8, 16, 32) if most < (1 << bits) - 4)
         return f"uint{bits}_t"
 
     @property
@@ -137,7 +138,7 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
     @property
     def idle_value(self) -> int:
         """Value of that counter then: nothing, or more than there is room for."""
-        return 0 if self.has_start else self.buffer_size + 1
+        return 0 if self.has_start else self.counted(self.buffer_size + 1)
 
     @property
     def has_no_room(self) -> str:
@@ -158,13 +159,15 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
         What is too short, or given up, has a payload greater than any.
         """
         if self.only_size is not None:
-            found = [f"at == {self.least + self.only_size}U"]
+            found = [f"{self.content_counter} == {self.counted(self.least + self.only_size)}U"]
         else:
             found = [f"payload <= {self.greatest_payload}U"]
         if self.least - self.behind <= self.begun and not self.only_size:
             found.append(f"at > {self.begun + self.behind}U")  # Else it is an idle line.
-        if self.stuffing is not None:
+        if self.has_node:
             found.append("node == 0U")
+        elif self.counts_digits and self.only_size is None:
+            found.append("(digits & 1U) == 0U")
         if self.groups_fill:
             found.append("code != 0U")
         return " && ".join(found)

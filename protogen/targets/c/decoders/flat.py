@@ -10,7 +10,7 @@ from protogen.targets.c.decoders.groups import GroupView
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.expressions import byte
 from protogen.targets.c.frame.numbers import NumberView
-from protogen.targets.c.frame.stuffing import Branch, Node
+from protogen.targets.c.frame.stuffing import Branch, Node, StuffingKind
 
 
 class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
@@ -42,13 +42,39 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         return f"{self.around + self.only_size}U"
 
     @property
+    def counts_digits(self) -> bool:
+        """True if bytes of content come as two digits each, which are counted."""
+        return self.stuffing is not None and self.stuffing.kind is StuffingKind.BASE16
+
+    def counted(self, size: int) -> int:
+        """Value of the counter of content behind so many bytes."""
+        return 2 * size if self.counts_digits else size
+
+    @property
+    def counted_limit(self) -> str:
+        """Value of that counter when all content is there, as far as is known."""
+        if self.only_size is None:
+            return "2U * decoder->limit" if self.counts_digits else "decoder->limit"
+        return f"{self.counted(self.around + self.only_size)}U"
+
+    @property
+    def content_counter(self) -> str:
+        """The variable for it while a byte is taken."""
+        return "digits" if self.counts_digits else "at"
+
+    @property
+    def has_node(self) -> bool:
+        """True if something else than that counter tells the place inside of a stuffed byte."""
+        return self.stuffing is not None and not self.counts_digits
+
+    @property
     def idle_member(self) -> str:
         """The counter that says that no candidate is open.
 
         No byte gets into a candidate whose limit is nought, which is the shortest test; but only
         where a limit is all that is in front of it can that not be mistaken for a payload's size.
         """
-        is_size = self.around > self.first_head
+        is_size = self.around > self.first_head or self.counts_digits
         return "content" if is_size or self.only_size is not None else "limit"
 
     @property
@@ -58,7 +84,7 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         A frame that is complete but for its end has no room either, which is the same test.
         """
         is_nothing = self.only_size is not None or self.idle_member == "limit"
-        return 0 if is_nothing else self.buffer_size + 1
+        return 0 if is_nothing else self.counted(self.buffer_size + 1)
 
     @property
     def skip_start(self) -> str:
@@ -125,7 +151,7 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         A decoder that was never initialised, in memory of zeros, has a limit of nought, too.
         """
         is_begun = " && at != 0U" if self.only_size is None else ""
-        return f"at == {self.limit}{is_begun}"
+        return f"{self.content_counter} == {self.counted_limit}{is_begun}"
 
     # --- parts ------------------------------------------------------------------------------------
 

@@ -13,6 +13,7 @@ POINTERS = 2
 """The handler and what it is given."""
 SMALL_POINTER = 2
 """Bytes of a pointer on a small target, which aligns nothing."""
+_DIGITS = "Digits of the candidate, with two for each byte of a start."
 _SIZES = {"uint8_t": 1, "uint16_t": 2, "uint32_t": 4, "uint64_t": 8}
 
 
@@ -54,13 +55,16 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
     fails = view.keeps_wire or push.decides_later
     holds = is_push and push.searches and push.holds_delimiter
     begins_next = is_push and push.keeps_behind
+    has_node = stuffing is not None if view.flat is None else view.flat.has_node
     has_code = is_push and kind in (StuffingKind.BASE16, StuffingKind.COBS)
+    is_paired = view.flat is not None and view.flat.counts_digits
+    content = _DIGITS if is_paired else "Bytes of the candidate without stuffing."
     extra = "Bytes behind a failed candidate that may belong to a start."
     open_from = "Bytes on the wire in front of the first that may be a start."
     counters = (
         (view.all_events, "noise", "Bytes of noise that are in no event yet."),
         (is_push and push.counts_wire, "wire", "Bytes of the candidate on the wire."),
-        (True, "content", "Bytes of the candidate without stuffing."),
+        (True, "content", content),
         (is_push, "payload", "Size of the payload, or the most that there is room for."),
         (has_limit, "limit", "Bytes of content that the frame has, or can have."),
         (view.keeps_wire, "count", "Bytes in the buffer."),
@@ -87,7 +91,7 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
         (holds, "held", "Bytes of a delimiter that are held back."),
         (push.awaits_end, "end_left", "Bytes of the end that are due."),
         (push.crosses_region, "region", "In front of the stuffed region, inside, or behind."),
-        (stuffing is not None, "node", "Place inside a sequence of the stuffing; 0 outside."),
+        (has_node, "node", "Place inside a sequence of the stuffing; 0 outside."),
         (has_code, "code", "First half of a byte, or the code of a group."),
     )
     found = [
@@ -119,16 +123,17 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
 
 def _of_delimited(view: DelimitedDecoder) -> tuple[Member, ...]:
     """The members of a decoder that judges frames at their end."""
+    content = _DIGITS if view.counts_digits else "Bytes in the buffer."
     node = "Place inside a sequence of the stuffing; 0 outside."
     if view.is_cobs:
         node = "Bytes up to the code of the next group."
     found = (
-        (True, Member(view.counter, "content", "Bytes in the buffer.")),
+        (True, Member(view.counter, "content", content)),
         (
             view.size_is_kept,
             Member(view.counter, "payload", "Size of the payload of a complete frame."),
         ),
-        (view.stuffing is not None, Member("uint8_t", "node", node)),
+        (view.has_node, Member("uint8_t", "node", node)),
         (view.end_size > 1, Member("uint8_t", "held", "1: the first byte of an end was the last.")),
         (view.groups_fill, Member("uint8_t", "code", "Code of the group.")),
         (True, Member("uint8_t", "buffer", "Bytes of the candidate.", view.buffer_size)),
