@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 from compiled import protocol_of
 
+from protogen.targets.c.emit import unit_of
+from protogen.targets.c.options import COptions
 from protogen.targets.c.payload.images import is_image
 
 SCHEMA = """\
@@ -48,3 +50,15 @@ def test_what_has_padding_or_other_bytes_in_memory_is_no_image(
     path.write_text(SCHEMA.format(fields=fields), encoding="utf-8")
     (message,) = protocol_of(path).messages
     assert is_image(message.plan) is is_one
+
+
+def test_what_checksums_are_read_by_is_there_for_images_as_well(tmp_path: Path) -> None:
+    path = tmp_path / "sample.yaml"
+    fields = "a: {type: uint16, count: 3}"
+    check = "  payload: {{}}\n  crc: {{type: uint16, algorithm: CRC-16/KERMIT, covers: payload}}\n"
+    schema = SCHEMA.replace("  payload: {{}}\n", check)
+    path.write_text(schema.format(fields=fields), encoding="utf-8")
+    unit = unit_of(protocol_of(path), COptions())
+    helpers = [*unit.module.helpers, *unit.framing.helpers]
+    [load] = [text for text in helpers if "sample_load_u16le(" in text]
+    assert load.startswith("static uint16_t sample_load_u16le(")

@@ -9,6 +9,7 @@ from pathlib import PurePosixPath
 import msgspec
 from jinja2 import Environment
 
+from protogen.copying import replace
 from protogen.model.frame_plan import StartRule
 from protogen.model.protocol import Protocol
 from protogen.passes.selection import narrow, select
@@ -67,6 +68,8 @@ def unit_of(protocol: Protocol, options: COptions) -> Unit:
     helpers = Helpers(names)
     module = view(chosen, options, names, helpers)
     framing = framing_view(chosen, module.messages, module.sinks, options, names, helpers)
+    # What frames call as well is needed where messages are copied as a whole, too.
+    module = replace(module, helpers=helpers.texts[: len(module.helpers)])
     return Unit(chosen, protocol, names, module, framing)
 
 

@@ -11,7 +11,7 @@ from protogen.model.part_plans import ChecksumPlan
 from protogen.model.parts import ChecksumPart, VirtualPart
 from protogen.targets.c.frame.algorithms import Algorithm, algorithm_of
 from protogen.targets.c.frame.expressions import Index, differs, taken_bits
-from protogen.targets.c.frame.part_numbers import PartNumbers
+from protogen.targets.c.frame.part_numbers import PartNumbers, fills_bytes
 from protogen.targets.c.frame.virtual import VirtualView
 
 
@@ -89,10 +89,12 @@ class ChecksumView(msgspec.Struct, frozen=True):
         return self.numbers.bytes_of(self.part.type, value)
 
     def differs(self, payload: str) -> str:
-        """The condition that `content` has other bytes than those of `due`, or other bits."""
+        """The condition that `content` has another number than `due`, or other bytes or bits."""
         if self.is_bits:
             found = self.numbers.bits(self.part.type, "content", self.at.of(payload))
             return f"{found} != {taken_bits(self.part, 'due')}"
+        if fills_bytes(self.part):
+            return f"{self.numbers.whole(self.part.type, 'content', self.at.of(payload))} != due"
         place = self.at.place
         at = place.offset if place.side is Side.HEAD else self.at.of(payload)
         return differs(self.wire_bytes("due"), "content", at)

@@ -100,7 +100,7 @@ def framing_view(
     """The frames and decoders of the senders that were chosen."""
     views = {view.name: view for view in messages}
     senders = [item for item in protocol.senders if _is_chosen(item, views, options)]
-    numbers, shared = PartNumbers(helpers), set(helpers.texts)
+    numbers, shared = PartNumbers(helpers), len(helpers.texts)
     claim_functions([sender.plan for sender in senders], numbers)
     decoders = tuple(
         decoder_view(names, sender, views, options.events, numbers) for sender in senders
@@ -142,7 +142,7 @@ def framing_view(
         dispatches=dispatches(decoders, messages, names),
         sinks=used,
         texts=texts_of(protocol),
-        helpers=tuple(text for text in helpers.texts if text not in shared),
+        helpers=helpers.texts[shared:],
     )
 
 

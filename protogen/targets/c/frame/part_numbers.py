@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from protogen.c_language.numbers import unsigned_type
 from protogen.model.frame_plan import FramePlan
 from protogen.model.numbers import Numeral
-from protogen.model.parts import BitsPart, NumberPart, PartType, TypedPart
+from protogen.model.parts import BitsPart, ChecksumPart, NumberPart, PartType, TypedPart
 from protogen.model.types import storage_bits
 from protogen.targets.c.frame import expressions
 from protogen.targets.c.payload.helpers import Helpers
@@ -65,6 +65,12 @@ class PartNumbers:
         return expressions.wire_bytes(type_, value)
 
 
+def fills_bytes(part: ChecksumPart) -> bool:
+    """True if the result of a checksum has all bits of the bytes that are sent."""
+    type_, width = part.type, part.algorithm.width
+    return type_.text is None and type_.byte_bits == 8 and 8 * type_.size == type_.bits == width
+
+
 def claim_functions(plans: Iterable[FramePlan], numbers: PartNumbers) -> None:
     """Ask for the functions that read and write the digits of frames, so that they are printed."""
     for plan in plans:
@@ -73,6 +79,8 @@ def claim_functions(plans: Iterable[FramePlan], numbers: PartNumbers) -> None:
         for item in plan.placed:
             if isinstance(item.part, TypedPart):
                 numbers.bytes_of(item.part.type, "value")
+            if isinstance(item.part, ChecksumPart) and fills_bytes(item.part):
+                numbers.whole(item.part.type, "content", 0)
             if isinstance(item.part, NumberPart):
                 numbers.value(item.part.type, "content", 0)
                 numbers.fault(item.part.type, "content", 0, "")
