@@ -8,7 +8,7 @@ from statistics import median
 from c_costs.measure import Results
 from c_costs.protocols import FED_KINDS, HAS_SSE2, KINDS, PROTOCOLS
 from c_costs.speeds import Speed
-from c_costs.tables import NOTHING, TARGET, header, messages, row
+from c_costs.tables import NOTHING, Ratio, header, messages, row
 
 SHARE = 2
 """The most time that a fed buffer may take, by that of the expert with SSE2."""
@@ -89,21 +89,20 @@ def recovery_table(results: Results) -> str:
     return "\n".join(lines)
 
 
-def time_ratios(results: Results) -> Iterator[tuple[str, float]]:
+def time_ratios(results: Results) -> Iterator[Ratio]:
     for protocol, _, message in messages():
         name = f"{protocol.label} {message}"
         for what in ("push", "feed", "encode"):
-            yield f"this machine, {name}: {what}", time_ratio(results, name, what)
+            value = time_ratio(results, name, what)
+            yield Ratio(f"this machine, {name}: {what}", value)
 
 
-def misses(found: Iterator[tuple[str, float]]) -> str:
+def misses(found: Iterator[Ratio]) -> str:
     """Figures above the aim, the worst in front; a figure that is not there is one of them."""
     figures = list(found)
-    missed = sorted((item for item in figures if not item[1] <= TARGET), key=lambda item: -item[1])
-    met = len(figures) - len(missed)
+    missed = sorted((item for item in figures if item.is_missed), key=lambda item: -item.value)
     if not missed:
-        return f"All {met} figures are within {TARGET}."
-    lines = [f"* {name}: {value:.2f}" for name, value in missed]
-    return "\n".join(
-        [f"{met} of {len(figures)} figures are within {TARGET}. The others:", "", *lines]
-    )
+        return f"None of {len(figures)} figures misses it."
+    met = len(figures) - len(missed)
+    lines = [f"* {item.name}: {item.value:.2f}" for item in missed]
+    return "\n".join([f"{met} of {len(figures)} figures meet it. The others:", "", *lines])

@@ -1409,7 +1409,7 @@ static uint8_t dagny_host_complete(struct dagny_host_decoder *decoder) {
         uint8_t due;
         sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload - 0U);
         due = dagny_xor_8_final(sum);
-        if (content[1U + decoder->payload] != (uint8_t)due) {
+        if (content[1U + decoder->payload] != due) {
             return DAGNY_CHECKSUM;
         }
     }
@@ -1883,7 +1883,7 @@ static uint8_t dagny_robot_complete(struct dagny_robot_decoder *decoder) {
         uint8_t due;
         sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload - 0U);
         due = dagny_xor_8_final(sum);
-        if (content[1U + decoder->payload] != (uint8_t)due) {
+        if (content[1U + decoder->payload] != due) {
             return DAGNY_CHECKSUM;
         }
     }

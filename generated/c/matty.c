@@ -1152,7 +1152,7 @@ static uint8_t matty_pc_complete(struct matty_pc_decoder *decoder) {
         uint8_t due;
         sum = matty_sum_8_negated_run(sum, &content[1U], 4U + (size_t)decoder->payload - 1U);
         due = matty_sum_8_negated_final(sum);
-        if (content[4U + decoder->payload] != (uint8_t)due) {
+        if (content[4U + decoder->payload] != due) {
             return MATTY_CHECKSUM;
         }
     }
@@ -1537,7 +1537,7 @@ static size_t matty_pc_take_whole(struct matty_pc_decoder *decoder, const uint8_
         uint8_t due;
         sum = matty_sum_8_negated_run(sum, &content[1U], 4U + payload - 1U);
         due = matty_sum_8_negated_final(sum);
-        if (content[4U + payload] != (uint8_t)due) {
+        if (content[4U + payload] != due) {
             return 0;
         }
     }
@@ -1664,7 +1664,7 @@ static uint8_t matty_esp_complete(struct matty_esp_decoder *decoder) {
         uint8_t due;
         sum = matty_sum_8_negated_run(sum, &content[1U], 4U + (size_t)decoder->payload - 1U);
         due = matty_sum_8_negated_final(sum);
-        if (content[4U + decoder->payload] != (uint8_t)due) {
+        if (content[4U + decoder->payload] != due) {
             return MATTY_CHECKSUM;
         }
     }
@@ -2050,7 +2050,7 @@ static size_t matty_esp_take_whole(struct matty_esp_decoder *decoder, const uint
         uint8_t due;
         sum = matty_sum_8_negated_run(sum, &content[1U], 4U + payload - 1U);
         due = matty_sum_8_negated_final(sum);
-        if (content[4U + payload] != (uint8_t)due) {
+        if (content[4U + payload] != due) {
             return 0;
         }
     }

@@ -1405,7 +1405,7 @@ static uint8_t matty_v4_pc_complete(struct matty_v4_pc_decoder *decoder) {
         uint8_t due;
         sum = matty_v4_sum_8_negated_run(sum, &content[1U], 4U + (size_t)decoder->payload - 1U);
         due = matty_v4_sum_8_negated_final(sum);
-        if (content[4U + decoder->payload] != (uint8_t)due) {
+        if (content[4U + decoder->payload] != due) {
             return MATTY_V4_CHECKSUM;
         }
     }
@@ -1791,7 +1791,7 @@ static size_t matty_v4_pc_take_whole(struct matty_v4_pc_decoder *decoder, const 
         uint8_t due;
         sum = matty_v4_sum_8_negated_run(sum, &content[1U], 4U + payload - 1U);
         due = matty_v4_sum_8_negated_final(sum);
-        if (content[4U + payload] != (uint8_t)due) {
+        if (content[4U + payload] != due) {
             return 0;
         }
     }
@@ -1924,7 +1924,7 @@ static uint8_t matty_v4_esp_complete(struct matty_v4_esp_decoder *decoder) {
         uint8_t due;
         sum = matty_v4_sum_8_negated_run(sum, &content[1U], 4U + (size_t)decoder->payload - 1U);
         due = matty_v4_sum_8_negated_final(sum);
-        if (content[4U + decoder->payload] != (uint8_t)due) {
+        if (content[4U + decoder->payload] != due) {
             return MATTY_V4_CHECKSUM;
         }
     }
@@ -2310,7 +2310,7 @@ static size_t matty_v4_esp_take_whole(struct matty_v4_esp_decoder *decoder, cons
         uint8_t due;
         sum = matty_v4_sum_8_negated_run(sum, &content[1U], 4U + payload - 1U);
         due = matty_v4_sum_8_negated_final(sum);
-        if (content[4U + payload] != (uint8_t)due) {
+        if (content[4U + payload] != due) {
             return 0;
         }
     }

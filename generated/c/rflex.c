@@ -2013,7 +2013,7 @@ static uint8_t rflex_linux_complete(struct rflex_linux_decoder *decoder) {
         uint8_t due;
         sum = rflex_xor_8_run(sum, &content[6U], 6U + (size_t)decoder->payload - 6U);
         due = rflex_xor_8_final(sum);
-        if (content[6U + decoder->payload] != (uint8_t)due) {
+        if (content[6U + decoder->payload] != due) {
             return RFLEX_CHECKSUM;
         }
     }
@@ -2513,7 +2513,7 @@ static size_t rflex_linux_take_whole(struct rflex_linux_decoder *decoder, const 
         uint8_t due;
         sum = rflex_xor_8_run(sum, &content[6U], 6U + payload - 6U);
         due = rflex_xor_8_final(sum);
-        if (content[6U + payload] != (uint8_t)due) {
+        if (content[6U + payload] != due) {
             return 0;
         }
     }
@@ -2724,7 +2724,7 @@ static uint8_t rflex_flex_complete(struct rflex_flex_decoder *decoder) {
         uint8_t due;
         sum = rflex_xor_8_run(sum, &content[6U], 6U + (size_t)decoder->payload - 6U);
         due = rflex_xor_8_final(sum);
-        if (content[6U + decoder->payload] != (uint8_t)due) {
+        if (content[6U + decoder->payload] != due) {
             return RFLEX_CHECKSUM;
         }
     }
@@ -3224,7 +3224,7 @@ static size_t rflex_flex_take_whole(struct rflex_flex_decoder *decoder, const ui
         uint8_t due;
         sum = rflex_xor_8_run(sum, &content[6U], 6U + payload - 6U);
         due = rflex_xor_8_final(sum);
-        if (content[6U + payload] != (uint8_t)due) {
+        if (content[6U + payload] != due) {
             return 0;
         }
     }

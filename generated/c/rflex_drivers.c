@@ -2483,7 +2483,7 @@ static uint8_t rflex_drivers_linux_complete(struct rflex_drivers_linux_decoder *
         uint8_t due;
         sum = rflex_drivers_xor_8_run(sum, &content[2U], 6U + (size_t)decoder->payload - 2U);
         due = rflex_drivers_xor_8_final(sum);
-        if (content[6U + decoder->payload] != (uint8_t)due) {
+        if (content[6U + decoder->payload] != due) {
             return RFLEX_DRIVERS_CHECKSUM;
         }
     }
@@ -2994,7 +2994,7 @@ static size_t rflex_drivers_linux_take_whole(struct rflex_drivers_linux_decoder 
         uint8_t due;
         sum = rflex_drivers_xor_8_run(sum, &content[2U], 6U + payload - 2U);
         due = rflex_drivers_xor_8_final(sum);
-        if (content[6U + payload] != (uint8_t)due) {
+        if (content[6U + payload] != due) {
             return 0;
         }
     }
@@ -3220,7 +3220,7 @@ static uint8_t rflex_drivers_flex_complete(struct rflex_drivers_flex_decoder *de
         uint8_t due;
         sum = rflex_drivers_xor_8_run(sum, &content[2U], 6U + (size_t)decoder->payload - 2U);
         due = rflex_drivers_xor_8_final(sum);
-        if (content[6U + decoder->payload] != (uint8_t)due) {
+        if (content[6U + decoder->payload] != due) {
             return RFLEX_DRIVERS_CHECKSUM;
         }
     }
@@ -3729,7 +3729,7 @@ static size_t rflex_drivers_flex_take_whole(struct rflex_drivers_flex_decoder *d
         uint8_t due;
         sum = rflex_drivers_xor_8_run(sum, &content[2U], 6U + payload - 2U);
         due = rflex_drivers_xor_8_final(sum);
-        if (content[6U + payload] != (uint8_t)due) {
+        if (content[6U + payload] != due) {
             return 0;
         }
     }
