@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from c_proof.annotations import OPTIONS, annotated, fed
-from c_proof.drivers import Driver, decode_driver, first_driver, push_driver
+from c_proof.drivers import Driver, decode_driver, first_driver, known_in, push_driver
 from c_proof.eva import MACHINES, Report, analyse
 from c_proof.generated import Generated, generate
 from c_proof.sending import send_driver, unrolled
@@ -40,6 +40,8 @@ DIGITS = ROOT / "tests" / "framings" / "digit_words.yaml"
 COBS = ROOT / "tests" / "framings" / "cobs.yaml"
 HDLC = ROOT / "tests" / "framings" / "hdlc.yaml"
 """Frames that are judged at their end, where messages alone are asked for."""
+PROBE = ROOT / "benchmarks" / "c" / "probe.yaml"
+"""Frames whose bytes are looked through again where a start was a false one."""
 IDLE = ROOT / "tests" / "framings" / "idle_end.yaml"
 """Frames that only a silence ends, so that a decoder holds one byte more than they have."""
 BITS = ROOT / "tests" / "c_schemas" / "part_bits.yaml"
@@ -88,6 +90,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
         (BITS, "messages", WIDE),
         (COBS, "messages", WIDE),
         (HDLC, "messages", NARROW),
+        (PROBE, "messages", NARROW),
         (MIRRORS, "messages", NARROW),
         (HELD, "all", WIDE),
         (FORMS, "messages", WIDE),
@@ -129,7 +132,10 @@ def prove(made: Generated, driver: Driver, machine: str = WIDE) -> Report:
     """Analyse a driver of generated code."""
     source = made.folder / "driver.c"
     source.write_text(driver.text, encoding="utf-8")
-    return analyse(source, made.folder, machine, *driver.options)
+    assert made.source is not None
+    generated = made.source.read_text(encoding="utf-8")
+    options = known_in(f"{driver.text}{generated}", driver.options)
+    return analyse(source, made.folder, machine, *options)
 
 
 @pytest.mark.parametrize(("path", "machine"), DECODES, ids=name_of)
@@ -222,7 +228,12 @@ def test_no_event_has_bytes_that_were_not_received(path: Path, tmp_path: Path) -
 
 @pytest.mark.parametrize(
     ("document", "only"),
-    [("matty", "status"), ("rflex", "request_system_status"), ("rn1", "gyro")],
+    [
+        ("matty", "status"),
+        ("rflex", "request_system_status"),
+        ("rn1", "gyro"),
+        ("dagny", "motor"),
+    ],
 )
 def test_no_input_harms_a_decoder_of_one_message(document: str, only: str, tmp_path: Path) -> None:
     """Its frames have one size, which it does not keep."""

@@ -13,7 +13,7 @@ from c_costs.toolchains import AVR, ORDINARY
 from c_costs.workshop import Workshop
 
 RECORD = FOLDER / "sizes.toml"
-RECORDED = ("matty", "rover", "probe", "tether")
+RECORDED = ("matty", "rover", "probe", "tether", "dagny")
 """Protocols whose programs are cheap to build, one for each framing and checksum."""
 HEADER = """\
 # Bytes of flash on an ATmega328P that protogen takes in an ordinary build (no -flto), in programs

@@ -190,6 +190,17 @@ _ANY = {
 """Any number of a type."""
 
 
+def known_in(source: str, options: Sequence[str]) -> tuple[str, ...]:
+    """The options without functions that the source does not have, about which EVA complains."""
+
+    def known(option: str) -> str:
+        name, found, values = option.partition("-function=")
+        is_there = (item for item in values.split(",") if f"{item.partition(':')[0]}(" in source)
+        return f"{name}{found}{','.join(is_there)}" if found else option
+
+    return tuple(known(option) for option in options)
+
+
 @dataclass(frozen=True)
 class Driver:
     """A program that calls some functions with every input."""

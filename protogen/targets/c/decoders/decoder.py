@@ -11,6 +11,7 @@ from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.delimited import DelimitedDecoder
 from protogen.targets.c.decoders.flat import FlatDecoder
 from protogen.targets.c.decoders.groups import groups_of
+from protogen.targets.c.decoders.kept import KeptDecoder
 from protogen.targets.c.decoders.push import PushDecoder
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.decoders.style import DecoderStyle, decoder_style
@@ -36,10 +37,17 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
         is_delimited = decoder_style(self) is DecoderStyle.DELIMITED
         return DelimitedDecoder(*astuple(self)) if is_delimited else None
 
+    @cached_property
+    def kept(self) -> KeptDecoder | None:
+        """View of a decoder that looks through what it keeps, if this is one."""
+        is_kept = decoder_style(self) is DecoderStyle.KEPT
+        return KeptDecoder(*astuple(self)) if is_kept else None
+
     @property
-    def polled(self) -> FlatDecoder | DelimitedDecoder | PushDecoder | None:
+    def polled(self) -> FlatDecoder | DelimitedDecoder | KeptDecoder | PushDecoder | None:
         """View of a decoder whose `push` returns which message is complete, if this is one."""
-        return (self.flat or self.delimited or self.push) if self.is_polled else None
+        lean = self.flat or self.delimited or self.kept
+        return (lean or self.push) if self.is_polled else None
 
     @property
     def fills_in_place(self) -> bool:
@@ -49,12 +57,15 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
     @property
     def gives_more(self) -> bool:
         """True if messages may be left when `push` has returned one."""
+        if self.kept is not None:
+            return self.kept.gives_more
         return self.polled is self.push and self.push.gives_more
 
     @property
     def size_type(self) -> str:
         """The type of what counts bytes of a frame that is received."""
-        return self.counter if self.delimited is None else self.delimited.counter
+        lean = self.delimited or self.kept
+        return self.counter if lean is None else lean.counter
 
     @cached_property
     def push(self) -> PushDecoder:
@@ -64,7 +75,12 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
     @cached_property
     def whole(self) -> WholeFrames | None:
         """View of how `feed` takes a frame at once, if it can."""
-        return None if self.delimited else whole_frames(self)
+        return None if self.delimited or self.kept else whole_frames(self)
+
+    @property
+    def takes_whole(self) -> bool:
+        """True if `feed` takes frames that stand in the input as a whole."""
+        return self.whole is not None or self.kept is not None
 
     @property
     def takes_content(self) -> bool:

@@ -10,7 +10,7 @@ from functools import cached_property
 
 from protogen.model.frame_plan import StartRule, Store
 from protogen.targets.c.decoders.flat import FlatDecoder
-from protogen.targets.c.decoders.groups import GroupView
+from protogen.targets.c.decoders.groups import GroupView, constants_by_size
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.expressions import byte
 from protogen.targets.c.frame.stuffing import StuffingKind
@@ -82,11 +82,7 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
     @cached_property
     def sizes(self) -> dict[int, tuple[str, ...]]:
         """The constants of the messages by the size of their payload, where that is fixed."""
-        found: dict[int, tuple[str, ...]] = {}
-        for group in self.groups:
-            for message in group.messages:
-                found[message.least] = (*found.get(message.least, ()), message.constant)
-        return found
+        return constants_by_size(self.groups)
 
     @property
     def size_member(self) -> str:

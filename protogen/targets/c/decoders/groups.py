@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import msgspec
 
@@ -139,6 +139,15 @@ def groups_of(plan: FramePlan, views: Mapping[str, MessageView]) -> tuple[GroupV
         )
         for index, group in enumerate(plan.groups)
     )
+
+
+def constants_by_size(groups: Iterable[GroupView]) -> dict[int, tuple[str, ...]]:
+    """The constants of messages of fixed sizes by these."""
+    found: dict[int, tuple[str, ...]] = {}
+    for group in groups:
+        for message in group.messages:
+            found[message.least] = (*found.get(message.least, ()), message.constant)
+    return found
 
 
 def alternatives_of(plan: FramePlan) -> tuple[Alternatives, ...]:

@@ -9,6 +9,7 @@ import msgspec
 from protogen.targets.c.decoders.candidate import Candidate
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.delimited import DelimitedDecoder
+from protogen.targets.c.decoders.kept import KeptDecoder
 from protogen.targets.c.frame.stuffing import StuffingKind
 
 POINTERS = 2
@@ -54,8 +55,8 @@ def memory_of(view: DecoderView) -> int:
 
 def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
     """The members, behind the handler and its `user` where there is one; the buffers last."""
-    if isinstance(view, DecoderView) and view.delimited is not None:
-        return _of_delimited(view.delimited)
+    if isinstance(view, DecoderView) and (view.delimited or view.kept):
+        return _of_lean(view)
     plan, push, stuffing = view.plan, view.push, view.stuffing
     kind = None if stuffing is None else stuffing.kind
     is_push = view.flat is None
@@ -139,6 +140,14 @@ def _told(view: DecoderView | Candidate) -> Iterator[Member]:
         yield Member("uint8_t", "refused", about)
 
 
+def _of_lean(view: DecoderView) -> tuple[Member, ...]:
+    """The members of a decoder with little more than a buffer."""
+    if view.kept is not None:
+        return _of_kept(view.kept)
+    assert view.delimited is not None
+    return _of_delimited(view.delimited)
+
+
 def _of_delimited(view: DelimitedDecoder) -> tuple[Member, ...]:
     """The members of a decoder that judges frames at their end."""
     node = "Place inside a sequence of the stuffing; 0 outside."
@@ -156,6 +165,22 @@ def _of_delimited(view: DelimitedDecoder) -> tuple[Member, ...]:
         (True, Member("uint8_t", "buffer", "Bytes of the candidate.", view.buffer_size)),
     )
     return tuple(member for is_there, member in found if is_there)
+
+
+def _of_kept(view: KeptDecoder) -> tuple[Member, ...]:
+    """The members of a decoder that looks through what it keeps."""
+    buffer = Member("uint8_t", "buffer", "Bytes of the candidate, and behind it.", view.buffer_size)
+    if not view.gives_more:
+        return Member(view.counter, "content", "Bytes in the buffer."), buffer
+    payload = Member(view.counter, "payload", "Size of the payload of a complete frame.")
+    due = "Bytes of a message, or of a candidate when it is looked at again."
+    return (
+        Member(view.counter, "content", "Bytes in the buffer."),
+        Member(view.counter, "due", due),
+        *((payload,) if view.size_is_kept else ()),
+        Member("uint8_t", "ending", "1: no more bytes follow those in the buffer."),
+        buffer,
+    )
 
 
 def candidate_members(view: Candidate) -> tuple[Member, ...]:

@@ -6,6 +6,7 @@ from enum import Enum, auto
 
 from protogen.model.frame_plan import StartRule, Store
 from protogen.targets.c.decoders.delimited import is_delimited
+from protogen.targets.c.decoders.kept import is_kept
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.stuffing import StuffingKind
 
@@ -19,6 +20,8 @@ class DecoderStyle(Enum):
     """No more states than how much of a frame is there."""
     DELIMITED = auto()
     """The same where a frame is judged at its end, whatever its head says."""
+    KEPT = auto()
+    """The same where a start may stand inside of a frame, whose bytes are looked through again."""
 
 
 def decoder_style(frame: ReceivedFrame) -> DecoderStyle:
@@ -27,12 +30,15 @@ def decoder_style(frame: ReceivedFrame) -> DecoderStyle:
     Where nobody asks what was wrong, what does not fit is given up. A flat decoder is for frames
     that begin with a protected start and tell their size in their head: a byte of a start is
     always one. A delimited one is for those with a protected end. Nothing of an identity is told.
+    One that keeps bytes is for those that nothing protects and that tell their size early.
     """
     if frame.all_events or not (_tail_stays(frame) and _payload_is_plain(frame)):
         return DecoderStyle.PUSH
     if _is_flat(frame):
         return DecoderStyle.FLAT
-    return DecoderStyle.DELIMITED if is_delimited(frame) else DecoderStyle.PUSH
+    if is_delimited(frame):
+        return DecoderStyle.DELIMITED
+    return DecoderStyle.KEPT if is_kept(frame) else DecoderStyle.PUSH
 
 
 def _is_flat(frame: ReceivedFrame) -> bool:

@@ -82,7 +82,7 @@ class FramingView(msgspec.Struct, frozen=True):
     @property
     def takes_whole(self) -> bool:
         """True if some decoder takes whole frames out of what it is fed."""
-        return any(decoder.whole for decoder in self.decoders)
+        return any(decoder.takes_whole for decoder in self.decoders)
 
     @property
     def unstuffs_whole(self) -> bool:

@@ -1,0 +1,258 @@
+"""C decoders of frames in which a start may stand, where messages alone are asked for."""
+
+from __future__ import annotations
+
+from itertools import chain
+from pathlib import Path
+from random import Random
+
+import pytest
+from amounts import OF_TWO_ENGINES
+from c_engine import Process, check_events, messages_of, process_of, python_events
+from compiled import ROOT, module_at, protocol_of
+from corpus import material_of, stream_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from test_c_decoder import steps_of
+
+from protogen.fuzzing.c_calls import Step
+from protogen.targets.c.decoders.decoder import DecoderView
+from protogen.targets.c.decoders.members import members_of, memory_of
+from protogen.targets.c.emit import unit_of
+from protogen.targets.c.options import COptions
+
+MESSAGES = COptions(events="messages")
+SCHEMA = """
+protocol: kept
+byte_order: big
+endpoints:
+  lamp: Start and end
+  dial: Start of two bytes, and nothing is summed
+  line: End of two bytes, and no start
+  word: End of one byte behind an identity
+  narrow: Length of one byte
+  wide: Length of two bytes, and end of two
+  late: Identity behind the payload
+  bare: Nothing but a length in front
+  table: Several messages of an identity
+frame:
+  lamp:
+    start: {literal: 2, unprotected: anywhere}
+    payload: {}
+    check: {type: uint8, algorithm: sum-8, covers: payload}
+    end: {literal: 3, unprotected: anywhere}
+  dial:
+    start: {literal: [2, 2], unprotected: anywhere}
+    payload: {}
+  line:
+    payload: {}
+    check: {type: uint8, algorithm: xor-8, covers: payload}
+    end: {literal: [3, 2], unprotected: anywhere}
+  word:
+    id: {type: uint8, id: true}
+    payload: {}
+    check: {type: uint8, algorithm: xor-8, covers: [id, payload], when: payload}
+    end: {literal: 3, unprotected: anywhere}
+  narrow:
+    start: {literal: 2, unprotected: anywhere}
+    length: {type: uint8, counts: payload}
+    id: {type: uint8, id: true}
+    payload: {}
+    check: {type: uint8, algorithm: xor-8, covers: [length, id, payload]}
+  wide:
+    start: {literal: [2, 3], unprotected: anywhere}
+    length: {type: uint16, counts: [length, id, payload]}
+    id: {type: uint8, id: true}
+    payload: {}
+    end: {literal: [3, 2], unprotected: anywhere}
+  late:
+    start: {literal: 2, unprotected: anywhere}
+    length: {type: uint8, counts: payload}
+    payload: {}
+    id: {type: uint8, id: true}
+    check: {type: uint8, algorithm: sum-8, covers: [length, payload, id]}
+  bare:
+    length: {type: uint8, counts: payload}
+    payload: {}
+    check: {type: uint8, algorithm: sum-8, covers: [length, payload]}
+  table:
+    start: {literal: 2, unprotected: anywhere}
+    id: {type: uint8, id: true}
+    length: {type: uint8, counts: payload}
+    payload: {}
+    check: {type: uint8, algorithm: xor-8, covers: payload}
+    end: {literal: 3, unprotected: anywhere}
+messages:
+  light: {from: lamp, fields: {level: uint16}}
+  angle: {from: dial, fields: {degrees: uint16}}
+  weight: {from: line, fields: {grams: uint16}}
+  go: {id: 2, from: word, fields: {speed: uint8}}
+  stop: {id: 4, from: word, fields: {brake: uint8}}
+  small: {id: 2, from: [narrow, wide, late], fields: {one: uint8}}
+  mode:
+    id: 3
+    from: [narrow, wide, late]
+    fields: {mode: {type: uint8, values: {off: 2, on: 3}, closed: true}, more: uint8}
+  text:
+    id: 4
+    from: [narrow, late]
+    fields: {data: {type: bytes, size: {fill: true, max: 12}}}
+  record:
+    id: 4
+    from: wide
+    fields: {data: {type: bytes, size: {fill: true, max: 300}}}
+  note: {from: bare, fields: {data: {type: bytes, size: {fill: true, max: 5}}}}
+  brief: {id: 2, from: table, fields: {one: uint8}}
+  long: {id: 2, from: table, fields: {one: uint16}}
+  rest:
+    id: 2
+    from: table
+    fields: {one: uint32, data: {type: bytes, size: {fill: true, max: 3}}}
+  other: {id: 3, from: table}
+overloads:
+  by_size: {messages: [brief, long, rest], by: size}
+decisions:
+  anywhere:
+    question: What keeps a delimiter out of the data?
+    document: Nothing does.
+    choice: A receiver looks for the next one inside of what fails.
+    because: Most protocols of this shape do so.
+"""
+ONE_SIZE = {"lamp": 2, "dial": 2, "line": 2, "word": 1}
+"""Senders whose payloads all have a size, and that size."""
+SIZED = ("narrow", "wide", "late", "bare", "table")
+SENDERS = (*ONE_SIZE, *SIZED)
+PROBE = ROOT / "benchmarks" / "c" / "probe.yaml"
+DAGNY = ROOT / "schemas" / "dagny.yaml"
+COMMANDS = COptions(events="messages", only=("motor", "steering", "reflex", "power"))
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    found = tmp_path_factory.mktemp("kept") / "kept.yaml"
+    found.write_text(SCHEMA, encoding="utf-8")
+    return found
+
+
+def decoder_of(path: Path, sender: str, options: COptions = MESSAGES) -> DecoderView:
+    decoders = unit_of(protocol_of(path), options).framing.decoders
+    return next(decoder for decoder in decoders if decoder.name == sender)
+
+
+# --- streams --------------------------------------------------------------------------------------
+
+
+def mixed(path: Path, sender: str, dice: Random) -> bytes:
+    """Frames, damaged ones, and beginnings of some inside of which others stand."""
+    material = material_of(path, sender)
+    data = stream_of(material, dice, 20).data[:3000]
+    for _ in range(12):
+        frame = dice.choice(material.frames)
+        data += frame[: dice.randrange(len(frame))] + dice.choice(material.frames)
+    return data
+
+
+def single(data: bytes, dice: Random) -> list[Step]:
+    """A step for each byte, so that a message that comes too early or too late is seen."""
+    kinds = ("push", "feed")
+    return [(dice.choice(kinds), bytes((byte,))) for byte in data] + [("flush",)]
+
+
+@pytest.mark.parametrize("sender", SENDERS)
+def test_streams_have_the_messages_that_python_finds(path: Path, sender: str) -> None:
+    decoder = decoder_of(path, sender)
+    assert decoder.kept is not None
+    assert (decoder.kept.only_size, decoder.gives_more) == (ONE_SIZE.get(sender), sender in SIZED)
+    process = process_of(path, MESSAGES)
+    for seed in range(6):
+        dice = Random(f"{sender} {seed}")
+        data = mixed(path, sender, dice)
+        steps: list[Step] = [("clear",)] if seed % 2 else []
+        steps += steps_of(data, dice) if seed % 3 else single(data[-1000:], dice)
+        check_events(process, module_at(path), sender, steps)
+
+
+@pytest.mark.parametrize("sender", SENDERS)
+@settings(max_examples=OF_TWO_ENGINES)
+@given(data=st.lists(st.sampled_from((0, 1, 2, 3, 4, 5)), max_size=60), dice=st.randoms())
+def test_bytes_that_tell_something_make_the_same_messages(
+    path: Path, sender: str, data: list[int], dice: Random
+) -> None:
+    steps = single(bytes(data), dice)
+    check_events(process_of(path, MESSAGES), module_at(path), sender, [("clear",), *steps])
+
+
+@pytest.mark.parametrize(
+    ("schema", "sender", "options"),
+    [
+        (DAGNY, "host", COMMANDS),
+        (PROBE, "sensor", MESSAGES),
+        (PROBE, "sensor", COptions(events="messages", only=("power",))),
+    ],
+    ids=["dagny", "probe", "power"],
+)
+def test_documents_have_the_messages_that_python_finds(
+    schema: Path, sender: str, options: COptions
+) -> None:
+    assert decoder_of(schema, sender, options).kept
+    process = process_of(schema, options)
+    for seed in range(6):
+        dice = Random(f"{sender} {seed}")
+        data = mixed(schema, sender, dice)
+        steps = steps_of(data, dice) if seed % 2 else single(data[-1000:], dice)
+        check_events(process, process.module, sender, steps)
+
+
+# --- by hand --------------------------------------------------------------------------------------
+
+# Start, length 0C and identity of a text; then one of 7, 02 01 02 07 04, and one of 8,
+# 02 01 02 08 0B, which the text would have as its data; its last two bytes; and 00, no sum of it.
+INSIDE = bytes.fromhex("02 0C 04  02 01 02 07 04  02 01 02 08 0B  00 00  00")
+FIRST_TWO = [("small", {"one": 7}), ("small", {"one": 8})]
+
+
+def values_of(process: Process, steps: list[Step]) -> list[list[tuple[str, object]]]:
+    """The messages of each step, which are those that Python finds."""
+    found = process.do(process.calls.events("narrow", steps))
+    assert found == messages_of(python_events(process.module, "narrow", steps))
+    return [[(event.message, event.values) for event in events] for events in found]
+
+
+def test_a_byte_that_makes_a_candidate_fail_gives_all_messages_inside(path: Path) -> None:
+    steps: list[Step] = [("push", INSIDE[:-1]), ("push", INSIDE[-1:])]
+    assert values_of(process_of(path, MESSAGES), steps) == [[], FIRST_TWO]
+
+
+def test_the_end_of_the_input_gives_all_messages_inside(path: Path) -> None:
+    steps: list[Step] = [("feed", INSIDE[:-1]), ("flush",), ("push", INSIDE[3:8]), ("flush",)]
+    assert values_of(process_of(path, MESSAGES), steps) == [[], FIRST_TWO, FIRST_TWO[:1], []]
+
+
+def test_what_is_left_in_front_of_the_next_frame_is_looked_at(path: Path) -> None:
+    """Behind the two that stand inside, a third begins, and the rest of it follows."""
+    third = bytes.fromhex("02 01 02 09 0A")  # 01 xor 02 xor 09 is 0A.
+    data = INSIDE[:-3] + third
+    steps: list[Step] = [("push", data[: len(INSIDE)]), ("push", data[len(INSIDE) :])]
+    found = list(chain.from_iterable(values_of(process_of(path, MESSAGES), steps)))
+    assert found == [*FIRST_TWO, ("small", {"one": 9})]
+
+
+# --- memory ---------------------------------------------------------------------------------------
+
+
+def test_frames_of_one_size_need_no_more_than_their_bytes_and_a_counter() -> None:
+    """Of dagny's commands: identity, a byte, its sum and the end."""
+    host = decoder_of(DAGNY, "host", COMMANDS)
+    assert {item.name: item.size for item in members_of(host)} == {"content": 1, "buffer": 4}
+    assert memory_of(host) == 5
+
+
+def test_no_more_is_kept_than_the_greatest_frame() -> None:
+    """Of the probe: two bytes of start, length, identity, ten of attitude, and four of a sum."""
+    sensor = decoder_of(PROBE, "sensor")
+    assert {item.name: item.size for item in members_of(sensor)} == {
+        "content": 1,
+        "due": 1,
+        "ending": 1,
+        "buffer": 2 + 1 + 1 + 10 + 4,
+    }
