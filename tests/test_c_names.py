@@ -20,6 +20,8 @@ from protogen.targets.naming import message
 
 PATHS = sorted({*SCHEMAS, *ROOT.glob("tests/c_schemas/*.yaml")})
 NO_CODE = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\])*"', re.DOTALL)
+DEFINED = r"^(?:(?:static|\w+_INLINE) .*\b{0}\(|typedef char {0}\[)"
+"""A function, or what is asserted when it is compiled."""
 AT_FILE_SCOPE = re.compile(r"^(?:#define |(?!extern |enum \{)[a-z]).*$", re.MULTILINE)
 
 
@@ -48,10 +50,10 @@ def test_every_name_of_generated_c_is_in_the_table(
             assert set(prefixed.findall(text)) <= table | helpers
             for line in AT_FILE_SCOPE.findall(text):
                 assert prefixed.search(line), line
-        # Helpers are the only ones that are named later; each is the source's own function.
+        # Helpers are the only ones that are named later; each is the source's own.
         printed = "\n".join(file.text for file in files)
         for name in helpers.intersection(prefixed.findall(printed)):
-            assert re.search(rf"^(?:static|\w+_INLINE) .*\b{name}\(", printed, re.MULTILINE)
+            assert re.search(DEFINED.format(name), printed, re.MULTILINE)
 
 
 def test_no_name_stands_for_two_things() -> None:
