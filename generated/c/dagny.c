@@ -925,8 +925,6 @@ struct dagny_writer {
     uint8_t host_checksum;
 };
 
-enum { DAGNY_STUFFED = 128 };
-
 /* The next byte of content. */
 static void dagny_host_write(struct dagny_writer *writer, uint8_t byte) {
     if ((writer->flags & 1U) != 0U) {

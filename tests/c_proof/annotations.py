@@ -34,6 +34,8 @@ _PAYLOAD_KNOWN = re.compile(
     r"if \(payload <= (\d+)U\) \{\n( +)decoder->payload = payload;\n(?= +return \w+_complete\()"
 )
 """Where a frame's payload has a size, which it keeps while its event is filled."""
+_ROOM = re.compile(r"^( +)if \(\(uint8_t\)\(at - 1U\) >= (\d+)U\) \{\n", re.MULTILINE)
+"""A place that is neither nought nor behind the buffer, which one comparison tells."""
 _FIXED = re.compile(r"payload\[\d+\]")
 
 
@@ -48,7 +50,8 @@ def fed(source: str, header: str) -> str:
     """Generated C with annotations where `feed` looks whether an event was filled.
 
     It is filled, with a payload of that message, just where it has a message; and what `push` has
-    found at a frame's end stays apart from decoders that never saw one.
+    found at a frame's end stays apart from decoders that never saw one, as places in a buffer do
+    from those in front of it and behind it.
     """
 
     def splits(found: re.Match[str]) -> str:
@@ -59,7 +62,13 @@ def fed(source: str, header: str) -> str:
     source = _PAYLOAD_KNOWN.sub(
         lambda known: known[0] + _split(known[2], f"decoder->payload <= {known[1]}"), source
     )
+    source = _ROOM.sub(_annotated_room, source)
     return _POLLED_FEED.sub(splits, source)
+
+
+def _annotated_room(found: re.Match[str]) -> str:
+    splits = (_split(found[1], value) for value in ("at == 0", f"at <= {found[2]}"))
+    return "".join([*splits, found.group()])
 
 
 def _annotated_check(text: str) -> str:

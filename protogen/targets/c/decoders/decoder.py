@@ -50,6 +50,11 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
         return (lean or self.push) if self.is_polled else None
 
     @property
+    def is_lean(self) -> bool:
+        """True if it has no states: how much of a frame is there tells all."""
+        return decoder_style(self) is not DecoderStyle.PUSH
+
+    @property
     def fills_in_place(self) -> bool:
         """True if nothing that is needed stands where a payload is filled up."""
         return self.flat is not None or self.delimited is not None

@@ -77,6 +77,20 @@ class FramingView(msgspec.Struct, frozen=True):
         return alone + tuple(item.prefix for item in self.together if item.is_polled)
 
     @property
+    def stuffs_streams(self) -> bool:
+        """True if some frame that is sent byte by byte is stuffed."""
+        return any(
+            frame.decoder.stuffing is not None
+            for frame in self.frames
+            if frame.decoder.name in self.streaming
+        )
+
+    @property
+    def has_states(self) -> bool:
+        """True if some decoder goes by states."""
+        return bool(self.together) or not all(decoder.is_lean for decoder in self.decoders)
+
+    @property
     def stops_at_messages(self) -> bool:
         """True if some decoder with states stops at a message, until it is called again."""
         return any(d.polled is d.push for d in self.decoders) or any(
