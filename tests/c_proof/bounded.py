@@ -106,7 +106,7 @@ _ROOM = """
 _READS = """
 /* A frame still has the message that it was found to have. */
 static bool reads_{form}(const struct {prefix}_{form}_candidate *candidate) {{
-    uint8_t message;
+    enum {protocol}_message message;
     return {prefix}_{form}_candidate_read(candidate, &message, NULL, NULL) == {upper}_NO_REASON &&
            message == candidate->message;
 }}
@@ -179,7 +179,8 @@ def step_harness(
         arrays += [(type_, f"{form}_{name}", size) for type_, name, size in own]
     given = {
         "helpers": "".join(
-            _READS.format(form=form, prefix=prefix, upper=upper) for form in between.forms
+            _READS.format(form=form, prefix=prefix, protocol=protocol.name, upper=upper)
+            for form in between.forms
         ),
         "reads": f"    {prefix}_dispatch(NULL, event);\n" if loads else "",
         "arrays": "".join(f"    {type_} {name}[{size}];\n" for type_, name, size in arrays),
