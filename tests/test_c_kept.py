@@ -18,7 +18,7 @@ from test_c_decoder import steps_of
 from protogen.fuzzing.c_calls import Step
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.members import members_of, memory_of
-from protogen.targets.c.emit import unit_of
+from protogen.targets.c.emit import emit, unit_of
 from protogen.targets.c.options import COptions
 
 MESSAGES = COptions(events="messages")
@@ -30,6 +30,9 @@ endpoints:
   dial: Start of two bytes, and nothing is summed
   line: End of two bytes, and no start
   word: End of one byte behind an identity
+  pair: Nothing but a payload and an end
+  twin: An end of two bytes behind a payload of two
+  three: An identity that is the end
   narrow: Length of one byte
   wide: Length of two bytes, and end of two
   late: Identity behind the payload
@@ -49,6 +52,17 @@ frame:
     check: {type: uint8, algorithm: xor-8, covers: payload}
     end: {literal: [3, 2], unprotected: anywhere}
   word:
+    id: {type: uint8, id: true}
+    payload: {}
+    check: {type: uint8, algorithm: xor-8, covers: [id, payload], when: payload}
+    end: {literal: 3, unprotected: anywhere}
+  pair:
+    payload: {}
+    end: {literal: 3, unprotected: anywhere}
+  twin:
+    payload: {}
+    end: {literal: [1, 2], unprotected: anywhere}
+  three:
     id: {type: uint8, id: true}
     payload: {}
     check: {type: uint8, algorithm: xor-8, covers: [id, payload], when: payload}
@@ -88,6 +102,10 @@ messages:
   weight: {from: line, fields: {grams: uint16}}
   go: {id: 2, from: word, fields: {speed: uint8}}
   stop: {id: 4, from: word, fields: {brake: uint8}}
+  level: {from: pair, fields: {level: uint8}}
+  depth: {from: twin, fields: {depth: uint16}}
+  turn: {id: 3, from: three, fields: {speed: uint8}}
+  halt: {id: 2, from: three, fields: {brake: uint8}}
   small: {id: 2, from: [narrow, wide, late], fields: {one: uint8}}
   mode:
     id: 3
@@ -118,10 +136,24 @@ decisions:
     choice: A receiver looks for the next one inside of what fails.
     because: Most protocols of this shape do so.
 """
-ONE_SIZE = {"lamp": 2, "dial": 2, "line": 2, "word": 1}
+ONE_SIZE = {"lamp": 2, "dial": 2, "line": 2, "word": 1, "pair": 1, "twin": 2, "three": 1}
 """Senders whose payloads all have a size, and that size."""
 SIZED = ("narrow", "wide", "late", "bare", "table")
 SENDERS = (*ONE_SIZE, *SIZED)
+UNSUMMED = """
+protocol: unsummed
+byte_order: big
+endpoints: {lamp: Sends, host: Receives}
+frame:
+  start: {literal: 1, unprotected: anywhere}
+  length: {type: uint8, counts: [length, payload]}
+  id: {type: uint8, id: true}
+  payload: {}
+  check: {type: uint32, algorithm: CRC-32/ISO-HDLC, covers: [id, payload], when: payload}
+messages: {ping: {id: 1, from: lamp}}
+decisions:
+  anywhere: {question: Q, document: D, choice: C, because: B}
+"""
 PROBE = ROOT / "benchmarks" / "c" / "probe.yaml"
 DAGNY = ROOT / "schemas" / "dagny.yaml"
 COMMANDS = COptions(events="messages", only=("motor", "steering", "reflex", "power"))
@@ -201,6 +233,15 @@ def test_documents_have_the_messages_that_python_finds(
         data = mixed(schema, sender, dice)
         steps = steps_of(data, dice) if seed % 2 else single(data[-1000:], dice)
         check_events(process, process.module, sender, steps)
+
+
+def test_a_checksum_that_no_frame_has_leaves_no_function_that_nobody_calls(tmp_path: Path) -> None:
+    path = tmp_path / "unsummed.yaml"
+    path.write_text(UNSUMMED, encoding="utf-8")
+    [source] = [
+        file.text for file in emit([protocol_of(path)], MESSAGES) if file.path.suffix == ".c"
+    ]
+    assert "_load_u32be" not in source
 
 
 # --- by hand --------------------------------------------------------------------------------------

@@ -16,6 +16,7 @@ from protogen.targets.c.decoders.push import PushDecoder
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.decoders.style import DecoderStyle, decoder_style
 from protogen.targets.c.decoders.whole import WholeFrames, whole_frames
+from protogen.targets.c.frame.checksums import ChecksumView
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.options import Events
 from protogen.targets.c.payload.messages import MessageView
@@ -48,6 +49,11 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
         """View of a decoder whose `push` returns which message is complete, if this is one."""
         lean = self.flat or self.delimited or self.kept
         return (lean or self.push) if self.is_polled else None
+
+    @property
+    def compared(self) -> tuple[ChecksumView, ...]:
+        """The checksums that frames can have."""
+        return self.checksums if self.kept is None else self.kept.checksums
 
     @property
     def is_lean(self) -> bool:

@@ -109,6 +109,11 @@ class KeptDecoder(FlatDecoder, frozen=True, dict=True):
         return differs(self.plan.end_bytes, "content", self.buffer_size - self.end_size)
 
     @property
+    def is_end_alone(self) -> str:
+        """The condition that an end stands where a frame would begin: nothing is in front of it."""
+        return equals(self.plan.end_bytes, "content")
+
+    @property
     def ends_here(self) -> str:
         """The condition that the byte at `from` is the last of an end."""
         last = self.end_size - 1

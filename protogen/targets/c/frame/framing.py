@@ -140,10 +140,11 @@ def framing_view(
     views = {view.name: view for view in messages}
     senders = [item for item in protocol.senders if _is_chosen(item, views, options)]
     numbers, shared = PartNumbers(helpers), len(helpers.texts)
-    claim_functions([sender.plan for sender in senders], numbers)
     decoders = tuple(
         decoder_view(names, sender, views, options.events, numbers) for sender in senders
     )
+    for decoder in decoders:
+        claim_functions(decoder.plan, {item.name for item in decoder.compared}, numbers)
     frames = _frames(senders, decoders)
     distinct = tuple({frame.decoder.name: frame for frame in frames.values()}.values())
     message_frames = tuple(_message_frames(protocol, frames, decoders, views, names))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container
 
 from protogen.c_language.numbers import unsigned_type
 from protogen.model.frame_plan import FramePlan
@@ -71,21 +71,23 @@ def fills_bytes(part: ChecksumPart) -> bool:
     return type_.text is None and type_.byte_bits == 8 and 8 * type_.size == type_.bits == width
 
 
-def claim_functions(plans: Iterable[FramePlan], numbers: PartNumbers) -> None:
-    """Ask for the functions that read and write the digits of frames, so that they are printed."""
-    for plan in plans:
-        for virtual in plan.frame.virtual:
-            numbers.bytes_of(virtual.type, "value")
-        for item in plan.placed:
-            if isinstance(item.part, TypedPart):
-                numbers.bytes_of(item.part.type, "value")
-            if isinstance(item.part, ChecksumPart) and fills_bytes(item.part):
-                numbers.whole(item.part.type, "content", 0)
-            if isinstance(item.part, NumberPart):
-                numbers.value(item.part.type, "content", 0)
-                numbers.fault(item.part.type, "content", 0, "")
-            if isinstance(item.part, BitsPart):
-                numbers.whole(item.part.type.whole, "content", 0)
+def claim_functions(plan: FramePlan, compared: Container[str], numbers: PartNumbers) -> None:
+    """Ask for the functions that read and write numbers of a frame, so that they are printed.
+
+    Of checksums, these are compared.
+    """
+    for virtual in plan.frame.virtual:
+        numbers.bytes_of(virtual.type, "value")
+    for item in plan.placed:
+        if isinstance(item.part, TypedPart):
+            numbers.bytes_of(item.part.type, "value")
+        if isinstance(item.part, ChecksumPart) and fills_bytes(item.part) and item.name in compared:
+            numbers.whole(item.part.type, "content", 0)
+        if isinstance(item.part, NumberPart):
+            numbers.value(item.part.type, "content", 0)
+            numbers.fault(item.part.type, "content", 0, "")
+        if isinstance(item.part, BitsPart):
+            numbers.whole(item.part.type.whole, "content", 0)
 
 
 def _address(at: str, offset: int, less: str) -> str:
