@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from cli_support import ROOT, run, start
 from compiled import module_at, protocol_of
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from protogen.cli.wire import codec
@@ -427,6 +427,7 @@ SENDERS = [
 @pytest.mark.parametrize(("name", "sender"), SENDERS)
 @given(data=st.binary(max_size=120))
 def test_any_bytes_come_back(name: str, sender: str, data: bytes) -> None:
+    assume(not data.startswith(b"PGREC"))  # Of a recording, the bytes of its records are read.
     path = ROOT / "schemas" / f"{name}.yaml"
     made = codec.Codec(protocol_of(path), module_at(path))
     with pytest.MonkeyPatch.context() as patch:
