@@ -47,8 +47,7 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
     @property
     def polled(self) -> FlatDecoder | DelimitedDecoder | KeptDecoder | PushDecoder | None:
         """View of a decoder whose `push` returns which message is complete, if this is one."""
-        lean = self.flat or self.delimited or self.kept
-        return (lean or self.push) if self.is_polled else None
+        return (self.lean or self.push) if self.is_polled else None
 
     @property
     def compared(self) -> tuple[ChecksumView, ...]:
@@ -56,9 +55,9 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
         return self.checksums if self.kept is None else self.kept.checksums
 
     @property
-    def is_lean(self) -> bool:
-        """True if it has no states: how much of a frame is there tells all."""
-        return decoder_style(self) is not DecoderStyle.PUSH
+    def lean(self) -> FlatDecoder | DelimitedDecoder | KeptDecoder | None:
+        """View of a decoder without states, if this is one."""
+        return self.flat or self.delimited or self.kept
 
     @property
     def fills_in_place(self) -> bool:

@@ -88,7 +88,7 @@ class FramingView(msgspec.Struct, frozen=True):
     @property
     def has_states(self) -> bool:
         """True if some decoder goes by states."""
-        return bool(self.together) or not all(decoder.is_lean for decoder in self.decoders)
+        return bool(self.together) or any(decoder.lean is None for decoder in self.decoders)
 
     @property
     def stops_at_messages(self) -> bool:
