@@ -31,23 +31,16 @@ static void take(void *user, const struct dagny_host_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size;
-    enum dagny_result result;
     switch (which) {
     case 0:
-        result = dagny_motor_frame(BENCH_MESSAGE, frame, capacity, &size);
-        break;
+        return dagny_motor_frame(BENCH_MESSAGE, frame, capacity);
     case 1:
-        result = dagny_steering_frame(BENCH_MESSAGE, frame, capacity, &size);
-        break;
+        return dagny_steering_frame(BENCH_MESSAGE, frame, capacity);
     case 2:
-        result = dagny_reflex_frame(BENCH_MESSAGE, frame, capacity, &size);
-        break;
+        return dagny_reflex_frame(BENCH_MESSAGE, frame, capacity);
     default:
-        result = dagny_power_frame(BENCH_MESSAGE, frame, capacity, &size);
-        break;
+        return dagny_power_frame(BENCH_MESSAGE, frame, capacity);
     }
-    return result == DAGNY_OK ? size : 0;
 }
 
 #include "fill_dagny.h"
