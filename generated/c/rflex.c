@@ -128,10 +128,6 @@ enum rflex_result rflex_motor_00_encode(const struct rflex_motor_00 *message, ui
     return RFLEX_OK;
 }
 
-void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload) {
-    message->unknown = payload[0];
-}
-
 enum rflex_result rflex_motor_00_decode(struct rflex_motor_00 *message, const uint8_t *payload,
                                         size_t size) {
     if (size != 1U) {

@@ -222,11 +222,6 @@ enum rflex_drivers_result rflex_drivers_axis_get_system_encode(
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_get_system *message,
-                                        const uint8_t *payload) {
-    message->axis = payload[0];
-}
-
 enum rflex_drivers_result rflex_drivers_axis_get_system_decode(
     struct rflex_drivers_axis_get_system *message, const uint8_t *payload, size_t size) {
     if (size != 1U) {

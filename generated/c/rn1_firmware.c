@@ -305,11 +305,6 @@ static enum rn1_firmware_result rn1_firmware_decrease_phase_angle_check(const ui
     return RN1_FIRMWARE_OK;
 }
 
-void rn1_firmware_decrease_phase_angle_load(struct rn1_firmware_decrease_phase_angle *message,
-                                            const uint8_t *payload) {
-    message->ignored = payload[0];
-}
-
 enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(
     struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload, size_t size) {
     const enum rn1_firmware_result result = rn1_firmware_decrease_phase_angle_check(payload, size,
@@ -361,11 +356,6 @@ static enum rn1_firmware_result rn1_firmware_increase_phase_angle_check(const ui
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
     return RN1_FIRMWARE_OK;
-}
-
-void rn1_firmware_increase_phase_angle_load(struct rn1_firmware_increase_phase_angle *message,
-                                            const uint8_t *payload) {
-    message->ignored = payload[0];
 }
 
 enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(

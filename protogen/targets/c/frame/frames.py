@@ -155,6 +155,11 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         return "".join(f", {item.type} {item.name}" for item in self._parameters)
 
     @property
+    def passed_on(self) -> str:
+        """The same as arguments behind others."""
+        return "".join(f", {item.name}" for item in self._parameters)
+
+    @property
     def names(self) -> list[str]:
         """Names of these parameters."""
         return [item.name for item in self._parameters]
