@@ -1245,7 +1245,7 @@ static uint8_t dagny_library_host_surplus(const struct dagny_library_host_decode
 static void dagny_library_host_set_payload(struct dagny_library_host_decoder *decoder,
                                            uint16_t size) {
     decoder->payload = size;
-    decoder->limit = (uint16_t)(1U + size + 0U);
+    decoder->limit = (uint16_t)(1U + size);
     decoder->flags |= DAGNY_LIBRARY_KNOWN;
 }
 
@@ -1631,7 +1631,7 @@ static uint8_t dagny_library_robot_surplus(const struct dagny_library_robot_deco
 static void dagny_library_robot_set_payload(struct dagny_library_robot_decoder *decoder,
                                             uint16_t size) {
     decoder->payload = size;
-    decoder->limit = (uint16_t)(1U + size + 0U);
+    decoder->limit = (uint16_t)(1U + size);
     decoder->flags |= DAGNY_LIBRARY_KNOWN;
 }
 

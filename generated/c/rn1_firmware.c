@@ -1892,7 +1892,7 @@ static uint8_t rn1_firmware_host_surplus(const struct rn1_firmware_host_decoder 
 /* From now on the payload's size is known. */
 static void rn1_firmware_host_set_payload(struct rn1_firmware_host_decoder *decoder, uint8_t size) {
     decoder->payload = size;
-    decoder->limit = (uint8_t)(1U + size + 0U);
+    decoder->limit = (uint8_t)(1U + size);
     decoder->flags |= RN1_FIRMWARE_KNOWN;
 }
 
@@ -2236,7 +2236,7 @@ static uint8_t rn1_firmware_brain_surplus(const struct rn1_firmware_brain_decode
 static void rn1_firmware_brain_set_payload(struct rn1_firmware_brain_decoder *decoder,
                                            uint16_t size) {
     decoder->payload = size;
-    decoder->limit = (uint16_t)(1U + size + 0U);
+    decoder->limit = (uint16_t)(1U + size);
     decoder->flags |= RN1_FIRMWARE_KNOWN;
 }
 

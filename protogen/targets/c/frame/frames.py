@@ -178,8 +178,8 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
 
     def _size(self, ahead: int) -> str:
         """Bytes of payload and tail, and so many in front of them."""
-        sizes = (f"{ahead}U", "payload", self.decoder.tail_for("payload"))
-        return " + ".join(size for size in sizes if size != "0U")
+        start = f"{ahead}U + payload" if ahead else "payload"
+        return start + self.decoder.tail_behind("payload")
 
     @property
     def length(self) -> str:
