@@ -20,13 +20,15 @@ _ROOM = re.compile(r"#define (\w+_FRAME_ROOM) (\d+)[uU]")
 _WRITE = """
 static void prove_{begin}(void) {{
     uint8_t frame[{room}];
+    size_t size;
     uint8_t *payload = {begin}(&frame[{room} - 1], Frama_C_unsigned_int_interval(0, {room} - 1));
     //@ assert payload == \\null;
     Frama_C_make_unknown((char *)frame, sizeof frame); /* EVA does not follow how it is filled. */
     payload = {begin}(frame, {room});
     while (any != 0) {{
 {sets}    }}
-    //@ assert {prefix}_end({parts}frame) <= {room};
+    size = {prefix}_end({parts}frame);
+    //@ assert size <= {room};
 }}
 """
 _CALL = """        if (any != 0) {{
