@@ -25,6 +25,10 @@ class CoveredRun(msgspec.Struct, frozen=True):
     literal: bytes = b""
     virtual: None = None
 
+    def size(self, payload: int) -> int:
+        """Bytes of the run in a frame with such a payload."""
+        return self.last.at(payload) - self.first.at(payload)
+
     def of(self, payload: str) -> str:
         """Start and size of the run, where `payload` is the C of the payload's size."""
         wide = payload if payload == "payload" else f"(size_t){payload}"  # That is a size_t.
@@ -87,6 +91,13 @@ class ChecksumView(msgspec.Struct, frozen=True):
     def wire_bytes(self, value: str) -> tuple[str, ...]:
         """The bytes of a result in wire order."""
         return self.numbers.bytes_of(self.part.type, value)
+
+    def adds_bytes_up_to(self, most: int, payload: int) -> bool:
+        """True if it is a sum, or an exclusive or, of no more bytes than that, and is a byte."""
+        if self.checksum.spec.kind not in ("xor", "sum") or self.size != 1 or self.is_bits:
+            return False
+        runs = [item for item in self.covers if isinstance(item, CoveredRun)]
+        return len(runs) == len(self.covers) and sum(run.size(payload) for run in runs) <= most
 
     def differs(self, payload: str) -> str:
         """The condition that `content` has another number than `due`, or other bytes or bits."""

@@ -24,6 +24,10 @@ class Index(msgspec.Struct, frozen=True):
     place: Place
     head_size: int
 
+    def at(self, payload: int) -> int:
+        """The index in a frame with such a payload."""
+        return self.place.at(self.head_size, payload)
+
     def of(self, payload: str) -> str:
         """The index, where `payload` is the C of the payload's size."""
         place = self.place
