@@ -10,7 +10,7 @@ from protogen.model.frame_plan import FramePlan
 from protogen.model.part_plans import ChecksumPlan
 from protogen.model.parts import ChecksumPart, VirtualPart
 from protogen.targets.c.frame.algorithms import Algorithm, algorithm_of
-from protogen.targets.c.frame.expressions import Index, differs, taken_bits
+from protogen.targets.c.frame.expressions import Index, constant_of, differs, taken_bits
 from protogen.targets.c.frame.part_numbers import PartNumbers, fills_bytes
 from protogen.targets.c.frame.virtual import VirtualView
 
@@ -31,6 +31,9 @@ class CoveredRun(msgspec.Struct, frozen=True):
 
     def of(self, payload: str) -> str:
         """Start and size of the run, where `payload` is the C of the payload's size."""
+        known = constant_of(payload)
+        if known is not None:
+            return f"&content[{self.first.at(known)}], {self.size(known)}U"
         wide = payload if payload == "payload" else f"(size_t){payload}"  # That is a size_t.
         first, last = self.first.of(wide), self.last.of(wide)
         if self.last.place.side is Side.HEAD:
@@ -106,8 +109,8 @@ class ChecksumView(msgspec.Struct, frozen=True):
             return f"{found} != {taken_bits(self.part, 'due')}"
         if fills_bytes(self.part):
             return f"{self.numbers.whole(self.part.type, 'content', self.at.of(payload))} != due"
-        place = self.at.place
-        at = place.offset if place.side is Side.HEAD else self.at.of(payload)
+        known = 0 if self.at.place.side is Side.HEAD else constant_of(payload)
+        at = self.at.of(payload) if known is None else self.at.at(known)
         return differs(self.wire_bytes("due"), "content", at)
 
 
