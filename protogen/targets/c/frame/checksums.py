@@ -109,9 +109,9 @@ class ChecksumView(msgspec.Struct, frozen=True):
             return f"{found} != {taken_bits(self.part, 'due')}"
         if fills_bytes(self.part):
             return f"{self.numbers.whole(self.part.type, 'content', self.at.of(payload))} != due"
-        known = 0 if self.at.place.side is Side.HEAD else constant_of(payload)
-        at = self.at.of(payload) if known is None else self.at.at(known)
-        return differs(self.wire_bytes("due"), "content", at)
+        at = self.at.of(payload)
+        known = constant_of(at)
+        return differs(self.wire_bytes("due"), "content", at if known is None else known)
 
 
 def checksums_of(
