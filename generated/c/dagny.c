@@ -574,10 +574,6 @@ enum dagny_result dagny_motor_encode(const struct dagny_motor *message, uint8_t 
     return DAGNY_OK;
 }
 
-void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload) {
-    message->s = payload[0];
-}
-
 enum dagny_result dagny_motor_decode(struct dagny_motor *message, const uint8_t *payload,
                                      size_t size) {
     if (size != 1U) {
@@ -603,10 +599,6 @@ enum dagny_result dagny_steering_encode(const struct dagny_steering *message, ui
     return DAGNY_OK;
 }
 
-void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload) {
-    message->s = payload[0];
-}
-
 enum dagny_result dagny_steering_decode(struct dagny_steering *message, const uint8_t *payload,
                                         size_t size) {
     if (size != 1U) {
@@ -630,10 +622,6 @@ enum dagny_result dagny_reflex_encode(const struct dagny_reflex *message, uint8_
     dagny_reflex_store(message, payload);
     *size = 1U;
     return DAGNY_OK;
-}
-
-void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload) {
-    message->reflex = payload[0];
 }
 
 enum dagny_result dagny_reflex_decode(struct dagny_reflex *message, const uint8_t *payload,
@@ -693,10 +681,6 @@ enum dagny_result dagny_power_encode(const struct dagny_power *message, uint8_t 
     dagny_power_store(message, payload);
     *size = 1U;
     return DAGNY_OK;
-}
-
-void dagny_power_load(struct dagny_power *message, const uint8_t *payload) {
-    message->code = payload[0];
 }
 
 enum dagny_result dagny_power_decode(struct dagny_power *message, const uint8_t *payload,
@@ -896,12 +880,23 @@ static size_t dagny_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
     if (payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, &content[0U], 1U + payload - 0U);
+        sum = dagny_xor_8_run(sum, &content[0U], 1U + payload);
         due = dagny_xor_8_final(sum);
         tail[0U] = (uint8_t)due;
     }
     frame[size] = 0x0AU;
     return size + 1U;
+}
+
+/* The frame of a message that is a byte; returns its size, 0 where it has no room. The byte is the
+   first parameter as the message is that of the caller: then nothing has to be moved. */
+DAGNY_APART size_t dagny_host_wrap_byte(const uint8_t *byte, uint8_t *frame, size_t capacity,
+                                        uint8_t id) {
+    if (capacity < dagny_host_room(1U)) {
+        return 0U;
+    }
+    *dagny_host_payload(frame, 1U) = *byte;
+    return dagny_host_wrap(frame, 1U, id);
 }
 
 /* Whether a decoder would end the frame before its end. */
@@ -1111,12 +1106,7 @@ size_t dagny_hardware_status_frame(const struct dagny_hardware_status *message, 
 }
 
 size_t dagny_motor_frame(const struct dagny_motor *message, uint8_t *frame, size_t capacity) {
-    const size_t payload = 1U;
-    if (capacity < dagny_host_room(payload)) {
-        return 0U;
-    }
-    dagny_motor_store(message, dagny_host_payload(frame, payload));
-    return dagny_host_wrap(frame, payload, 0x4DU);
+    return dagny_host_wrap_byte(&message->s, frame, capacity, 0x4DU);
 }
 
 enum dagny_result dagny_motor_send(const struct dagny_motor *message, dagny_put put, void *user) {
@@ -1133,12 +1123,7 @@ enum dagny_result dagny_motor_send(const struct dagny_motor *message, dagny_put 
 }
 
 size_t dagny_steering_frame(const struct dagny_steering *message, uint8_t *frame, size_t capacity) {
-    const size_t payload = 1U;
-    if (capacity < dagny_host_room(payload)) {
-        return 0U;
-    }
-    dagny_steering_store(message, dagny_host_payload(frame, payload));
-    return dagny_host_wrap(frame, payload, 0x53U);
+    return dagny_host_wrap_byte(&message->s, frame, capacity, 0x53U);
 }
 
 enum dagny_result dagny_steering_send(const struct dagny_steering *message, dagny_put put,
@@ -1156,12 +1141,7 @@ enum dagny_result dagny_steering_send(const struct dagny_steering *message, dagn
 }
 
 size_t dagny_reflex_frame(const struct dagny_reflex *message, uint8_t *frame, size_t capacity) {
-    const size_t payload = 1U;
-    if (capacity < dagny_host_room(payload)) {
-        return 0U;
-    }
-    dagny_reflex_store(message, dagny_host_payload(frame, payload));
-    return dagny_host_wrap(frame, payload, 0x52U);
+    return dagny_host_wrap_byte(&message->reflex, frame, capacity, 0x52U);
 }
 
 enum dagny_result dagny_reflex_send(const struct dagny_reflex *message, dagny_put put, void *user) {
@@ -1189,12 +1169,7 @@ size_t dagny_power_down_frame(uint8_t *frame, size_t capacity) {
 }
 
 size_t dagny_power_frame(const struct dagny_power *message, uint8_t *frame, size_t capacity) {
-    const size_t payload = 1U;
-    if (capacity < dagny_host_room(payload)) {
-        return 0U;
-    }
-    dagny_power_store(message, dagny_host_payload(frame, payload));
-    return dagny_host_wrap(frame, payload, 0x50U);
+    return dagny_host_wrap_byte(&message->code, frame, capacity, 0x50U);
 }
 
 enum dagny_result dagny_power_send(const struct dagny_power *message, dagny_put put, void *user) {
@@ -1320,7 +1295,7 @@ static uint8_t dagny_host_complete(struct dagny_host_decoder *decoder) {
     if (decoder->payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload - 0U);
+        sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload);
         due = dagny_xor_8_final(sum);
         if (content[1U + decoder->payload] != due) {
             return DAGNY_CHECKSUM;
@@ -1794,7 +1769,7 @@ static uint8_t dagny_robot_complete(struct dagny_robot_decoder *decoder) {
     if (decoder->payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload - 0U);
+        sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload);
         due = dagny_xor_8_final(sum);
         if (content[1U + decoder->payload] != due) {
             return DAGNY_CHECKSUM;

@@ -362,7 +362,9 @@ DAGNY_API enum dagny_result dagny_motor_encode(const struct dagny_motor *message
                                                size_t capacity, size_t *size);
 DAGNY_API enum dagny_result dagny_motor_decode(struct dagny_motor *message, const uint8_t *payload,
                                                size_t size);
-DAGNY_API void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload);
+static inline void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload) {
+    message->s = payload[0];
+}
 
 /* --- steering --------------------------------------------------------------------------------- */
 
@@ -384,7 +386,9 @@ DAGNY_API enum dagny_result dagny_steering_encode(const struct dagny_steering *m
                                                   uint8_t *payload, size_t capacity, size_t *size);
 DAGNY_API enum dagny_result dagny_steering_decode(struct dagny_steering *message,
                                                   const uint8_t *payload, size_t size);
-DAGNY_API void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload);
+static inline void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload) {
+    message->s = payload[0];
+}
 
 /* --- reflex ----------------------------------------------------------------------------------- */
 
@@ -411,7 +415,9 @@ DAGNY_API enum dagny_result dagny_reflex_encode(const struct dagny_reflex *messa
                                                 uint8_t *payload, size_t capacity, size_t *size);
 DAGNY_API enum dagny_result dagny_reflex_decode(struct dagny_reflex *message,
                                                 const uint8_t *payload, size_t size);
-DAGNY_API void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload);
+static inline void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload) {
+    message->reflex = payload[0];
+}
 
 /** What to do with the reflex; bits 6 to 7 of reflex. */
 #define DAGNY_REFLEX_REFLEX_COMMAND_MASK 0xC0U
@@ -470,7 +476,9 @@ DAGNY_API enum dagny_result dagny_power_encode(const struct dagny_power *message
                                                size_t capacity, size_t *size);
 DAGNY_API enum dagny_result dagny_power_decode(struct dagny_power *message, const uint8_t *payload,
                                                size_t size);
-DAGNY_API void dagny_power_load(struct dagny_power *message, const uint8_t *payload);
+static inline void dagny_power_load(struct dagny_power *message, const uint8_t *payload) {
+    message->code = payload[0];
+}
 
 /* --- laser ------------------------------------------------------------------------------------ */
 

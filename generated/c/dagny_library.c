@@ -395,10 +395,6 @@ enum dagny_library_result dagny_library_steering_encode(
     return DAGNY_LIBRARY_OK;
 }
 
-void dagny_library_steering_load(struct dagny_library_steering *message, const uint8_t *payload) {
-    message->position = payload[0];
-}
-
 enum dagny_library_result dagny_library_steering_decode(struct dagny_library_steering *message,
                                                         const uint8_t *payload, size_t size) {
     if (size != 1U) {
@@ -424,10 +420,6 @@ enum dagny_library_result dagny_library_power_encode(const struct dagny_library_
     dagny_library_power_store(message, payload);
     *size = 1U;
     return DAGNY_LIBRARY_OK;
-}
-
-void dagny_library_power_load(struct dagny_library_power *message, const uint8_t *payload) {
-    message->code = payload[0];
 }
 
 enum dagny_library_result dagny_library_power_decode(struct dagny_library_power *message,
@@ -692,6 +684,17 @@ static size_t dagny_library_host_wrap(uint8_t *frame, size_t payload, uint8_t id
     to++;
     const ptrdiff_t written = to - frame;
     return (size_t)written;
+}
+
+/* The frame of a message that is a byte; returns its size, 0 where it has no room. The byte is the
+   first parameter as the message is that of the caller: then nothing has to be moved. */
+DAGNY_LIBRARY_APART size_t dagny_library_host_wrap_byte(const uint8_t *byte, uint8_t *frame,
+                                                        size_t capacity, uint8_t id) {
+    if (capacity < dagny_library_host_room(1U)) {
+        return 0U;
+    }
+    *dagny_library_host_payload(frame, 1U) = *byte;
+    return dagny_library_host_wrap(frame, 1U, id);
 }
 
 /* --- frames, byte by byte --------------------------------------------------------------------- */
@@ -1011,12 +1014,7 @@ enum dagny_library_result dagny_library_drive_send(const struct dagny_library_dr
 
 size_t dagny_library_steering_frame(const struct dagny_library_steering *message, uint8_t *frame,
                                     size_t capacity) {
-    const size_t payload = 1U;
-    if (capacity < dagny_library_host_room(payload)) {
-        return 0U;
-    }
-    dagny_library_steering_store(message, dagny_library_host_payload(frame, payload));
-    return dagny_library_host_wrap(frame, payload, 0x53U);
+    return dagny_library_host_wrap_byte(&message->position, frame, capacity, 0x53U);
 }
 
 enum dagny_library_result dagny_library_steering_send(const struct dagny_library_steering *message,
@@ -1035,12 +1033,7 @@ enum dagny_library_result dagny_library_steering_send(const struct dagny_library
 
 size_t dagny_library_power_frame(const struct dagny_library_power *message, uint8_t *frame,
                                  size_t capacity) {
-    const size_t payload = 1U;
-    if (capacity < dagny_library_host_room(payload)) {
-        return 0U;
-    }
-    dagny_library_power_store(message, dagny_library_host_payload(frame, payload));
-    return dagny_library_host_wrap(frame, payload, 0x50U);
+    return dagny_library_host_wrap_byte(&message->code, frame, capacity, 0x50U);
 }
 
 enum dagny_library_result dagny_library_power_send(const struct dagny_library_power *message,
@@ -1252,7 +1245,7 @@ static uint8_t dagny_library_host_surplus(const struct dagny_library_host_decode
 static void dagny_library_host_set_payload(struct dagny_library_host_decoder *decoder,
                                            uint16_t size) {
     decoder->payload = size;
-    decoder->limit = (uint16_t)(1U + size + 0U);
+    decoder->limit = (uint16_t)(1U + size);
     decoder->flags |= DAGNY_LIBRARY_KNOWN;
 }
 
@@ -1638,7 +1631,7 @@ static uint8_t dagny_library_robot_surplus(const struct dagny_library_robot_deco
 static void dagny_library_robot_set_payload(struct dagny_library_robot_decoder *decoder,
                                             uint16_t size) {
     decoder->payload = size;
-    decoder->limit = (uint16_t)(1U + size + 0U);
+    decoder->limit = (uint16_t)(1U + size);
     decoder->flags |= DAGNY_LIBRARY_KNOWN;
 }
 

@@ -400,8 +400,10 @@ DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_encode(
     const struct dagny_library_steering *message, uint8_t *payload, size_t capacity, size_t *size);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_decode(
     struct dagny_library_steering *message, const uint8_t *payload, size_t size);
-DAGNY_LIBRARY_API void dagny_library_steering_load(struct dagny_library_steering *message,
-                                                   const uint8_t *payload);
+static inline void dagny_library_steering_load(struct dagny_library_steering *message,
+                                               const uint8_t *payload) {
+    message->position = payload[0];
+}
 
 /* --- power ------------------------------------------------------------------------------------ */
 
@@ -428,8 +430,10 @@ DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_encode(
     const struct dagny_library_power *message, uint8_t *payload, size_t capacity, size_t *size);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_decode(
     struct dagny_library_power *message, const uint8_t *payload, size_t size);
-DAGNY_LIBRARY_API void dagny_library_power_load(struct dagny_library_power *message,
-                                                const uint8_t *payload);
+static inline void dagny_library_power_load(struct dagny_library_power *message,
+                                            const uint8_t *payload) {
+    message->code = payload[0];
+}
 
 /* --- gps_position ----------------------------------------------------------------------------- */
 

@@ -140,10 +140,6 @@ enum matty_result matty_mode_encode(const struct matty_mode *message, uint8_t *p
     return MATTY_OK;
 }
 
-void matty_mode_load(struct matty_mode *message, const uint8_t *payload) {
-    message->mode = payload[0];
-}
-
 enum matty_result matty_mode_decode(struct matty_mode *message, const uint8_t *payload,
                                     size_t size) {
     if (size != 1U) {
@@ -259,10 +255,6 @@ enum matty_result matty_gps_mode_encode(const struct matty_gps_mode *message, ui
     matty_gps_mode_store(message, payload);
     *size = 1U;
     return MATTY_OK;
-}
-
-void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload) {
-    message->mode = payload[0];
 }
 
 enum matty_result matty_gps_mode_decode(struct matty_gps_mode *message, const uint8_t *payload,

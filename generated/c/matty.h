@@ -166,7 +166,9 @@ MATTY_API enum matty_result matty_mode_encode(const struct matty_mode *message, 
                                               size_t capacity, size_t *size);
 MATTY_API enum matty_result matty_mode_decode(struct matty_mode *message, const uint8_t *payload,
                                               size_t size);
-MATTY_API void matty_mode_load(struct matty_mode *message, const uint8_t *payload);
+static inline void matty_mode_load(struct matty_mode *message, const uint8_t *payload) {
+    message->mode = payload[0];
+}
 
 /* --- go --------------------------------------------------------------------------------------- */
 
@@ -270,7 +272,9 @@ MATTY_API enum matty_result matty_gps_mode_encode(const struct matty_gps_mode *m
                                                   uint8_t *payload, size_t capacity, size_t *size);
 MATTY_API enum matty_result matty_gps_mode_decode(struct matty_gps_mode *message,
                                                   const uint8_t *payload, size_t size);
-MATTY_API void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload);
+static inline void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload) {
+    message->mode = payload[0];
+}
 
 /* --- ack -------------------------------------------------------------------------------------- */
 

@@ -108,10 +108,6 @@ enum matty_v4_result matty_v4_stop_encode(const struct matty_v4_stop *message, u
     return MATTY_V4_OK;
 }
 
-void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload) {
-    message->mode = payload[0];
-}
-
 enum matty_v4_result matty_v4_stop_decode(struct matty_v4_stop *message, const uint8_t *payload,
                                           size_t size) {
     if (size != 1U) {
@@ -156,10 +152,6 @@ enum matty_v4_result matty_v4_mode_encode(const struct matty_v4_mode *message, u
     matty_v4_mode_store(message, payload);
     *size = 1U;
     return MATTY_V4_OK;
-}
-
-void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload) {
-    message->mode = payload[0];
 }
 
 enum matty_v4_result matty_v4_mode_decode(struct matty_v4_mode *message, const uint8_t *payload,
@@ -281,10 +273,6 @@ enum matty_v4_result matty_v4_gps_mode_encode(const struct matty_v4_gps_mode *me
     matty_v4_gps_mode_store(message, payload);
     *size = 1U;
     return MATTY_V4_OK;
-}
-
-void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, const uint8_t *payload) {
-    message->mode = payload[0];
 }
 
 enum matty_v4_result matty_v4_gps_mode_decode(struct matty_v4_gps_mode *message,

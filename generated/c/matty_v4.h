@@ -155,7 +155,9 @@ MATTY_V4_API enum matty_v4_result matty_v4_stop_encode(const struct matty_v4_sto
                                                        size_t *size);
 MATTY_V4_API enum matty_v4_result matty_v4_stop_decode(struct matty_v4_stop *message,
                                                        const uint8_t *payload, size_t size);
-MATTY_V4_API void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload);
+static inline void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload) {
+    message->mode = payload[0];
+}
 
 /* --- reset ------------------------------------------------------------------------------------ */
 
@@ -191,7 +193,9 @@ MATTY_V4_API enum matty_v4_result matty_v4_mode_encode(const struct matty_v4_mod
                                                        size_t *size);
 MATTY_V4_API enum matty_v4_result matty_v4_mode_decode(struct matty_v4_mode *message,
                                                        const uint8_t *payload, size_t size);
-MATTY_V4_API void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload);
+static inline void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload) {
+    message->mode = payload[0];
+}
 
 /* --- go --------------------------------------------------------------------------------------- */
 
@@ -307,7 +311,10 @@ MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_encode(const struct matty_v4
                                                            size_t *size);
 MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_decode(struct matty_v4_gps_mode *message,
                                                            const uint8_t *payload, size_t size);
-MATTY_V4_API void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, const uint8_t *payload);
+static inline void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message,
+                                          const uint8_t *payload) {
+    message->mode = payload[0];
+}
 
 /* --- version_query ---------------------------------------------------------------------------- */
 

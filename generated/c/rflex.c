@@ -128,10 +128,6 @@ enum rflex_result rflex_motor_00_encode(const struct rflex_motor_00 *message, ui
     return RFLEX_OK;
 }
 
-void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload) {
-    message->unknown = payload[0];
-}
-
 enum rflex_result rflex_motor_00_decode(struct rflex_motor_00 *message, const uint8_t *payload,
                                         size_t size) {
     if (size != 1U) {
@@ -1964,10 +1960,7 @@ static void rflex_linux_set_payload(struct rflex_linux_decoder *decoder, uint16_
 
 static uint8_t rflex_linux_read_length(struct rflex_linux_decoder *decoder, uint16_t length) {
     uint16_t size = length;
-    if (size - 0U > 255U) {
-        return RFLEX_LENGTH;
-    }
-    rflex_linux_set_payload(decoder, (uint16_t)(size - 0U));
+    rflex_linux_set_payload(decoder, (uint16_t)size);
     return RFLEX_FINE;
 }
 
@@ -2675,10 +2668,7 @@ static void rflex_flex_set_payload(struct rflex_flex_decoder *decoder, uint16_t 
 
 static uint8_t rflex_flex_read_length(struct rflex_flex_decoder *decoder, uint16_t length) {
     uint16_t size = length;
-    if (size - 0U > 255U) {
-        return RFLEX_LENGTH;
-    }
-    rflex_flex_set_payload(decoder, (uint16_t)(size - 0U));
+    rflex_flex_set_payload(decoder, (uint16_t)size);
     return RFLEX_FINE;
 }
 

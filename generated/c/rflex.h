@@ -234,7 +234,9 @@ RFLEX_API enum rflex_result rflex_motor_00_encode(const struct rflex_motor_00 *m
                                                   uint8_t *payload, size_t capacity, size_t *size);
 RFLEX_API enum rflex_result rflex_motor_00_decode(struct rflex_motor_00 *message,
                                                   const uint8_t *payload, size_t size);
-RFLEX_API void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload);
+static inline void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload) {
+    message->unknown = payload[0];
+}
 
 /* --- motor_command ---------------------------------------------------------------------------- */
 

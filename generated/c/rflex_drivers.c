@@ -222,11 +222,6 @@ enum rflex_drivers_result rflex_drivers_axis_get_system_encode(
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_get_system *message,
-                                        const uint8_t *payload) {
-    message->axis = payload[0];
-}
-
 enum rflex_drivers_result rflex_drivers_axis_get_system_decode(
     struct rflex_drivers_axis_get_system *message, const uint8_t *payload, size_t size) {
     if (size != 1U) {
@@ -2414,10 +2409,7 @@ static void rflex_drivers_linux_set_payload(struct rflex_drivers_linux_decoder *
 static uint8_t rflex_drivers_linux_read_length(struct rflex_drivers_linux_decoder *decoder,
                                                uint16_t length) {
     uint16_t size = length;
-    if (size - 0U > 255U) {
-        return RFLEX_DRIVERS_LENGTH;
-    }
-    rflex_drivers_linux_set_payload(decoder, (uint16_t)(size - 0U));
+    rflex_drivers_linux_set_payload(decoder, (uint16_t)size);
     return RFLEX_DRIVERS_FINE;
 }
 
@@ -3151,10 +3143,7 @@ static void rflex_drivers_flex_set_payload(struct rflex_drivers_flex_decoder *de
 static uint8_t rflex_drivers_flex_read_length(struct rflex_drivers_flex_decoder *decoder,
                                               uint16_t length) {
     uint16_t size = length;
-    if (size - 0U > 255U) {
-        return RFLEX_DRIVERS_LENGTH;
-    }
-    rflex_drivers_flex_set_payload(decoder, (uint16_t)(size - 0U));
+    rflex_drivers_flex_set_payload(decoder, (uint16_t)size);
     return RFLEX_DRIVERS_FINE;
 }
 

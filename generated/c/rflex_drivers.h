@@ -279,8 +279,10 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_encode
     size_t *size);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_decode(
     struct rflex_drivers_axis_get_system *message, const uint8_t *payload, size_t size);
-RFLEX_DRIVERS_API void rflex_drivers_axis_get_system_load(
-    struct rflex_drivers_axis_get_system *message, const uint8_t *payload);
+static inline void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_get_system *message,
+                                                      const uint8_t *payload) {
+    message->axis = payload[0];
+}
 
 /* --- motor_command ---------------------------------------------------------------------------- */
 

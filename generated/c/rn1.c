@@ -1548,7 +1548,7 @@ static uint8_t rn1_host_surplus(const struct rn1_host_decoder *decoder) {
 /* From now on the payload's size is known. */
 static void rn1_host_set_payload(struct rn1_host_decoder *decoder, uint8_t size) {
     decoder->payload = size;
-    decoder->limit = (uint8_t)(1U + size + 0U);
+    decoder->limit = (uint8_t)(1U + size);
     decoder->flags |= RN1_KNOWN;
 }
 
@@ -1874,7 +1874,7 @@ static uint8_t rn1_brain_surplus(const struct rn1_brain_decoder *decoder) {
 /* From now on the payload's size is known. */
 static void rn1_brain_set_payload(struct rn1_brain_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-    decoder->limit = (uint16_t)(1U + size + 0U);
+    decoder->limit = (uint16_t)(1U + size);
     decoder->flags |= RN1_KNOWN;
 }
 

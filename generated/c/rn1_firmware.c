@@ -305,11 +305,6 @@ static enum rn1_firmware_result rn1_firmware_decrease_phase_angle_check(const ui
     return RN1_FIRMWARE_OK;
 }
 
-void rn1_firmware_decrease_phase_angle_load(struct rn1_firmware_decrease_phase_angle *message,
-                                            const uint8_t *payload) {
-    message->ignored = payload[0];
-}
-
 enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(
     struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload, size_t size) {
     const enum rn1_firmware_result result = rn1_firmware_decrease_phase_angle_check(payload, size,
@@ -361,11 +356,6 @@ static enum rn1_firmware_result rn1_firmware_increase_phase_angle_check(const ui
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
     return RN1_FIRMWARE_OK;
-}
-
-void rn1_firmware_increase_phase_angle_load(struct rn1_firmware_increase_phase_angle *message,
-                                            const uint8_t *payload) {
-    message->ignored = payload[0];
 }
 
 enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(
@@ -1902,7 +1892,7 @@ static uint8_t rn1_firmware_host_surplus(const struct rn1_firmware_host_decoder 
 /* From now on the payload's size is known. */
 static void rn1_firmware_host_set_payload(struct rn1_firmware_host_decoder *decoder, uint8_t size) {
     decoder->payload = size;
-    decoder->limit = (uint8_t)(1U + size + 0U);
+    decoder->limit = (uint8_t)(1U + size);
     decoder->flags |= RN1_FIRMWARE_KNOWN;
 }
 
@@ -2246,7 +2236,7 @@ static uint8_t rn1_firmware_brain_surplus(const struct rn1_firmware_brain_decode
 static void rn1_firmware_brain_set_payload(struct rn1_firmware_brain_decoder *decoder,
                                            uint16_t size) {
     decoder->payload = size;
-    decoder->limit = (uint16_t)(1U + size + 0U);
+    decoder->limit = (uint16_t)(1U + size);
     decoder->flags |= RN1_FIRMWARE_KNOWN;
 }
 

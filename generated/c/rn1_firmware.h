@@ -232,8 +232,10 @@ RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_decrease_phase_angle_enco
     size_t *size);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(
     struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload, size_t size);
-RN1_FIRMWARE_API void rn1_firmware_decrease_phase_angle_load(
-    struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload);
+static inline void rn1_firmware_decrease_phase_angle_load(
+    struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload) {
+    message->ignored = payload[0];
+}
 
 /* --- increase_phase_angle --------------------------------------------------------------------- */
 
@@ -264,8 +266,10 @@ RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_increase_phase_angle_enco
     size_t *size);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(
     struct rn1_firmware_increase_phase_angle *message, const uint8_t *payload, size_t size);
-RN1_FIRMWARE_API void rn1_firmware_increase_phase_angle_load(
-    struct rn1_firmware_increase_phase_angle *message, const uint8_t *payload);
+static inline void rn1_firmware_increase_phase_angle_load(
+    struct rn1_firmware_increase_phase_angle *message, const uint8_t *payload) {
+    message->ignored = payload[0];
+}
 
 /* --- maintenance ------------------------------------------------------------------------------ */
 

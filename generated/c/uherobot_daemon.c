@@ -894,10 +894,7 @@ static void uherobot_daemon_board_set_payload(struct uherobot_daemon_board_decod
 static uint8_t uherobot_daemon_board_read_length(struct uherobot_daemon_board_decoder *decoder,
                                                  uint16_t length) {
     uint16_t size = length;
-    if (size - 0U > 255U) {
-        return UHEROBOT_DAEMON_LENGTH;
-    }
-    uherobot_daemon_board_set_payload(decoder, (uint16_t)(size - 0U));
+    uherobot_daemon_board_set_payload(decoder, (uint16_t)size);
     return UHEROBOT_DAEMON_FINE;
 }
 

@@ -44,7 +44,7 @@ fitted follow_end follow_start give_up hand_over has_special head_fits identify 
 is_plain judge leave let_go look looks_idle measure measure_head open pass payload payload_size
 reach read_length release reopen reset resume room run search seek seek_on send_head send_tail
 set_payload settle show specials stuff surplus tail_fits take take_byte take_head take_tail
-take_whole unstuff unstuff_to wire_end wrap write
+take_whole unstuff unstuff_to wire_end wrap wrap_byte write
 """
 _MACROS_OF_A_SENDER = "frame_max idle_us decoder_init"
 _FUNCTIONS_OF_A_CANDIDATE = "begun begun_byte end fill_up mark read show step"

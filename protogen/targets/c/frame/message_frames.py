@@ -21,6 +21,7 @@ from protogen.targets.c.frame.frames import Argument, FrameView, argument_of, on
 from protogen.targets.c.frame.virtual import value_of
 from protogen.targets.c.payload.message_names import FrameNames
 from protogen.targets.c.payload.messages import MessageView
+from protogen.targets.c.payload.one_byte import only_byte
 
 
 class MessageFrame(msgspec.Struct, frozen=True, dict=True):
@@ -60,6 +61,13 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     def is_trimmed(self) -> bool:
         """True if zeros at the end of its payload may be left out."""
         return self.frame.plan.frame.payload.sent(self.message.sizes) != self.message.sizes
+
+    @cached_property
+    def byte(self) -> str:
+        """The member that is all of the payload, and one byte as it is; empty if there is none."""
+        if self.validate or self.values or self.is_trimmed or self.is_refused:
+            return ""
+        return only_byte(self.message.plan)
 
     # --- the frame --------------------------------------------------------------------------------
 
