@@ -4,8 +4,8 @@ A candidate stands at the beginning of the buffer. It is looked at where its siz
 where it is complete. One that fails gives up its bytes up to the next possible start among those
 that are kept, and what is behind is moved to the beginning.
 
-Frames of one small size need none of that: the last bytes stand as they would in a frame, each moved
-by the next one, and are looked at whenever they may be a frame.
+Frames of one small size need none of that: the last bytes stand as they would in a frame, each
+moved by the next one, and are looked at whenever they may be a frame.
 """
 
 from __future__ import annotations
