@@ -33,6 +33,11 @@ endpoints:
   pair: Nothing but a payload and an end
   twin: An end of two bytes behind a payload of two
   three: An identity that is the end
+  free: Nothing but a payload and its sum
+  long_lamp: Start and end, around more than five bytes
+  long_line: End of two bytes, and no start
+  long_word: End of one byte behind an identity
+  long_free: Nothing but a payload and its sum
   narrow: Length of one byte
   wide: Length of two bytes, and end of two
   late: Identity behind the payload
@@ -67,6 +72,26 @@ frame:
     payload: {}
     check: {type: uint8, algorithm: xor-8, covers: [id, payload], when: payload}
     end: {literal: 3, unprotected: anywhere}
+  free:
+    payload: {}
+    check: {type: uint8, algorithm: sum-8, covers: payload}
+  long_lamp:
+    start: {literal: 2, unprotected: anywhere}
+    payload: {}
+    check: {type: uint8, algorithm: sum-8, covers: payload}
+    end: {literal: 3, unprotected: anywhere}
+  long_line:
+    payload: {}
+    check: {type: uint8, algorithm: xor-8, covers: payload}
+    end: {literal: [3, 2], unprotected: anywhere}
+  long_word:
+    id: {type: uint8, id: true}
+    payload: {}
+    check: {type: uint8, algorithm: xor-8, covers: [id, payload], when: payload}
+    end: {literal: 3, unprotected: anywhere}
+  long_free:
+    payload: {}
+    check: {type: uint8, algorithm: sum-8, covers: payload}
   narrow:
     start: {literal: 2, unprotected: anywhere}
     length: {type: uint8, counts: payload}
@@ -106,6 +131,12 @@ messages:
   depth: {from: twin, fields: {depth: uint16}}
   turn: {id: 3, from: three, fields: {speed: uint8}}
   halt: {id: 2, from: three, fields: {brake: uint8}}
+  drop: {from: free, fields: {level: uint16}}
+  bulb: {from: long_lamp, fields: {red: uint16, green: uint16}}
+  load: {from: long_line, fields: {net: uint16, gross: uint16}}
+  ahead: {id: 2, from: long_word, fields: {left: uint16, right: uint16}}
+  aside: {id: 4, from: long_word, fields: {angle: uint32}}
+  spring: {from: long_free, fields: {rate: uint16, level: uint32}}
   small: {id: 2, from: [narrow, wide, late], fields: {one: uint8}}
   mode:
     id: 3
@@ -136,7 +167,9 @@ decisions:
     choice: A receiver looks for the next one inside of what fails.
     because: Most protocols of this shape do so.
 """
-ONE_SIZE = {"lamp": 2, "dial": 2, "line": 2, "word": 1, "pair": 1, "twin": 2, "three": 1}
+SMALL = {"lamp": 2, "dial": 2, "line": 2, "word": 1, "pair": 1, "twin": 2, "three": 1, "free": 2}
+"""Senders whose frames have up to five bytes, and the size of all their payloads."""
+ONE_SIZE = {**SMALL, "long_lamp": 4, "long_line": 4, "long_word": 4, "long_free": 6}
 """Senders whose payloads all have a size, and that size."""
 SIZED = ("narrow", "wide", "late", "bare", "table")
 SENDERS = (*ONE_SIZE, *SIZED)
@@ -194,6 +227,7 @@ def single(data: bytes, dice: Random) -> list[Step]:
 def test_streams_have_the_messages_that_python_finds(path: Path, sender: str) -> None:
     decoder = decoder_of(path, sender)
     assert decoder.kept is not None
+    assert decoder.kept.has_window == (sender in SMALL)
     assert (decoder.kept.only_size, decoder.gives_more) == (ONE_SIZE.get(sender), sender in SIZED)
     process = process_of(path, MESSAGES)
     for seed in range(6):
@@ -349,7 +383,7 @@ def test_small_frames_behind_an_end_need_no_more_than_their_size() -> None:
     assert memory_of(host) == 4
 
 
-@pytest.mark.parametrize("sender", ONE_SIZE)
+@pytest.mark.parametrize("sender", SMALL)
 def test_small_frames_need_no_more_than_their_bytes_and_a_counter(path: Path, sender: str) -> None:
     decoder = decoder_of(path, sender)
     assert memory_of(decoder) <= decoder.plan.greatest + 1
