@@ -33,6 +33,11 @@ endpoints:
   pair: Nothing but a payload and an end
   twin: An end of two bytes behind a payload of two
   three: An identity that is the end
+  free: Nothing but a payload and its sum
+  long_lamp: Start and end, around more than five bytes
+  long_line: End of two bytes, and no start
+  long_word: End of one byte behind an identity
+  long_free: Nothing but a payload and its sum
   narrow: Length of one byte
   wide: Length of two bytes, and end of two
   late: Identity behind the payload
@@ -67,6 +72,26 @@ frame:
     payload: {}
     check: {type: uint8, algorithm: xor-8, covers: [id, payload], when: payload}
     end: {literal: 3, unprotected: anywhere}
+  free:
+    payload: {}
+    check: {type: uint8, algorithm: sum-8, covers: payload}
+  long_lamp:
+    start: {literal: 2, unprotected: anywhere}
+    payload: {}
+    check: {type: uint8, algorithm: sum-8, covers: payload}
+    end: {literal: 3, unprotected: anywhere}
+  long_line:
+    payload: {}
+    check: {type: uint8, algorithm: xor-8, covers: payload}
+    end: {literal: [3, 2], unprotected: anywhere}
+  long_word:
+    id: {type: uint8, id: true}
+    payload: {}
+    check: {type: uint8, algorithm: xor-8, covers: [id, payload], when: payload}
+    end: {literal: 3, unprotected: anywhere}
+  long_free:
+    payload: {}
+    check: {type: uint8, algorithm: sum-8, covers: payload}
   narrow:
     start: {literal: 2, unprotected: anywhere}
     length: {type: uint8, counts: payload}
@@ -106,6 +131,12 @@ messages:
   depth: {from: twin, fields: {depth: uint16}}
   turn: {id: 3, from: three, fields: {speed: uint8}}
   halt: {id: 2, from: three, fields: {brake: uint8}}
+  drop: {from: free, fields: {level: uint16}}
+  bulb: {from: long_lamp, fields: {red: uint16, green: uint16}}
+  load: {from: long_line, fields: {net: uint16, gross: uint16}}
+  ahead: {id: 2, from: long_word, fields: {left: uint16, right: uint16}}
+  aside: {id: 4, from: long_word, fields: {angle: uint32}}
+  spring: {from: long_free, fields: {rate: uint16, level: uint32}}
   small: {id: 2, from: [narrow, wide, late], fields: {one: uint8}}
   mode:
     id: 3
@@ -136,7 +167,9 @@ decisions:
     choice: A receiver looks for the next one inside of what fails.
     because: Most protocols of this shape do so.
 """
-ONE_SIZE = {"lamp": 2, "dial": 2, "line": 2, "word": 1, "pair": 1, "twin": 2, "three": 1}
+SMALL = {"lamp": 2, "dial": 2, "line": 2, "word": 1, "pair": 1, "twin": 2, "three": 1, "free": 2}
+"""Senders whose frames have up to five bytes, and the size of all their payloads."""
+ONE_SIZE = {**SMALL, "long_lamp": 4, "long_line": 4, "long_word": 4, "long_free": 6}
 """Senders whose payloads all have a size, and that size."""
 SIZED = ("narrow", "wide", "late", "bare", "table")
 SENDERS = (*ONE_SIZE, *SIZED)
@@ -194,6 +227,7 @@ def single(data: bytes, dice: Random) -> list[Step]:
 def test_streams_have_the_messages_that_python_finds(path: Path, sender: str) -> None:
     decoder = decoder_of(path, sender)
     assert decoder.kept is not None
+    assert decoder.kept.has_window == (sender in SMALL)
     assert (decoder.kept.only_size, decoder.gives_more) == (ONE_SIZE.get(sender), sender in SIZED)
     process = process_of(path, MESSAGES)
     for seed in range(6):
@@ -252,10 +286,12 @@ INSIDE = bytes.fromhex("02 0C 04  02 01 02 07 04  02 01 02 08 0B  00 00  00")
 FIRST_TWO = [("small", {"one": 7}), ("small", {"one": 8})]
 
 
-def values_of(process: Process, steps: list[Step]) -> list[list[tuple[str, object]]]:
+def values_of(
+    process: Process, steps: list[Step], sender: str = "narrow"
+) -> list[list[tuple[str, object]]]:
     """The messages of each step, which are those that Python finds."""
-    found = process.do(process.calls.events("narrow", steps))
-    assert found == messages_of(python_events(process.module, "narrow", steps))
+    found = process.do(process.calls.events(sender, steps))
+    assert found == messages_of(python_events(process.module, sender, steps))
     return [[(event.message, event.values) for event in events] for events in found]
 
 
@@ -278,14 +314,79 @@ def test_what_is_left_in_front_of_the_next_frame_is_looked_at(path: Path) -> Non
     assert found == [*FIRST_TWO, ("small", {"one": 9})]
 
 
+# --- small frames, by hand ------------------------------------------------------------------------
+
+
+def commands(*steps: Step) -> list[list[tuple[str, object]]]:
+    """What each step brings of dagny's commands."""
+    return values_of(process_of(DAGNY, COMMANDS), list(steps), "host")
+
+
+def test_a_newline_inside_of_a_command_is_a_byte_like_any_other() -> None:
+    """4D xor 0A is 47, and 4D xor 47 is 0A."""
+    data = bytes.fromhex("4D 0A 47 0A  4D 47 0A 0A")
+    found = [("motor", {"s": 0x0A}), ("motor", {"s": 0x47})]
+    assert commands(("feed", data)) == [found]
+    assert (
+        list(chain.from_iterable(commands(*(("push", bytes((byte,))) for byte in data)))) == found
+    )
+
+
+def test_a_command_is_found_behind_a_newline_of_what_failed() -> None:
+    """5A is no command; one begins behind its newline, before the four bytes of the other end."""
+    assert commands(("push", bytes.fromhex("5A 0A 4D 05 48 0A"))) == [[("motor", {"s": 5})]]
+
+
+def test_a_command_that_stands_behind_no_newline_is_none() -> None:
+    assert commands(("push", bytes.fromhex("00 4D 05 48 0A")), ("flush",)) == [[], []]
+
+
+def test_a_silence_is_as_good_as_a_newline_and_ends_a_command_that_was_begun() -> None:
+    steps: list[Step] = [("push", b"\x4d\x05"), ("flush",), ("push", b"\x48\x0a")]
+    assert commands(*steps) == [[], [], []]
+    steps = [("push", b"\x4d\x05"), ("flush",), ("push", b"\x4d\x05\x48\x0a")]
+    assert commands(*steps) == [[], [], [("motor", {"s": 5})]]
+
+
+def test_a_silence_divides_an_end_of_two_bytes(path: Path) -> None:
+    """03 02 is an end of `line`; 02 alone is none, and what follows it stands behind no end."""
+    weight = bytes.fromhex("00 07 07 03 02")
+    found = [("weight", {"grams": 7})]
+    process = process_of(path, MESSAGES)
+    steps: list[Step] = [("push", b"\x04\x03"), ("push", b"\x02" + weight)]
+    assert values_of(process, steps, "line") == [[], found]
+    steps = [("push", b"\x04\x03"), ("flush",), ("push", b"\x02" + weight)]
+    assert values_of(process, steps, "line") == [[], [], []]
+
+
+@settings(max_examples=OF_TWO_ENGINES)
+@given(
+    data=st.lists(st.sampled_from((0x0A, 0x4D, 0x47, 0x50, 0x52, 0x02)), max_size=60),
+    dice=st.randoms(),
+)
+def test_bytes_of_commands_make_the_same_messages(data: list[int], dice: Random) -> None:
+    """4D and 47, 50 and 0A, 52 and 02 are halves of commands."""
+    steps: list[Step] = [("clear",), *single(bytes(data), dice)]
+    for _ in range(dice.randrange(3)):
+        steps.insert(dice.randrange(1, len(steps) + 1), ("flush",))
+    process = process_of(DAGNY, COMMANDS)
+    check_events(process, process.module, "host", steps)
+
+
 # --- memory ---------------------------------------------------------------------------------------
 
 
-def test_frames_of_one_size_need_no_more_than_their_bytes_and_a_counter() -> None:
-    """Of dagny's commands: identity, a byte, its sum and the end."""
+def test_small_frames_behind_an_end_need_no_more_than_their_size() -> None:
+    """Of dagny's commands: identity, a byte and its sum; and a bit for each end among them."""
     host = decoder_of(DAGNY, "host", COMMANDS)
-    assert {item.name: item.size for item in members_of(host)} == {"content": 1, "buffer": 4}
-    assert memory_of(host) == 5
+    assert {item.name: item.size for item in members_of(host)} == {"passed": 1, "buffer": 3}
+    assert memory_of(host) == 4
+
+
+@pytest.mark.parametrize("sender", SMALL)
+def test_small_frames_need_no_more_than_their_bytes_and_a_counter(path: Path, sender: str) -> None:
+    decoder = decoder_of(path, sender)
+    assert memory_of(decoder) <= decoder.plan.greatest + 1
 
 
 def test_no_more_is_kept_than_the_greatest_frame() -> None:

@@ -251,6 +251,17 @@ def prove_in_place(made: Generated, machine: str = WIDE) -> Report:
     return prove(made, in_place_driver(made.protocol, header), machine)
 
 
+def test_no_input_harms_a_decoder_that_keeps_the_last_bytes(tmp_path: Path) -> None:
+    """Small frames of several messages, pushed, fed and dispatched."""
+    protocol = protocol_of(ROOT / "schemas" / "dagny.yaml")
+    only = ("motor", "steering", "reflex", "power")
+    made = generate(protocol, tmp_path, COptions(events="messages", only=only))
+    assert made.source is not None
+    assert "decoder->passed" in made.source.read_text(encoding="utf-8")
+    report = prove(made, whole_driver(made), NARROW)
+    assert (report.alarms, report.found) == (0, ())
+
+
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize("path", [ROOT / "schemas" / "rn1.yaml", ELEMENTS], ids=name_of)
 def test_no_index_and_no_value_harms_a_frame_that_was_begun(

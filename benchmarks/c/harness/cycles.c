@@ -37,6 +37,8 @@ static void decode(uint8_t index) {
     MARK = 1;
     do {
         subject_push(pgm_read_byte(at));
+        /* Bytes of a line come one by one: between two of them a decoder is in its memory. */
+        __asm__ volatile("" ::: "memory");
         at++;
     } while (at != end);
 #endif

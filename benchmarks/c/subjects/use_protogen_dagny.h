@@ -2,29 +2,20 @@
 
 static struct dagny_host_decoder decoder;
 
+/* What a command does is the application's: it is told which one came, as beside the expert. */
 static void take(void *user, const struct dagny_host_event *event) {
     void *const message = BENCH_MESSAGE;
     (void)user;
-    switch (event->message) {
-    case DAGNY_MESSAGE_MOTOR:
+    if (event->message == DAGNY_MESSAGE_MOTOR) {
         dagny_motor_load(message, event->payload);
-        bench_seen(0);
-        break;
-    case DAGNY_MESSAGE_STEERING:
+    } else if (event->message == DAGNY_MESSAGE_STEERING) {
         dagny_steering_load(message, event->payload);
-        bench_seen(1);
-        break;
-    case DAGNY_MESSAGE_REFLEX:
+    } else if (event->message == DAGNY_MESSAGE_REFLEX) {
         dagny_reflex_load(message, event->payload);
-        bench_seen(2);
-        break;
-    case DAGNY_MESSAGE_POWER:
+    } else {
         dagny_power_load(message, event->payload);
-        bench_seen(3);
-        break;
-    default:
-        break;
     }
+    bench_seen((uint8_t)event->message);
 }
 
 #define LINK(rest) dagny_host##rest

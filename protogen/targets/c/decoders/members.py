@@ -174,6 +174,15 @@ def _of_delimited(view: DelimitedDecoder) -> tuple[Member, ...]:
 
 def _of_kept(view: KeptDecoder) -> tuple[Member, ...]:
     """The members of a decoder that looks through what it keeps."""
+    if view.has_window:
+        passed = "A bit for each of the last bytes: 0 where an end is complete with it."
+        content = "Bytes in the buffer, but for the last one."
+        return (
+            Member("uint8_t", "passed", passed)
+            if view.begins_behind_end
+            else Member(view.counter, "content", content),
+            Member("uint8_t", "buffer", "The last bytes.", view.buffer_size),
+        )
     buffer = Member("uint8_t", "buffer", "Bytes of the candidate, and behind it.", view.buffer_size)
     if not view.gives_more:
         return Member(view.counter, "content", "Bytes in the buffer."), buffer

@@ -10,7 +10,7 @@ from protogen.model.frame_plan import FramePlan
 from protogen.model.part_plans import ChecksumPlan
 from protogen.model.parts import ChecksumPart, VirtualPart
 from protogen.targets.c.frame.algorithms import Algorithm, algorithm_of
-from protogen.targets.c.frame.expressions import Index, differs, taken_bits
+from protogen.targets.c.frame.expressions import Index, constant_of, differs, taken_bits
 from protogen.targets.c.frame.part_numbers import PartNumbers, fills_bytes
 from protogen.targets.c.frame.virtual import VirtualView
 
@@ -25,8 +25,15 @@ class CoveredRun(msgspec.Struct, frozen=True):
     literal: bytes = b""
     virtual: None = None
 
+    def size(self, payload: int) -> int:
+        """Bytes of the run in a frame with such a payload."""
+        return self.last.at(payload) - self.first.at(payload)
+
     def of(self, payload: str) -> str:
         """Start and size of the run, where `payload` is the C of the payload's size."""
+        known = constant_of(payload)
+        if known is not None:
+            return f"&content[{self.first.at(known)}], {self.size(known)}U"
         wide = payload if payload == "payload" else f"(size_t){payload}"  # That is a size_t.
         first, last = self.first.of(wide), self.last.of(wide)
         if self.last.place.side is Side.HEAD:
@@ -89,6 +96,13 @@ class ChecksumView(msgspec.Struct, frozen=True):
         """The bytes of a result in wire order."""
         return self.numbers.bytes_of(self.part.type, value)
 
+    def adds_bytes_up_to(self, most: int, payload: int) -> bool:
+        """True if it is a sum, or an exclusive or, of no more bytes than that, and is a byte."""
+        if self.checksum.spec.kind not in ("xor", "sum") or self.size != 1 or self.is_bits:
+            return False
+        runs = [item for item in self.covers if isinstance(item, CoveredRun)]
+        return len(runs) == len(self.covers) and sum(run.size(payload) for run in runs) <= most
+
     def differs(self, payload: str) -> str:
         """The condition that `content` has another number than `due`, or other bytes or bits."""
         if self.is_bits:
@@ -96,9 +110,9 @@ class ChecksumView(msgspec.Struct, frozen=True):
             return f"{found} != {taken_bits(self.part, 'due')}"
         if fills_bytes(self.part):
             return f"{self.numbers.whole(self.part.type, 'content', self.at.of(payload))} != due"
-        place = self.at.place
-        at = place.offset if place.side is Side.HEAD else self.at.of(payload)
-        return differs(self.wire_bytes("due"), "content", at)
+        at = self.at.of(payload)
+        known = constant_of(at)
+        return differs(self.wire_bytes("due"), "content", at if known is None else known)
 
 
 def checksums_of(

@@ -24,9 +24,15 @@ class Index(msgspec.Struct, frozen=True):
     place: Place
     head_size: int
 
+    def at(self, payload: int) -> int:
+        """The index in a frame with such a payload."""
+        return self.place.at(self.head_size, payload)
+
     def of(self, payload: str) -> str:
         """The index, where `payload` is the C of the payload's size."""
-        place = self.place
+        place, size = self.place, constant_of(payload)
+        if size is not None:
+            return f"{self.at(size)}U"
         if place.side is Side.HEAD:
             return f"{place.offset}U"
         if not place.absent:
@@ -35,10 +41,19 @@ class Index(msgspec.Struct, frozen=True):
         return f"{self.head_size}U + {payload} + ({payload} == 0U ? {left}U : {place.offset}U)"
 
 
+def constant_of(size: str) -> int | None:
+    """The size that a constant in C says; None of any other expression."""
+    digits = size.removesuffix("U")
+    return int(digits) if digits.isdecimal() else None
+
+
 def less_absent(place: Place, payload: str) -> str:
     """Bytes taken off an offset of the tail where the payload is empty, with its sign."""
     if place.side is Side.HEAD or not place.absent:
         return ""
+    size = constant_of(payload)
+    if size is not None:
+        return "" if size else f" - {place.absent}U"
     return f" - ({payload} == 0U ? {place.absent}U : 0U)"
 
 
