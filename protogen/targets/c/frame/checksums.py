@@ -29,6 +29,8 @@ class CoveredRun(msgspec.Struct, frozen=True):
         """Start and size of the run, where `payload` is the C of the payload's size."""
         wide = payload if payload == "payload" else f"(size_t){payload}"  # That is a size_t.
         first, last = self.first.of(wide), self.last.of(wide)
+        if first == "0U":
+            return f"content, {last}"
         if self.last.place.side is Side.HEAD:
             return f"&content[{first}], (size_t)({last}) - (size_t)({first})"
         return f"&content[{first}], {last} - {f'({first})' if ' ' in first else first}"
