@@ -33,11 +33,11 @@ FLAT, DELIMITED, PUSH = DecoderStyle.FLAT, DecoderStyle.DELIMITED, DecoderStyle.
         # The first of which may be stuffed.
         ("tests/framings/text_parts", "station", "messages", PUSH),
         # Start and end are told by what stands behind their common first byte.
-        ("schemas/rflex", "linux", "messages", FLAT),
+        ("schemas/rflex", "linux", "messages", DELIMITED),
         # A start that nothing of a frame can be, and a length in the head.
         ("schemas/matty", "pc", "messages", FLAT),
         # Digits between a start and an end of one byte each.
-        ("schemas/uherobot", "board", "messages", FLAT),
+        ("schemas/uherobot", "board", "messages", DELIMITED),
         # A set of starts whose bytes stand in frames, too: bytes have to be read again.
         ("tests/framings/bounded_length", "station", "messages", PUSH),
         # The same of a literal.

@@ -36,6 +36,10 @@ class Place(msgspec.Struct, frozen=True):
             return self.offset
         return head_size + payload + self.offset - (0 if payload else self.absent)
 
+    def skipping(self, start: int) -> Place:
+        """The same place in content whose first bytes, so many, are not counted."""
+        return self if self.is_tail else Place(self.side, self.offset - start, self.absent)
+
 
 class PlacedPart(msgspec.Struct, frozen=True):
     """A part of a fixed size, and where it lies in the content."""
@@ -80,6 +84,10 @@ class PlacedPart(msgspec.Struct, frozen=True):
         """True if the part is absent where the payload is empty."""
         return self.part.is_optional
 
+    def skipping(self, start: int) -> PlacedPart:
+        """The same part in content whose first bytes, so many, are not counted."""
+        return PlacedPart(self.part, self.place.skipping(start), self.is_stuffed)
+
 
 class Run(msgspec.Struct, frozen=True):
     """A run of content, from `first` to in front of `end`."""
@@ -88,3 +96,7 @@ class Run(msgspec.Struct, frozen=True):
     end: Place
     over_stuffing: bool = False
     """True if it is stuffed on the wire, and summed as it is there."""
+
+    def skipping(self, start: int) -> Run:
+        """The same run in content whose first bytes, so many, are not counted."""
+        return Run(self.first.skipping(start), self.end.skipping(start), self.over_stuffing)

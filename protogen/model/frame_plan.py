@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 
 from protogen.model.frame import Frame
-from protogen.model.frame_places import PlacedPart
+from protogen.model.frame_places import PlacedPart, Run
 from protogen.model.messages import Message
 from protogen.model.part_plans import (
     ChecksumPlan,
@@ -226,6 +226,34 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         identity = dict(zip(self.frame.identity, message.identity, strict=True))
         told = {it.name: given.get(it.name, identity[it]) for it in self.frame.told_identity}
         return {**told, **self.told_size(wire)}
+
+    # --- places -----------------------------------------------------------------------------------
+
+    @property
+    def skipped(self) -> int:
+        """Bytes of the start that places are not counted from."""
+        return -self.head[0].offset if self.head else 0
+
+    @cached_property
+    def covers_start(self) -> bool:
+        """True if a checksum runs over some of the start."""
+        runs = [run for item in self.checksums for run in item.covers if isinstance(run, Run)]
+        start = self.start_size - self.skipped
+        return any(not run.first.is_tail and run.first.offset < start for run in runs)
+
+    def behind_start(self) -> FramePlan:
+        """The plan for those who keep no start literal: places are counted from behind it.
+
+        Its own bytes have negative places.
+        """
+        start = len(self.start_bytes)
+        return msgspec.structs.replace(
+            self,
+            head=tuple(item.skipping(start) for item in self.head),
+            further_lengths=tuple(item.skipping(start) for item in self.further_lengths),
+            checksums=tuple(item.skipping(start) for item in self.checksums),
+            region=None if self.region is None else self.region.skipping(start),
+        )
 
     # --- parts ------------------------------------------------------------------------------------
 
@@ -464,7 +492,8 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         """True if a frame of the message may have an end where only a start is in front of it."""
         if self.start is not StartRule.AFTER_END and not self.shares_delimiter:
             return False
-        behind = [item.part for item in self.head if item.offset >= len(self.start_bytes)]
+        start = len(self.start_bytes) - self.skipped
+        behind = [item.part for item in self.head if item.offset >= start]
         first = behind[0] if behind else None
         if not isinstance(first, IdentityPart) or first.size < len(self.end_bytes):
             return True

@@ -36,6 +36,13 @@ class ChecksumPlan(msgspec.Struct, frozen=True, kw_only=True):
         """True if some of what it runs over is summed as it is stuffed."""
         return any(isinstance(run, Run) and run.over_stuffing for run in self.covers)
 
+    def skipping(self, start: int) -> ChecksumPlan:
+        """The same checksum of content whose first bytes, so many, are not counted."""
+        covers = (item.skipping(start) if isinstance(item, Run) else item for item in self.covers)
+        return msgspec.structs.replace(
+            self, placed=self.placed.skipping(start), covers=tuple(covers)
+        )
+
 
 class VirtualPlan(msgspec.Struct, frozen=True, kw_only=True):
     """A part that is not sent, and its value for each identity."""
@@ -117,6 +124,10 @@ class FurtherLength(CountedLength, frozen=True, kw_only=True):
         """What it is more than the first length, where the payload is empty."""
         return self.base - self.first.base
 
+    def skipping(self, start: int) -> FurtherLength:
+        """The same length in content whose first bytes, so many, are not counted."""
+        return msgspec.structs.replace(self, placed=self.placed.skipping(start))
+
 
 class StuffedRegion(msgspec.Struct, frozen=True, kw_only=True):
     """The part of the content that is stuffed on the wire."""
@@ -157,6 +168,15 @@ class StuffedRegion(msgspec.Struct, frozen=True, kw_only=True):
     def escape(self) -> Escape | None:
         """The escape, if that is the encoding."""
         return self.encoding if isinstance(self.encoding, Escape) else None
+
+    def skipping(self, start: int) -> StuffedRegion:
+        """The same region of content whose first bytes, so many, are not counted."""
+        return msgspec.structs.replace(
+            self,
+            first=self.first.skipping(start),
+            end=self.end.skipping(start),
+            before=self.before - start,
+        )
 
 
 class IdentityGroup(msgspec.Struct, frozen=True, kw_only=True):

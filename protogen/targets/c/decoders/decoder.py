@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 
-from msgspec.structs import astuple
+from msgspec.structs import astuple, replace
 
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.delimited import DelimitedDecoder
@@ -45,6 +45,14 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
         return KeptDecoder(*astuple(self)) if is_kept else None
 
     @property
+    def without_start(self) -> DecoderView:
+        """The same of a decoder that keeps no start, where nothing reads that again."""
+        lean = self.flat or self.delimited
+        if lean is None or lean.keeps_start:
+            return self
+        return replace(self, plan=self.plan.behind_start())
+
+    @property
     def polled(self) -> FlatDecoder | DelimitedDecoder | KeptDecoder | PushDecoder | None:
         """View of a decoder whose `push` returns which message is complete, if this is one."""
         return (self.lean or self.push) if self.is_polled else None
@@ -77,6 +85,21 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
         lean = self.delimited or self.kept
         return self.counter if lean is None else lean.counter
 
+    @property
+    def room(self) -> int:
+        """Bytes of the buffer."""
+        return (self.lean or self).buffer_size
+
+    @property
+    def other_payload(self) -> str:
+        """The condition that no message has a payload of that size; empty where any may fit."""
+        if self.only_size is not None:
+            return f"payload != {self.only_size}U"
+        delimited = self.delimited
+        if delimited is None or delimited.greatest_payload >= self.plan.payload.greatest:
+            return ""
+        return f"payload > {delimited.greatest_payload}U"
+
     @cached_property
     def push(self) -> PushDecoder:
         """View of a decoder with states."""
@@ -85,7 +108,7 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
     @cached_property
     def whole(self) -> WholeFrames | None:
         """View of how `feed` takes a frame at once, if it can."""
-        return None if self.delimited or self.kept else whole_frames(self)
+        return None if self.kept else whole_frames(self)
 
     @property
     def takes_whole(self) -> bool:
@@ -100,9 +123,10 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
     @property
     def is_idle(self) -> str:
         """The condition that nothing of a frame is there."""
-        if self.flat is not None:
-            found = [f"decoder->{self.flat.idle_member} == {self.flat.idle_value}U"]
-            found += ["decoder->node == 0U"] if self.flat.has_node else []
+        lean = self.flat or self.delimited
+        if lean is not None:
+            found = [f"decoder->{lean.idle_member} == {lean.idle_value}U"]
+            found += ["decoder->node == 0U"] if lean.has_node else []
         else:
             found = [f"decoder->state == {self.protocol_upper}_SEEKING"]
             found += ["decoder->match == 0U"] if self.push.keeps_match else []

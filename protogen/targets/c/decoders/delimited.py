@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from protogen.c_language.numbers import unsigned_type
 from protogen.model.frame_plan import StartRule, Store
 from protogen.targets.c.decoders.flat import FlatDecoder
 from protogen.targets.c.decoders.groups import GroupView, constants_by_size
@@ -69,16 +70,37 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
     @property
     def size_is_kept(self) -> bool:
         """True if a member says how large the payload of a complete frame is."""
+        return self._size_varies and not self.size_in_buffer
+
+    @property
+    def _size_varies(self) -> bool:
+        """True if the message does not tell how large the payload of a complete frame is."""
         if self.only_size is not None:
             return False
         messages = [message for group in self.groups for message in group.messages]
         vary = any(message.is_fitted or not message.fixed for message in messages)
         return vary or self.shows_tail
 
+    @cached_property
+    def size_in_buffer(self) -> str:
+        """The same as a length in the buffer says it; empty where none does in so many words."""
+        length = self.plan.length
+        if length is None or self.plan.frame.told_length or self.fits_payloads:
+            return ""
+        placed = self.plan.part(length.part.name)
+        if not placed.in_head or length.part.type.text or length.part.type.within:
+            return ""
+        place = self.in_front + placed.offset
+        value = self.numbers.value(length.part.type, "decoder->buffer", place)
+        if length.base:
+            return f"({self.counter})({value} - {length.base}U)"
+        is_wider = unsigned_type(length.part.type.bits) != self.counter
+        return f"({self.counter}){value}" if is_wider else value
+
     @property
     def tells_sizes(self) -> bool:
         """True if the message tells it, and there are several."""
-        return self.only_size is None and not self.size_is_kept
+        return self.only_size is None and not self._size_varies
 
     @cached_property
     def sizes(self) -> dict[int, tuple[str, ...]]:
@@ -101,6 +123,8 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
             return ""
         if self.size_is_kept:
             return "decoder->payload, "
+        if self._size_varies:
+            return f"{self.size_in_buffer}, "
         return f"{self.prefix}_payload_size(message), "
 
     # --- start and end ----------------------------------------------------------------------------
@@ -108,8 +132,13 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
     @property
     def end(self) -> str:
         """The condition that a byte is the end, or its last one."""
-        held = "decoder->held != 0U && " if self.end_size > 1 else ""
+        held = "decoder->held != 0U && " if self.holds_end else ""
         return f"{held}byte == {byte(self.plan.end_bytes[-1])}"
+
+    @property
+    def holds_end(self) -> bool:
+        """True if a member says that the first byte of an end came; else nodes do, or nothing."""
+        return self.end_size > 1 and not self.escape_starts
 
     @property
     def has_start(self) -> bool:
@@ -123,8 +152,13 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
 
     @property
     def begun(self) -> int:
-        """The number of bytes in the buffer behind an end."""
-        return self.first_head if self.plan.shares_delimiter else 0
+        """The number of bytes that are counted behind an end."""
+        return self.lead + self.first_head if self.plan.shares_delimiter else 0
+
+    @property
+    def counter_begun(self) -> int:
+        """Value of the counter then."""
+        return self.counted(self.first_head) if self.plan.shares_delimiter else 0
 
     @property
     def idle_member(self) -> str:
@@ -141,12 +175,12 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
         """The condition that no byte of content is taken."""
         if not self.has_start:
             return f"at >= {self.buffer_size}U"
-        return f"({self.counter})(at - 1U) >= {self.buffer_size - 1}U"
+        return f"({self.counter})(at - 1U) >= {self.lead + self.buffer_size - 1}U"
 
     @property
     def least(self) -> int:
-        """The number of bytes in the buffer of a frame with an empty payload."""
-        return self.in_front + self.around + self.behind
+        """The number of bytes that are counted of a frame with an empty payload."""
+        return self.in_front + self.counts_around + self.behind
 
     @property
     def is_complete(self) -> str:
@@ -155,12 +189,13 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
         What is too short, or given up, has a payload greater than any.
         """
         if self.only_size is not None:
-            found = [f"{self.content_counter} == {self.counted(self.least + self.only_size)}U"]
+            kept = self.least - self.lead + self.only_size
+            found = [f"{self.content_counter} == {self.counted(kept)}U"]
         else:
             found = [f"payload <= {self.greatest_payload}U"]
         if self.least - self.behind <= self.begun and not self.only_size:
             found.append(f"at > {self.begun + self.behind}U")  # Else it is an idle line.
-        if self.has_node:
+        if self.has_node and not self.escape_starts:
             found.append("node == 0U")
         elif self.counts_digits and self.only_size is None:
             found.append("(digits & 1U) == 0U")
@@ -201,6 +236,16 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
             return False
         return message.takes_any_size or message.check_sees_size
 
+    def is_other_length(self, length: str) -> str:
+        """The condition that the payload has another size than the length says, or may say."""
+        assert self.length is not None
+        base, size = self.length.base, self.only_size
+        if size is not None:
+            return f"{length} != {base + size}U"
+        found = self.length.beyond(length, self.greatest_payload)
+        due = f"({self.length.wrapping})(payload + {base}U)" if base else "payload"
+        return " || ".join([*found, f"{length} != {due}"])
+
     @property
     def compares_size(self) -> bool:
         """True if a length in the head has to say how large the payload turned out to be."""
@@ -236,9 +281,12 @@ def is_delimited(frame: ReceivedFrame) -> bool:
 
 
 def _end_is_plain(frame: ReceivedFrame) -> bool:
-    """True if the end is one byte, or two of which the first means nothing else where it stands."""
+    """True if the end is one byte, or two of which the first tells nothing else where it stands.
+
+    Where it begins sequences of the stuffing, too, their nodes tell.
+    """
     end, stuffing = frame.plan.end_bytes, frame.stuffing
-    if len(end) == 1:
+    if len(end) == 1 or frame.escape_starts:
         return True
     if len(end) != 2 or end[0] == end[1] or frame.plan.shares_delimiter:
         return False
@@ -246,13 +294,13 @@ def _end_is_plain(frame: ReceivedFrame) -> bool:
 
 
 def _start_is_plain(frame: ReceivedFrame) -> bool:
-    """True if the end of the frame before is the start, or one byte that stands nowhere else."""
+    """True if the end of the frame before is the start, or what stands nowhere else and shows."""
     plan = frame.plan
     if plan.start is StartRule.AFTER_END:
         return True
     if plan.start not in (StartRule.LITERAL, StartRule.SET):
         return False
-    return plan.start_is_unique and plan.start_size == 1
+    return plan.start_is_unique and (plan.start_size == 1 or frame.escape_starts)
 
 
 def _region_is_plain(frame: ReceivedFrame) -> bool:
@@ -260,8 +308,8 @@ def _region_is_plain(frame: ReceivedFrame) -> bool:
     region, stuffing = frame.plan.region, frame.stuffing
     if region is None or stuffing is None:
         return True
-    before = 0 if frame.plan.start is StartRule.AFTER_END else 1
+    before = 0 if frame.plan.start is StartRule.AFTER_END else frame.first_head
     is_whole = frame.region_to_end and region.before == before
-    if stuffing.is_cobs and (before or stuffing.lenient):
+    if stuffing.is_cobs and (frame.plan.start_size or stuffing.lenient):
         return False
     return is_whole and stuffing.kind in _KINDS

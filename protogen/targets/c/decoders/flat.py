@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 
-from protogen.model.frame_places import Run
 from protogen.targets.c.decoders.groups import GroupView
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.expressions import byte
@@ -30,16 +29,34 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         return sizes.pop() if len(sizes) == 1 else None
 
     @property
+    def lead(self) -> int:
+        """What the counter of content counts in front of the buffer.
+
+        A start that is not kept is one, so that nought says that no candidate is open.
+        """
+        return 1 if self.plan.skipped else 0
+
+    @property
+    def place(self) -> str:
+        """The place in the buffer of the byte that is taken."""
+        return "at - 1U" if self.lead else "at"
+
+    @property
     def payload(self) -> str:
         """The payload's size in C."""
         return "payload" if self.only_size is None else f"{self.only_size}U"
 
     @property
     def limit(self) -> str:
-        """Bytes of content of the frame, as far as is known."""
+        """Value of the counter when all content is there, as far as is known."""
         if self.only_size is None:
             return "decoder->limit"
-        return f"{self.around + self.only_size}U"
+        return f"{self.counts_around + self.only_size}U"
+
+    @property
+    def counts_around(self) -> int:
+        """What that counter has more than the payload's size then."""
+        return self.around + self.lead
 
     @property
     def counts_digits(self) -> bool:
@@ -47,8 +64,8 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         return self.stuffing is not None and self.stuffing.kind is StuffingKind.BASE16
 
     def counted(self, size: int) -> int:
-        """Value of the counter of content behind so many bytes."""
-        return 2 * size if self.counts_digits else size
+        """Value of the counter of content behind so many bytes of it."""
+        return (self.lead + size) * (2 if self.counts_digits else 1)
 
     @property
     def counted_limit(self) -> str:
@@ -99,14 +116,14 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
 
     def size_kept(self, payload: str) -> str:
         """The size of a payload as that counter holds it."""
-        return f"({self.counter})({payload} + {self.around}U)"
+        return f"({self.counter})({payload} + {self.counts_around}U)"
 
     @property
     def shown_size(self) -> str:
         """The payload's size of a complete frame, as an argument in front of others."""
         if self.only_size is not None:
             return ""
-        return f"({self.counter})(decoder->{self.size_member} - {self.around}U), "
+        return f"({self.counter})(decoder->{self.size_member} - {self.counts_around}U), "
 
     @property
     def kept_content(self) -> str:
@@ -118,7 +135,7 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         """The condition that no byte of content is due."""
         if self.only_size is None:
             return f"at >= {self.limit}"
-        last = self.around + self.only_size - 1
+        last = self.counts_around + self.only_size - 1
         return f"({self.counter})(at - 1U) >= {last}U" if self.plan.end_bytes else "at == 0U"
 
     # --- start and end ----------------------------------------------------------------------------
@@ -131,12 +148,7 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
     @property
     def keeps_start(self) -> bool:
         """True if something reads the start's bytes again."""
-        first_head = self.first_head
-        runs = [run for c in self.plan.checksums for run in c.covers]
-        return not self.plan.start_bytes or any(
-            isinstance(run, Run) and run.first.at(self.plan.head_size, 0) < first_head
-            for run in runs
-        )
+        return not self.plan.start_bytes or self.plan.covers_start
 
     @property
     def completes_with_start(self) -> bool:

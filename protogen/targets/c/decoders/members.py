@@ -165,7 +165,7 @@ def _of_delimited(view: DelimitedDecoder) -> tuple[Member, ...]:
             Member(view.counter, "payload", "Size of the payload of a complete frame."),
         ),
         (view.has_node, Member("uint8_t", "node", node)),
-        (view.end_size > 1, Member("uint8_t", "held", "1: the first byte of an end was the last.")),
+        (view.holds_end, Member("uint8_t", "held", "1: the first byte of an end was the last.")),
         (view.groups_fill, Member("uint8_t", "code", "Code of the group.")),
         (True, Member("uint8_t", "buffer", "Bytes of the candidate.", view.buffer_size)),
     )

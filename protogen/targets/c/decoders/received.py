@@ -151,8 +151,8 @@ class ReceivedFrame(NamedDecoder, frozen=True, dict=True):
 
     @property
     def first_head(self) -> int:
-        """Bytes of a start."""
-        return self.plan.start_size or 1
+        """Bytes of a start that stand in the content."""
+        return (self.plan.start_size or 1) - self.plan.skipped
 
     def is_start(self, at: str) -> str:
         """The condition that a byte is a start of one byte."""

@@ -34,10 +34,10 @@ def decoder_style(frame: ReceivedFrame) -> DecoderStyle:
     """
     if frame.all_events or not (_tail_stays(frame) and _payload_is_plain(frame)):
         return DecoderStyle.PUSH
-    if _is_flat(frame):
-        return DecoderStyle.FLAT
     if is_delimited(frame):
         return DecoderStyle.DELIMITED
+    if _is_flat(frame):
+        return DecoderStyle.FLAT
     return DecoderStyle.KEPT if is_kept(frame) else DecoderStyle.PUSH
 
 
@@ -59,7 +59,7 @@ def _is_flat(frame: ReceivedFrame) -> bool:
 def _delimiters_are_seen(frame: ReceivedFrame) -> bool:
     """True if no delimiter is missed, whatever went before."""
     plan = frame.plan
-    single = frame.first_head == 1 and len(plan.end_bytes) <= 1
+    single = plan.start_size <= 1 and len(plan.end_bytes) <= 1
     return (
         plan.start in (StartRule.LITERAL, StartRule.SET)
         and plan.start_is_unique

@@ -16,6 +16,9 @@ _MOST_SPECIALS = 5
 """More special bytes take longer to look for than they save."""
 
 
+_WITHOUT_STATES = (DecoderStyle.FLAT, DecoderStyle.DELIMITED)
+
+
 class WholeFrames(ReceivedFrame, frozen=True, dict=True):
     """View of a decoder that takes a frame at once."""
 
@@ -86,8 +89,8 @@ def whole_frames(decoder: ReceivedFrame) -> WholeFrames | None:
         and not d.plan.shares_delimiter
         and not d.optional_size
         and not d.checks_tail
-        # A flat decoder fills payloads up in its buffer.
-        and not (d.filled_size and decoder_style(d) is DecoderStyle.FLAT)
+        # Such decoders fill payloads up in their buffer.
+        and not (d.filled_size and decoder_style(d) in _WITHOUT_STATES)
         # A frame with a start inside is none: without stuffing, each byte would have to be seen.
         and not (d.plan.start_is_unique and d.stuffing is None and not starts_show)
     )

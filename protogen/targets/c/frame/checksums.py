@@ -36,6 +36,8 @@ class CoveredRun(msgspec.Struct, frozen=True):
             return f"&content[{self.first.at(known)}], {self.size(known)}U"
         wide = payload if payload == "payload" else f"(size_t){payload}"  # That is a size_t.
         first, last = self.first.of(wide), self.last.of(wide)
+        if first == "0U":
+            return f"content, {last}"
         if self.last.place.side is Side.HEAD:
             return f"&content[{first}], {self.last.place.offset - self.first.place.offset}U"
         before = "" if first == "0U" else f" - ({first})" if " " in first else f" - {first}"

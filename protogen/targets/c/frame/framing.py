@@ -156,7 +156,7 @@ def framing_view(
     puts = tuple(dict.fromkeys(item.view.put_function for item in message_frames if item.sends))
     used = _used(sinks, list(puts))
     return FramingView(
-        decoders=decoders,
+        decoders=tuple(decoder.without_start for decoder in decoders),
         together=forms_decoders(names, senders, decoders, options.events),
         frames=distinct,
         messages=message_frames,

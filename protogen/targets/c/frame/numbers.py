@@ -252,7 +252,8 @@ def _number(plan: FramePlan, item: PlacedPart, numbers: PartNumbers) -> NumberVi
     type_ = part.type
     less = less_absent(item.place, "decoder->payload")
     value = numbers.value(type_, "content", item.offset, less)
-    starts = isinstance(part, ChoicePart) and item.in_head and item.end <= plan.start_size
+    is_first = plan.start is StartRule.SET and item.in_head and item.end <= plan.start_size
+    starts = isinstance(part, ChoicePart) and is_first
     is_last = part in plan.sent_identity[-1:]
     return NumberView(
         last=item.end - 1,
@@ -366,14 +367,17 @@ class LengthView(msgspec.Struct, frozen=True):
     def tests(self, size: str) -> str:
         """The condition that `length`, or the payload's size after it, is none that a frame has."""
         most = (1 << (8 if self.wrapping == "uint8_t" else self.bits)) - 1
-        found = []
-        if self.least > self.base:
-            found.append(f"length < {self.least}U")
-        if self.greatest < min(self.base + self.payload, (1 << self.bits) - 1):
-            found.append(f"length > {self.greatest}U")
+        found = self.beyond("length", self.payload)
         if self.payload < most or self.base:
             found.append(f"{size} > {self.payload}U")
         return " || ".join(found)
+
+    def beyond(self, length: str, payload: int) -> list[str]:
+        """The conditions that it is out of bounds, with a payload of so many bytes at most."""
+        found = [f"{length} < {self.least}U"] if self.least > self.base else []
+        if self.greatest < min(self.base + payload, (1 << self.bits) - 1):
+            found.append(f"{length} > {self.greatest}U")
+        return found
 
     @property
     def leads_nowhere(self) -> str:
