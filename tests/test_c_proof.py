@@ -85,7 +85,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
     if ALL
     else [
         *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS, DIGITS, IDLE)),
-        *((path, "messages", NARROW) for path in DOCUMENTS),
+        *((path, "messages", NARROW) for path in (*DOCUMENTS, *DIALECTS)),
         *((path, "all", NARROW) for path in DOCUMENTS if path.stem not in SLOW_ALL),
         (TRIMMED, "messages", WIDE),
         (SEQUENCES, "messages", WIDE),
@@ -107,12 +107,13 @@ FIRST = [ROOT / "schemas" / f"{name}.yaml" for name in ("matty", "rn1")]
 MATTY = ROOT / "schemas" / "matty.yaml"
 
 
-LOADS_UNSEEN = ("dagny", "rflex", "rn1")
-"""Documents whose `dispatch` copies arrays of any number of elements: EVA does not see that this is
-what the size of the payload says. They are dispatched behind `decode`."""
+FED = (*DOCUMENTS, *DIALECTS, COBS, HDLC, PROBE)
+"""Those whose decoders get several bytes at once, too: of documents and dialects, and one for each
+way in which a decoder that is polled is printed."""
+LOADED = ("matty", "uherobot", "uherobot_daemon", "probe")
+"""Those whose events are dispatched. In others that copies arrays of any number of elements, and EVA
+does not see that this is what the size of the payload says; they are dispatched behind `decode`."""
 UHEROBOT = ROOT / "schemas" / "uherobot.yaml"
-SENT = [path for path in DOCUMENTS if path.stem != "rn1"]
-"""Documents whose messages are sent. In rn1 one has cases of any size, which EVA takes together."""
 
 SMALL = [
     *sorted((ROOT / "tests" / "c_proof" / "schemas").glob("*.yaml")),
@@ -201,8 +202,8 @@ def whole_driver(made: Generated, *, loads: bool = True) -> Driver:
 def test_no_input_harms_a_decoder(path: Path, events: Events, machine: str, tmp_path: Path) -> None:
     protocol = protocol_of(path)
     made = generate(protocol, tmp_path, COptions(events=events))
-    if path in DOCUMENTS and path.stem not in SLOW_ALL:
-        driver = whole_driver(made, loads=path.stem not in LOADS_UNSEEN)
+    if path in FED:
+        driver = whole_driver(made, loads=path.stem in LOADED)
     else:
         driver = plain_driver(made, path)
     together = [name for name in protocol.sending if len(protocol.forms(name)) > 1]
@@ -211,7 +212,7 @@ def test_no_input_harms_a_decoder(path: Path, events: Events, machine: str, tmp_
     assert (report.alarms, report.found) == (0, ())
 
 
-@pytest.mark.parametrize("path", SENT, ids=name_of)
+@pytest.mark.parametrize("path", DOCUMENTS, ids=name_of)
 def test_no_message_harms_what_encodes_and_sends_it(path: Path, tmp_path: Path) -> None:
     report = prove_sending(generate(protocol_of(path), tmp_path))
     assert (report.alarms, report.found) == (0, ())
