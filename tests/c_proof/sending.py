@@ -16,6 +16,8 @@ from protogen.model.protocol import Protocol
 GREATEST = 64
 """Greater payloads take minutes if EVA follows each of their sizes: buffers for these have room for
 the greatest, and all sizes are looked at together."""
+STUFFED = 300
+"""More bytes than are stuffed in any frame."""
 _ENCODERS = re.compile(
     r"enum \w+ ((\w+)_(encode|frame|send))\( ?(?:const struct (\w+) \*message, )?([^)]*)\);"
 )
@@ -85,7 +87,7 @@ def send_driver(protocol: Protocol, header: str, source: str) -> Driver:
         values = [f"struct {struct} message;"] if struct else []
         values += ["Frama_C_make_unknown((char *)&message, sizeof message);"] if struct else []
         values += [f"message.{name} = any != 0;" for name in truths.get(struct, ())]
-        if greatest <= GREATEST:
+        if greatest <= GREATEST or (kind == "frame" and _WRAP.search(source)):
             for value in _apart(measure, greatest):
                 values += [f"//@ split {value};", ";"]
         given = {
@@ -113,7 +115,7 @@ def send_driver(protocol: Protocol, header: str, source: str) -> Driver:
 def unrolled(source: str) -> str:
     """Generated C with comments that have EVA go over stuffed bytes one by one."""
     return _WRAP.sub(
-        lambda loop: f"{loop[1]}//@ loop unroll {2 * GREATEST};\n{loop.group()}", source
+        lambda loop: f"{loop[1]}//@ loop unroll {STUFFED};\n{loop.group()}", source
     )
 
 
