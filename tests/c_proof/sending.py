@@ -114,9 +114,7 @@ def send_driver(protocol: Protocol, header: str, source: str) -> Driver:
 
 def unrolled(source: str) -> str:
     """Generated C with comments that have EVA go over stuffed bytes one by one."""
-    return _WRAP.sub(
-        lambda loop: f"{loop[1]}//@ loop unroll {STUFFED};\n{loop.group()}", source
-    )
+    return _WRAP.sub(lambda loop: f"{loop[1]}//@ loop unroll {STUFFED};\n{loop.group()}", source)
 
 
 def _apart(measure: str, greatest: int) -> list[str]:
@@ -124,7 +122,9 @@ def _apart(measure: str, greatest: int) -> list[str]:
     values: dict[str, None] = {}
     cases = dict(_SWITCH.findall(measure))
     for path in sorted(set(_VALUE.findall(measure)), key=lambda path: (path.count("."), path)):
-        bounds = {int(case) - below for case in _CASE.findall(cases.get(path, "")) for below in (0, 1)}
+        bounds = {
+            int(case) - below for case in _CASE.findall(cases.get(path, "")) for below in (0, 1)
+        }
         if "." in path:
             bounds = set(range(greatest + 1))
         found = [f"message.{path} <= {bound}" for bound in sorted(bounds)]
