@@ -85,7 +85,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
     if ALL
     else [
         *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS, DIGITS, IDLE)),
-        *((path, "messages", NARROW) for path in DOCUMENTS),
+        *((path, "messages", NARROW) for path in (*DOCUMENTS, *DIALECTS)),
         *((path, "all", NARROW) for path in DOCUMENTS if path.stem not in SLOW_ALL),
         (TRIMMED, "messages", WIDE),
         (SEQUENCES, "messages", WIDE),
@@ -107,12 +107,13 @@ FIRST = [ROOT / "schemas" / f"{name}.yaml" for name in ("matty", "rn1")]
 MATTY = ROOT / "schemas" / "matty.yaml"
 
 
-LOADS_UNSEEN = ("dagny", "rflex", "rn1")
-"""Documents whose `dispatch` copies arrays of any number of elements: EVA does not see that this is
-what the size of the payload says. They are dispatched behind `decode`."""
+FED = (*DOCUMENTS, *DIALECTS, COBS, HDLC, PROBE)
+"""Those whose decoders get several bytes at once, too: of documents and dialects, and one for each
+way in which a decoder that is polled is printed."""
+LOADED = ("matty", "uherobot", "uherobot_daemon", "probe")
+"""Those whose events are dispatched. In others that copies arrays of any number of elements: EVA
+does not see that this is what the size of the payload says; they are dispatched behind `decode`."""
 UHEROBOT = ROOT / "schemas" / "uherobot.yaml"
-SENT = [path for path in DOCUMENTS if path.stem != "rn1"]
-"""Documents whose messages are sent. In rn1 one has cases of any size, which EVA takes together."""
 
 SMALL = [
     *sorted((ROOT / "tests" / "c_proof" / "schemas").glob("*.yaml")),
@@ -128,14 +129,14 @@ def decode_driver_of(made: Generated) -> Driver:
     return decode_driver(made.protocol, *texts)
 
 
-def prove(made: Generated, driver: Driver, machine: str = WIDE) -> Report:
-    """Analyse a driver of generated code."""
+def prove(made: Generated, driver: Driver, machine: str = WIDE, *, first: bool = False) -> Report:
+    """Analyse a driver of generated code: all of it, or up to its first alarm."""
     source = made.folder / "driver.c"
     source.write_text(driver.text, encoding="utf-8")
     assert made.source is not None
     generated = made.source.read_text(encoding="utf-8")
     options = known_in(f"{driver.text}{generated}", driver.options)
-    return analyse(source, made.folder, machine, *options)
+    return analyse(source, made.folder, machine, *options, first=first)
 
 
 @pytest.mark.parametrize(("path", "machine"), DECODES, ids=name_of)
@@ -148,13 +149,13 @@ def test_no_payload_harms_a_decode_function(path: Path, machine: str, tmp_path: 
     assert (report.alarms, report.found) == (0, ())
 
 
-def prove_small(made: Generated) -> Report:
+def prove_small(made: Generated, *, first: bool = False) -> Report:
     """Analyse `decode` of payloads that say where they end, one place at a time."""
     assert made.source is not None
     driver = decode_driver_of(made)
     plain = made.source.read_text(encoding="utf-8")
     made.source.write_text(annotated(plain), encoding="utf-8")
-    return prove(made, replace(driver, options=OPTIONS))
+    return prove(made, replace(driver, options=OPTIONS), first=first)
 
 
 @pytest.mark.parametrize("path", SMALL, ids=name_of)
@@ -174,12 +175,12 @@ def test_annotations_are_comments(path: Path, tmp_path: Path) -> None:
     assert re.sub(r" +//@ (split .*;\n +;|slevel merge;)\n", "", with_comments) == plain
 
 
-def prove_sending(made: Generated) -> Report:
+def prove_sending(made: Generated, *, first: bool = False) -> Report:
     """Analyse what encodes and sends messages of up to `GREATEST` bytes."""
     assert made.source is not None
     header, source = (path.read_text(encoding="utf-8") for path in (made.header, made.source))
     made.source.write_text(unrolled(source), encoding="utf-8")
-    return prove(made, send_driver(made.protocol, header, source))
+    return prove(made, send_driver(made.protocol, header, source), first=first)
 
 
 def plain_driver(made: Generated, path: Path) -> Driver:
@@ -201,8 +202,8 @@ def whole_driver(made: Generated, *, loads: bool = True) -> Driver:
 def test_no_input_harms_a_decoder(path: Path, events: Events, machine: str, tmp_path: Path) -> None:
     protocol = protocol_of(path)
     made = generate(protocol, tmp_path, COptions(events=events))
-    if path in DOCUMENTS and path.stem not in SLOW_ALL:
-        driver = whole_driver(made, loads=path.stem not in LOADS_UNSEEN)
+    if path in FED:
+        driver = whole_driver(made, loads=path.stem in LOADED)
     else:
         driver = plain_driver(made, path)
     together = [name for name in protocol.sending if len(protocol.forms(name)) > 1]
@@ -211,7 +212,7 @@ def test_no_input_harms_a_decoder(path: Path, events: Events, machine: str, tmp_
     assert (report.alarms, report.found) == (0, ())
 
 
-@pytest.mark.parametrize("path", SENT, ids=name_of)
+@pytest.mark.parametrize("path", DOCUMENTS, ids=name_of)
 def test_no_message_harms_what_encodes_and_sends_it(path: Path, tmp_path: Path) -> None:
     report = prove_sending(generate(protocol_of(path), tmp_path))
     assert (report.alarms, report.found) == (0, ())
@@ -243,12 +244,12 @@ def test_no_input_harms_a_decoder_of_one_message(document: str, only: str, tmp_p
     assert (report.alarms, report.found) == (0, ())
 
 
-def prove_in_place(made: Generated, machine: str = WIDE) -> Report:
+def prove_in_place(made: Generated, machine: str = WIDE, *, first: bool = False) -> Report:
     """Analyse what writes messages field by field in their frames."""
     assert made.source is not None
     made.source.write_text(unrolled(made.source.read_text(encoding="utf-8")), encoding="utf-8")
     header = made.header.read_text(encoding="utf-8")
-    return prove(made, in_place_driver(made.protocol, header), machine)
+    return prove(made, in_place_driver(made.protocol, header), machine, first=first)
 
 
 def test_no_input_harms_a_decoder_that_keeps_the_last_bytes(tmp_path: Path) -> None:
@@ -287,7 +288,7 @@ def test_a_feed_that_reads_a_byte_too_many_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(MATTY), tmp_path)
     assert made.source is not None
     changed(made.source, r"while \(index < size\)", "while (index <= size)")
-    report = prove(made, whole_driver(made))
+    report = prove(made, whole_driver(made), first=True)
     assert any("uninitialized" in found or "out of bounds" in found for found in report.found)
 
 
@@ -295,7 +296,7 @@ def test_a_load_that_writes_a_byte_too_many_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(MATTY), tmp_path, COptions(events="messages"))
     assert made.source is not None
     changed(made.source, r"(_copy\(message->nmea, [^;]*size)\);", r"\1 + 1U);")
-    report = prove(made, whole_driver(made))
+    report = prove(made, whole_driver(made), first=True)
     assert any("out of bounds" in found for found in report.found)
 
 
@@ -315,19 +316,19 @@ def test_a_frame_that_needs_more_than_it_asks_for_is_found(
     made = generate(protocol_of(UHEROBOT), tmp_path)
     assert made.source is not None
     changed(made.source, pattern, fault)
-    assert any("out of bounds" in found for found in prove_sending(made).found)
+    assert any("out of bounds" in found for found in prove_sending(made, first=True).found)
 
 
 def test_an_index_that_is_too_great_by_one_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(ROOT / "schemas" / "rn1.yaml"), tmp_path)
     changed(made.header, r"if \(index >= 360U\)", "if (index > 360U)")
-    assert any("out of bounds write" in found for found in prove_in_place(made).found)
+    assert any("out of bounds write" in found for found in prove_in_place(made, first=True).found)
 
 
 def test_a_buffer_that_is_too_small_by_a_byte_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(MATTY), tmp_path)
     header = changed(made.header, r"uint8_t buffer\[126\];", "uint8_t buffer[125];")
-    report = prove(made, push_driver(made.protocol, header))
+    report = prove(made, push_driver(made.protocol, header), first=True)
     assert report.alarms > 0
     assert any("out of bounds" in found for found in report.found)
 
@@ -335,14 +336,14 @@ def test_a_buffer_that_is_too_small_by_a_byte_is_found(tmp_path: Path) -> None:
 def test_a_buffer_that_a_polled_decoder_writes_behind_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(MATTY), tmp_path, COptions(events="messages"))
     header = changed(made.header, r"uint8_t buffer\[126\];", "uint8_t buffer[125];")
-    report = prove(made, push_driver(made.protocol, header))
+    report = prove(made, push_driver(made.protocol, header), first=True)
     assert any("out of bounds" in found for found in report.found)
 
 
 def test_an_event_that_is_not_filled_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(MATTY), tmp_path, COptions(events="messages"))
     header = changed(made.header, r"    event->payload = .*;\n", "")
-    report = prove(made, push_driver(made.protocol, header))
+    report = prove(made, push_driver(made.protocol, header), first=True)
     assert any("uninitialized" in found for found in report.found)
 
 
@@ -350,21 +351,21 @@ def test_more_payload_than_was_received_is_found(tmp_path: Path) -> None:
     """It is in the buffer all right, but from an earlier frame, or from nowhere."""
     made = generate(protocol_of(MATTY), tmp_path, COptions(events="messages"))
     header = changed(made.header, r"(event->payload_size = payload);", r"\1 + 2U;")
-    report = prove(made, first_driver(made.protocol, header))
+    report = prove(made, first_driver(made.protocol, header), first=True)
     assert any("event->payload + i" in found for found in report.found), report.found
 
 
 def test_a_member_that_is_too_small_by_an_element_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(MATTY), tmp_path)
     changed(made.header, r"\bnmea\[121\];", "nmea[120];")
-    report = prove(made, decode_driver_of(made))
+    report = prove(made, decode_driver_of(made), first=True)
     assert report.alarms > 0
 
 
 def test_an_element_that_is_read_behind_a_payload_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(UHEROBOT), tmp_path)
     changed(made.header, r"at = payload \+ 4U \+ 2U \* index;", "at = payload + 5U + 2U * index;")
-    report = prove(made, decode_driver_of(made))
+    report = prove(made, decode_driver_of(made), first=True)
     assert any("out of bounds read" in found for found in report.found)
 
 
@@ -372,7 +373,7 @@ def test_a_dispatch_that_loads_more_than_was_decoded_is_found(tmp_path: Path) ->
     made = generate(protocol_of(UHEROBOT), tmp_path)
     assert made.source is not None
     changed(made.source, r"_load\(&message, event->payload", r"_load(&message, event->payload + 1")
-    report = prove(made, decode_driver_of(made))
+    report = prove(made, decode_driver_of(made), first=True)
     assert any("out of bounds read" in found for found in report.found)
 
 
@@ -380,7 +381,7 @@ def test_a_size_that_is_not_checked_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(MATTY), tmp_path)
     assert made.source is not None
     changed(made.source, r"(size != )18([uU]\) \{\s+return MATTY_ERROR_SIZE)", r"\g<1>17\2")
-    report = prove(made, decode_driver_of(made))
+    report = prove(made, decode_driver_of(made), first=True)
     assert report.alarms > 0
     assert any("out of bounds read" in found for found in report.found)
 
@@ -391,7 +392,9 @@ def test_a_decoder_that_forgets_a_bound_is_found(tmp_path: Path) -> None:
     assert made.source is not None
     changed(made.source, r"length > 123U", "length > 124U")
     changed(made.source, r"> 121U", "> 122U")
-    report = prove(made, push_driver(made.protocol, made.header.read_text(encoding="utf-8")))
+    report = prove(
+        made, push_driver(made.protocol, made.header.read_text(encoding="utf-8")), first=True
+    )
     assert report.alarms > 0
 
 
@@ -409,7 +412,7 @@ def test_a_check_of_an_end_that_is_wrong_by_one_is_found(
     made = generate(protocol_of(ROOT / f"tests/c_proof/schemas/{name}.yaml"), tmp_path)
     assert made.source is not None
     changed(made.source, pattern, fault)
-    report = prove_small(made)
+    report = prove_small(made, first=True)
     assert any("out of bounds" in found for found in report.found)
 
 
@@ -420,5 +423,5 @@ def test_an_array_that_is_too_small_for_what_a_check_allows_is_found(
     made = generate(protocol_of(ROOT / f"tests/c_proof/schemas/{name}.yaml"), tmp_path)
     one_less = {"hops": "hops[2];", "words": "words[1];"}[member]
     changed(made.header, rf"\b{member}\[\d\];", one_less)
-    report = prove_small(made)
+    report = prove_small(made, first=True)
     assert any("out of bounds" in found for found in report.found)

@@ -880,7 +880,7 @@ static size_t dagny_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
     if (payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, &content[0U], 1U + payload);
+        sum = dagny_xor_8_run(sum, content, 1U + payload);
         due = dagny_xor_8_final(sum);
         tail[0U] = (uint8_t)due;
     }
@@ -1295,7 +1295,7 @@ static uint8_t dagny_host_complete(struct dagny_host_decoder *decoder) {
     if (decoder->payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload);
+        sum = dagny_xor_8_run(sum, content, 1U + (size_t)decoder->payload);
         due = dagny_xor_8_final(sum);
         if (content[1U + decoder->payload] != due) {
             return DAGNY_CHECKSUM;
@@ -1769,7 +1769,7 @@ static uint8_t dagny_robot_complete(struct dagny_robot_decoder *decoder) {
     if (decoder->payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload);
+        sum = dagny_xor_8_run(sum, content, 1U + (size_t)decoder->payload);
         due = dagny_xor_8_final(sum);
         if (content[1U + decoder->payload] != due) {
             return DAGNY_CHECKSUM;

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import re
 
+from c_proof.drivers import limited_in, stateful_in
+
 OPTIONS = ("-eva-split-return=full", "-eva-domains=equality", "-eva-slevel=100000")
 """Ways through a function stay apart, and a number refines the byte that it was read from."""
 SMALL = 8
@@ -23,10 +25,8 @@ _REFUSAL = re.compile(r" +if \([^{}]*\) \{\n +return [^;]*;\n +\}\n")
 _ERROR = re.compile(r"^( +)(return \w+_ERROR_\w+;)\n", re.MULTILINE)
 """Ways that end with an error need not stay apart."""
 _SEARCH = re.compile(r"^( +)while \(length < size && bytes\[length\] != end\) \{\n", re.MULTILINE)
-_LIMIT = re.compile(r"struct (\w+)_decoder \{[^}]* limit;")
-"""Until a frame's size is known the limit is nought, which is no size of a frame."""
 _POLLED_FEED = re.compile(
-    r"^(size_t (\w+)_decoder_feed\([^{]*\{\n(?:.*\n)*?    event->message = \w+_NO_MESSAGE;\n)"
+    r"^(size_t (\w+)_decoder_feed\([^{]*\{\n(?:.*\n)*?    event->message = (\w+_NO_MESSAGE);\n)"
     r"(    while \(index < size)",
     re.MULTILINE,
 )
@@ -55,10 +55,14 @@ def fed(source: str, header: str) -> str:
     """
 
     def splits(found: re.Match[str]) -> str:
-        limit = "    //@ dynamic_split decoder->limit == 0;\n" if found[2] in limited else ""
-        return f"{found[1]}    //@ dynamic_split message;\n{limit}{found[3]}"
+        values = ["message"]
+        if found[2] in stateful:  # Which message it is tells nothing else, and has any value.
+            values = [f"message < {found[3]}", f"message > {found[3]}"]
+        values += ["decoder->limit == 0"] * (found[2] in limited)
+        splits = "".join(f"    //@ dynamic_split {value};\n" for value in values)
+        return f"{found[1]}{splits}{found[4]}"
 
-    limited = set(_LIMIT.findall(header))
+    limited, stateful = limited_in(header), stateful_in(header)
     source = _PAYLOAD_KNOWN.sub(
         lambda known: known[0] + _split(known[2], f"decoder->payload <= {known[1]}"), source
     )

@@ -13,7 +13,7 @@ MORE = 3
 _HEAD = """#include <stddef.h>
 #include <stdint.h>
 #include <stdbool.h>
-{macros}#define {upper}_FAST_FEED 0
+{macros}#define {upper}_FAST_FEED {fast}
 {source}
 static volatile uint8_t sink;
 
@@ -98,6 +98,32 @@ int main(void) {{
     return 0;
 }}
 """
+
+_WHOLE = """
+static void take(void *user, const struct {prefix}_event *event) {{
+    (void)user;
+    if (event->payload_size > 0U) {{
+        sink = event->payload[0];
+        sink = event->payload[event->payload_size - 1U];
+    }}
+}}
+
+struct {prefix}_decoder nondet_decoder(void);
+
+int main(void) {{
+{arrays}    struct {prefix}_decoder decoder = nondet_decoder();
+    uint8_t bytes[{room}]; /* Any bytes, of which those that are fed are the last ones. */
+    const size_t size = nondet_size_t();
+{points}    decoder.handler = take;
+    decoder.user = &decoder;
+    __ESBMC_assume({prefix}_is_idle(&decoder) && size <= {room}U);
+    __ESBMC_assert({prefix}_take_whole(&decoder, &bytes[{room}U - size], size) <= size,
+                   "no more is taken than is there");
+    return 0;
+}}
+"""
+WORD = 8
+"""Bytes that are looked at together."""
 
 
 _ROOM = """
@@ -196,6 +222,24 @@ def step_harness(
     return Harness(_head(protocol, stepped) + text, changed)
 
 
+def whole_harness(protocol: Protocol, header: str, source: str, sender: str) -> Harness:
+    """Any bytes, of up to a word more than the greatest frame, for what takes frames whole.
+
+    So `feed` does with what is fed to a decoder between two frames.
+    """
+    prefix = f"{protocol.name}_{sender}"
+    changed, arrays = _apart(header, f"{prefix}_decoder")
+    greatest = re.search(rf"#define {prefix.upper()}_FRAME_MAX (\d+)", header)
+    assert greatest is not None
+    text = _WHOLE.format(
+        prefix=prefix,
+        arrays="".join(f"    {type_} {name}[{size}];\n" for type_, name, size in arrays),
+        points="".join(f"    decoder.{name} = {name};\n" for _, name, _ in arrays),
+        room=int(greatest[1]) + WORD,
+    )
+    return Harness(_head(protocol, source, fast=True) + text, changed)
+
+
 def _apart(header: str, name: str) -> tuple[str, list[tuple[str, str, str]]]:
     """The header with pointers for the arrays of a struct; their types, names and sizes."""
     struct = re.search(rf"^struct {name} \{{\n(?:.*\n)*?\}};\n", header, re.MULTILINE)
@@ -222,6 +266,6 @@ def _one_end(source: str, prefix: str) -> str:
     return loop.sub(r"\1if\2", source)
 
 
-def _head(protocol: Protocol, source: str) -> str:
-    upper = protocol.name.upper()
-    return _HEAD.format(macros=MACROS, upper=upper, source=checked(source, protocol.name))
+def _head(protocol: Protocol, source: str, *, fast: bool = False) -> str:
+    given = {"macros": MACROS, "upper": protocol.name.upper(), "fast": int(fast)}
+    return _HEAD.format(source=checked(source, protocol.name), **given)

@@ -120,6 +120,8 @@ _FIRST = """static void prove_{prefix}_first(void) {{
     {flush}
 }}
 """
+_SPLITS = "-eva-interprocedural-splits"
+"""A `feed` that has filled an event stays apart from one that has not, also behind its call."""
 _IDLE = """    /* Until a frame's size is known the limit is nought, which is no size of a frame. */
     //@ dynamic_split decoder.limit == 0;
 """
@@ -265,8 +267,8 @@ def push_driver(
     `feeds`, bytes also come several at a time; where it `loads`, each event is dispatched.
     """
     prefixes, polled = _PUSH.findall(header), set(_POLLS.findall(header))
-    flat = sorted(polled - set(_STATES.findall(header)))
-    limited = set(flat) & set(_LIMIT.findall(header))
+    flat = sorted(polled - stateful_in(header))
+    limited = limited_in(header)
     given = {"bounds": _bounds(header), "reads": _ENDS if reads_ends else _FIRST_BYTE}
     upper = protocol.name.upper()
     tells: dict[str, str] = {}
@@ -289,7 +291,19 @@ def push_driver(
     head = HEAD.format(name=protocol.name, upper=upper)
     driver = program([head, *parts], [f"{prefix}_push" for prefix in prefixes])
     options = _apart(flat, feeds=feeds)
+    if feeds and polled and not options:
+        options = (_SPLITS,)
     return replace(driver, options=options)
+
+
+def stateful_in(header: str) -> set[str]:
+    """Decoders with states."""
+    return set(_STATES.findall(header))
+
+
+def limited_in(header: str) -> set[str]:
+    """Decoders without states that keep how many bytes a frame has."""
+    return set(_LIMIT.findall(header)) - stateful_in(header)
 
 
 def _feed_of(prefix: str, upper: str, *, polls: bool) -> str:
@@ -314,7 +328,7 @@ def first_driver(protocol: Protocol, header: str) -> Driver:
         parts.append(_decoder(_FIRST, prefix, upper, **given))
         proofs.append(f"{prefix}_first")
     driver = program(parts, proofs)
-    apart = _apart(sorted(polled - set(_STATES.findall(header))))
+    apart = _apart(sorted(polled - stateful_in(header)))
     return replace(driver, options=(*apart, f"-eva-slevel={PATHS}"))
 
 
@@ -325,7 +339,7 @@ def _apart(prefixes: Sequence[str], *, feeds: bool = False) -> tuple[str, ...]:
     ways = ("decoder_push", "complete", *(["decoder_feed"] if feeds else []))
     steps = [f"step_{p}" for p in prefixes] + [f"{p}_{way}" for p in prefixes for way in ways]
     depths = ",".join(f"{name}:64" for name in steps)
-    splits = ("-eva-interprocedural-splits",) if feeds else ()
+    splits = (_SPLITS,) if feeds else ()
     return ("-eva-split-return=full", f"-eva-slevel-function={depths}", *splits)
 
 

@@ -1,7 +1,8 @@
 """Programs for EVA that send every message, whatever its fields hold.
 
 They are made from the text of the C alone: a message's `encode`, `frame` and `send` take a struct
-of any bytes. Buffers have what the function asks for, or less, and end where memory does.
+of any bytes. Buffers have what the function asks for, or less, and end where memory does; those for
+great messages have room for the greatest.
 """
 
 from __future__ import annotations
@@ -13,7 +14,10 @@ from protogen.copying import replace
 from protogen.model.protocol import Protocol
 
 GREATEST = 64
-"""Greater payloads take minutes: EVA follows each of their sizes, and each byte that is stuffed."""
+"""Greater payloads take minutes if EVA follows each of their sizes: buffers for these have room for
+the greatest, and all sizes are looked at together."""
+STUFFED = 300
+"""More bytes than are stuffed in any frame."""
 _ENCODERS = re.compile(
     r"(?:enum \w+|size_t) ((\w+)_(encode|frame|send))"
     r"\( ?(?:const struct (\w+) \*message, )?([^)]*)\);"
@@ -24,7 +28,9 @@ _TRUTH = re.compile(r"^ +bool (\w+);", re.MULTILINE)
 _PART = re.compile(r"(\w+) (\w+)")
 _BODY = r"^[^\n;]*\b{name}\([^;{{]*\{{\n(?:.*\n)*?\}}\n"
 _ASKS = re.compile(r"if \(capacity < (.*)\) \{")
-_COUNT = re.compile(r"message->(\w+)")
+_VALUE = re.compile(r"message->([\w.]+)")
+_SWITCH = re.compile(r"switch \(message->(\w+)\) \{\n((?:.*\n)*?)    \}\n")
+_CASE = re.compile(r"case (\d+)U:")
 _WRAP = re.compile(r"^( +)for \(; from < stuffed; from\+\+\) \{\n", re.MULTILINE)
 _BUFFER = """
 static void prove_{function}_into(bool fits) {{
@@ -46,9 +52,18 @@ static void prove_{function}(void) {{
     prove_{function}_into(false);
 }}
 """
+_GREAT = """
+static void prove_{function}(void) {{
+    uint8_t bytes[{room}];
+{values}    size_t size = 0;
+    Frama_C_make_unknown((char *)bytes, sizeof bytes); /* EVA does not follow how it is filled. */
+    {call};
+    //@ assert size <= {room};
+}}
+"""
 _CALLS = {
-    "encode": "(void){function}({given}{parts}&bytes[sizeof bytes - capacity], capacity, &size)",
-    "frame": "size = {function}({given}{parts}&bytes[sizeof bytes - capacity], capacity)",
+    "encode": "(void){function}({given}{parts}{buffer}, &size)",
+    "frame": "size = {function}({given}{parts}{buffer})",
 }
 """Calls that fill a buffer; `size` stays 0 where there is nothing."""
 _STREAM = """
@@ -73,13 +88,12 @@ def send_driver(protocol: Protocol, header: str, source: str) -> Driver:
     for function, prefix, kind, struct, arguments in _ENCODERS.findall(flat):
         measure = _body(source, f"{prefix}_measure")
         greatest = rooms[f"{prefix.upper()}_PAYLOAD_MAX"]
-        if greatest > GREATEST:
-            continue
         values = [f"struct {struct} message;"] if struct else []
         values += ["Frama_C_make_unknown((char *)&message, sizeof message);"] if struct else []
         values += [f"message.{name} = any != 0;" for name in truths.get(struct, ())]
-        for count in sorted(set(_COUNT.findall(measure))):
-            values += [f"//@ split message.{count};", ";"]
+        if greatest <= GREATEST or (kind == "frame" and _WRAP.search(source)):
+            for value in _apart(measure, greatest):
+                values += [f"//@ split {value};", ";"]
         given = {
             "function": function,
             "given": "&message, " if struct else "",
@@ -93,8 +107,13 @@ def send_driver(protocol: Protocol, header: str, source: str) -> Driver:
             [asks] = _ASKS.findall(_body(source, function)) or [str(room)]
             payload = f"{prefix}_measure(&message)" if measure else str(greatest)
             sizes = {"room": room, "greatest": greatest, "asks": asks, "payload": payload}
+            is_great = greatest > GREATEST
+            given["buffer"] = (
+                "bytes, sizeof bytes" if is_great else "&bytes[sizeof bytes - capacity], capacity"
+            )
             call = _CALLS[kind].format(**given)
-            parts.append(_BUFFER.format(call=call, **sizes, **given))
+            text = _GREAT if is_great else _BUFFER
+            parts.append(text.format(call=call, **sizes, **given))
         proofs.append(function)
     # Each byte that is stuffed can take either way: states are kept apart by its place alone.
     wraps = re.findall(r"^static size_t (\w+_wrap)\(", source, re.MULTILINE)
@@ -105,9 +124,22 @@ def send_driver(protocol: Protocol, header: str, source: str) -> Driver:
 
 def unrolled(source: str) -> str:
     """Generated C with comments that have EVA go over stuffed bytes one by one."""
-    return _WRAP.sub(
-        lambda loop: f"{loop[1]}//@ loop unroll {2 * GREATEST};\n{loop.group()}", source
-    )
+    return _WRAP.sub(lambda loop: f"{loop[1]}//@ loop unroll {STUFFED};\n{loop.group()}", source)
+
+
+def _apart(measure: str, greatest: int) -> list[str]:
+    """What a size depends on: counts, or the case of a switch and then what that one depends on."""
+    values: dict[str, None] = {}
+    cases = dict(_SWITCH.findall(measure))
+    for path in sorted(set(_VALUE.findall(measure)), key=lambda path: (path.count("."), path)):
+        bounds = {
+            int(case) - below for case in _CASE.findall(cases.get(path, "")) for below in (0, 1)
+        }
+        if "." in path:
+            bounds = set(range(greatest + 1))
+        found = [f"message.{path} <= {bound}" for bound in sorted(bounds)]
+        values.update(dict.fromkeys(found or [f"message.{path}"]))
+    return list(values)
 
 
 def _body(source: str, name: str) -> str:
