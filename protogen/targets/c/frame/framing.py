@@ -171,7 +171,7 @@ def framing_view(
             dict.fromkeys(
                 place.unset_function
                 for item in message_frames
-                if (place := item.view.in_place) and place.unset
+                if (place := item.in_place) and place.unset
             )
         ),
         stateless=is_stateless(protocol),
