@@ -68,18 +68,35 @@ class Segment(msgspec.Struct, frozen=True):
     size: str
 
 
+class Setter(msgspec.Struct, frozen=True):
+    """An inline function that writes a field, an element of one, or a piece of its bytes."""
+
+    field: str
+    name: str
+    indexed: bool
+    """True if it takes the index of an element, or of the first of several bytes."""
+    value: AnyStep
+    """What its value is."""
+    type: str
+    """The type of that, or of the pointer to it."""
+    pieces: bool
+    """True if it takes the number of bytes, too."""
+    text: str
+
+
 class InPlace(msgspec.Struct, frozen=True):
     """What is printed for a message that can be written in its place."""
 
     getters: tuple[str, ...]
     """Inline functions that read what is no array."""
-    setters: tuple[str, ...]
-    """Inline functions that write a field, or an element of one."""
+    setters: tuple[Setter, ...]
     begins: tuple[str, ...]
     """Statements that store the defaults at `at`, where all is 0."""
     unset: str
     """The name of the function that says whether a field still has to be set; empty: none has."""
     unset_function: str
+    written: tuple[str, ...]
+    """Functions for it that read what stands elsewhere in a frame that was ended."""
     room: int
     """Bytes of the payload, with the most elements that it can have."""
     amounts: tuple[GivenAmount, ...]
@@ -214,7 +231,8 @@ class _Writing:
         taken = {*_TAKEN, *parts, *(f"{part}_part" for part in parts)}
         self._amounts: dict[str, GivenAmount] = {}
         for it in places.amounts:
-            name = free_name(names.member(it.name), taken)
+            member = names.member(it.name)
+            name = free_name(f"{member}_field" if member in taken else member, taken)
             taken.add(name)
             self._amounts[it.name] = self._given(it, name)
 
@@ -232,6 +250,7 @@ class _Writing:
             begins=tuple(line for it in placed for line in _begins(it)),
             unset=_claim_unset(self._names, self._item) if unset else "",
             unset_function=self._unset(unset) if unset else "",
+            written=tuple(self._written(it) for it in unset if it.moves),
             room=self._places.size,
             amounts=tuple(self._amounts.values()),
             size=" + ".join(it.size for it in segments),
@@ -321,10 +340,8 @@ class _Writing:
         head = f"static bool {_claim_unset(self._names, self._item)}"
         text, amounts = "\n".join(lines.lines), self._amounts.values()
         lines.put_first(*(f"(void){it.name};" for it in amounts if not mentions(text, it.name)))
-        reads = [self._written(it) for it in places if it.moves]
         arguments = ("const uint8_t *payload", *(f"{it.type} {it.name}" for it in amounts))
-        text = function(head, arguments, lines)
-        return "\n".join([*reads, text])
+        return function(head, arguments, lines)
 
     def _look(self, lines: Lines, place: Place, element: AnyStep, name: str) -> None:
         """Return true where a value that is read is refused."""
@@ -340,7 +357,7 @@ class _Writing:
 
     # --- writing ----------------------------------------------------------------------------------
 
-    def _setter(self, place: Place) -> str:
+    def _setter(self, place: Place) -> Setter:
         """The function that writes a field, or an element of one."""
         step = place.step
         if isinstance(step, BytesStep) and place.amount:
@@ -365,11 +382,9 @@ class _Writing:
         doc = (
             f"Writes {name} into a frame that was begun; false, and nothing, if {refused} refused."
         )
-        kind = self._type(element)
-        given = f"{kind}{'' if kind.endswith('*') else ' '}value"
-        return self._inline(place, doc, (*arguments, given), body)
+        return self._inline(place, doc, element, arguments, body)
 
-    def _piece_setter(self, step: BytesStep, place: Place) -> str:
+    def _piece_setter(self, step: BytesStep, place: Place) -> Setter:
         """The function that writes bytes, or characters, from one on."""
         body = Lines()
         most = unsigned(place.most)
@@ -386,12 +401,24 @@ class _Writing:
             f"Writes {what} from {step.name}[index] on into a frame that was begun; false, and "
             "nothing, if they or their places are refused."
         )
-        arguments = ("uint8_t *payload", "size_t index", f"{self._type(step)}value", "size_t size")
-        return self._inline(place, doc, arguments, body)
+        return self._inline(place, doc, step, ["uint8_t *payload", "size_t index"], body)
 
-    def _inline(self, place: Place, doc: str, arguments: tuple[str, ...], body: Lines) -> str:
-        head = f"static inline bool {self._names_of(place)[1]}"
-        return "\n".join([*comment([doc]), function(head, arguments, body)])
+    def _inline(
+        self, place: Place, doc: str, value: AnyStep, arguments: list[str], body: Lines
+    ) -> Setter:
+        name, kind = self._names_of(place)[1], self._type(value)
+        pieces = isinstance(value, BytesStep) and bool(place.amount)
+        given = [f"{kind}{'' if kind.endswith('*') else ' '}value", *["size_t size"] * pieces]
+        text = function(f"static inline bool {name}", (*arguments, *given), body)
+        return Setter(
+            field=place.step.name,
+            name=name,
+            indexed=len(arguments) > 1,
+            value=value,
+            type=kind,
+            pieces=pieces,
+            text="\n".join([*comment([doc]), text]),
+        )
 
     def _type(self, step: AnyStep) -> str:
         """The type of a value, or of a pointer to it."""
