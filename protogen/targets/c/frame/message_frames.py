@@ -224,9 +224,13 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def end_arguments(self) -> tuple[str, ...]:
         """Parameters of the function that ends a frame that was begun in its buffer."""
+        return (*self.end_given, "uint8_t *frame", "size_t *size")
+
+    @property
+    def end_given(self) -> tuple[str, ...]:
+        """Those for what the caller gives: numbers of elements, and parts of the frame."""
         amounts = self.in_place.amounts if self.in_place else ()
-        given = tuple(f"{item.type} {item.name}" for item in amounts)
-        return (*given, *self._parts(), "uint8_t *frame", "size_t *size")
+        return (*(f"{item.type} {item.name}" for item in amounts), *self._parts())
 
     def _given(self) -> tuple[str, ...]:
         return (*self.view.parameter, *self._parts())
