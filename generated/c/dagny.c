@@ -20,15 +20,6 @@
 #endif
 #endif
 
-static void dagny_copy(void *to, const void *from, size_t size) {
-    uint8_t *target = (uint8_t *)to;
-    const uint8_t *source = (const uint8_t *)from;
-    while (size > 0U) {
-        size--;
-        target[size] = source[size];
-    }
-}
-
 /* --- sonar ------------------------------------------------------------------------------------ */
 
 static size_t dagny_sonar_measure(const struct dagny_sonar *message) {
@@ -993,6 +984,34 @@ enum dagny_result dagny_sonar_frame(const struct dagny_sonar *message, uint8_t *
     return DAGNY_OK;
 }
 
+uint8_t *dagny_sonar_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+enum dagny_result dagny_sonar_end(uint8_t data_size, uint8_t *frame, size_t *size) {
+    size_t payload;
+    size_t wire;
+    if (data_size > 128U) {
+        return DAGNY_ERROR_RANGE;
+    }
+    payload = (size_t)data_size;
+    wire = dagny_host_wrap(frame, payload, 0x53U);
+    if (dagny_host_ends_early(frame, wire)) {
+        return DAGNY_ERROR_VALUE;
+    }
+    *size = wire;
+    return DAGNY_OK;
+}
+
 enum dagny_result dagny_gps_frame(const struct dagny_gps *message, uint8_t *frame, size_t capacity,
                                   size_t *size) {
     size_t payload;
@@ -1006,6 +1025,34 @@ enum dagny_result dagny_gps_frame(const struct dagny_gps *message, uint8_t *fram
         return DAGNY_ERROR_SPACE;
     }
     dagny_gps_store(message, dagny_host_payload(frame, payload));
+    wire = dagny_host_wrap(frame, payload, 0x47U);
+    if (dagny_host_ends_early(frame, wire)) {
+        return DAGNY_ERROR_VALUE;
+    }
+    *size = wire;
+    return DAGNY_OK;
+}
+
+uint8_t *dagny_gps_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+enum dagny_result dagny_gps_end(uint8_t data_size, uint8_t *frame, size_t *size) {
+    size_t payload;
+    size_t wire;
+    if (data_size > 128U) {
+        return DAGNY_ERROR_RANGE;
+    }
+    payload = (size_t)data_size;
     wire = dagny_host_wrap(frame, payload, 0x47U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
@@ -1035,6 +1082,34 @@ enum dagny_result dagny_bump_frame(const struct dagny_bump *message, uint8_t *fr
     return DAGNY_OK;
 }
 
+uint8_t *dagny_bump_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+enum dagny_result dagny_bump_end(uint8_t data_size, uint8_t *frame, size_t *size) {
+    size_t payload;
+    size_t wire;
+    if (data_size > 128U) {
+        return DAGNY_ERROR_RANGE;
+    }
+    payload = (size_t)data_size;
+    wire = dagny_host_wrap(frame, payload, 0x42U);
+    if (dagny_host_ends_early(frame, wire)) {
+        return DAGNY_ERROR_VALUE;
+    }
+    *size = wire;
+    return DAGNY_OK;
+}
+
 enum dagny_result dagny_odometry_frame(const struct dagny_odometry *message, uint8_t *frame,
                                        size_t capacity, size_t *size) {
     size_t payload;
@@ -1048,6 +1123,34 @@ enum dagny_result dagny_odometry_frame(const struct dagny_odometry *message, uin
         return DAGNY_ERROR_SPACE;
     }
     dagny_odometry_store(message, dagny_host_payload(frame, payload));
+    wire = dagny_host_wrap(frame, payload, 0x4FU);
+    if (dagny_host_ends_early(frame, wire)) {
+        return DAGNY_ERROR_VALUE;
+    }
+    *size = wire;
+    return DAGNY_OK;
+}
+
+uint8_t *dagny_odometry_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+enum dagny_result dagny_odometry_end(uint8_t data_size, uint8_t *frame, size_t *size) {
+    size_t payload;
+    size_t wire;
+    if (data_size > 128U) {
+        return DAGNY_ERROR_RANGE;
+    }
+    payload = (size_t)data_size;
     wire = dagny_host_wrap(frame, payload, 0x4FU);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
@@ -1077,6 +1180,34 @@ enum dagny_result dagny_speed_frame(const struct dagny_speed *message, uint8_t *
     return DAGNY_OK;
 }
 
+uint8_t *dagny_speed_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+enum dagny_result dagny_speed_end(uint8_t data_size, uint8_t *frame, size_t *size) {
+    size_t payload;
+    size_t wire;
+    if (data_size > 128U) {
+        return DAGNY_ERROR_RANGE;
+    }
+    payload = (size_t)data_size;
+    wire = dagny_host_wrap(frame, payload, 0x4FU);
+    if (dagny_host_ends_early(frame, wire)) {
+        return DAGNY_ERROR_VALUE;
+    }
+    *size = wire;
+    return DAGNY_OK;
+}
+
 enum dagny_result dagny_wheel_slip_frame(const struct dagny_wheel_slip *message, uint8_t *frame,
                                          size_t capacity, size_t *size) {
     size_t payload;
@@ -1090,6 +1221,34 @@ enum dagny_result dagny_wheel_slip_frame(const struct dagny_wheel_slip *message,
         return DAGNY_ERROR_SPACE;
     }
     dagny_wheel_slip_store(message, dagny_host_payload(frame, payload));
+    wire = dagny_host_wrap(frame, payload, 0x57U);
+    if (dagny_host_ends_early(frame, wire)) {
+        return DAGNY_ERROR_VALUE;
+    }
+    *size = wire;
+    return DAGNY_OK;
+}
+
+uint8_t *dagny_wheel_slip_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+enum dagny_result dagny_wheel_slip_end(uint8_t data_size, uint8_t *frame, size_t *size) {
+    size_t payload;
+    size_t wire;
+    if (data_size > 128U) {
+        return DAGNY_ERROR_RANGE;
+    }
+    payload = (size_t)data_size;
     wire = dagny_host_wrap(frame, payload, 0x57U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
@@ -1119,6 +1278,34 @@ enum dagny_result dagny_battery_frame(const struct dagny_battery *message, uint8
     return DAGNY_OK;
 }
 
+uint8_t *dagny_battery_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+enum dagny_result dagny_battery_end(uint8_t data_size, uint8_t *frame, size_t *size) {
+    size_t payload;
+    size_t wire;
+    if (data_size > 128U) {
+        return DAGNY_ERROR_RANGE;
+    }
+    payload = (size_t)data_size;
+    wire = dagny_host_wrap(frame, payload, 0x62U);
+    if (dagny_host_ends_early(frame, wire)) {
+        return DAGNY_ERROR_VALUE;
+    }
+    *size = wire;
+    return DAGNY_OK;
+}
+
 enum dagny_result dagny_reflex_settings_frame(const struct dagny_reflex_settings *message,
                                               uint8_t *frame, size_t capacity, size_t *size) {
     size_t payload;
@@ -1140,6 +1327,34 @@ enum dagny_result dagny_reflex_settings_frame(const struct dagny_reflex_settings
     return DAGNY_OK;
 }
 
+uint8_t *dagny_reflex_settings_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+enum dagny_result dagny_reflex_settings_end(uint8_t data_size, uint8_t *frame, size_t *size) {
+    size_t payload;
+    size_t wire;
+    if (data_size > 128U) {
+        return DAGNY_ERROR_RANGE;
+    }
+    payload = (size_t)data_size;
+    wire = dagny_host_wrap(frame, payload, 0x52U);
+    if (dagny_host_ends_early(frame, wire)) {
+        return DAGNY_ERROR_VALUE;
+    }
+    *size = wire;
+    return DAGNY_OK;
+}
+
 enum dagny_result dagny_hardware_status_frame(const struct dagny_hardware_status *message,
                                               uint8_t *frame, size_t capacity, size_t *size) {
     size_t payload;
@@ -1153,6 +1368,34 @@ enum dagny_result dagny_hardware_status_frame(const struct dagny_hardware_status
         return DAGNY_ERROR_SPACE;
     }
     dagny_hardware_status_store(message, dagny_host_payload(frame, payload));
+    wire = dagny_host_wrap(frame, payload, 0x48U);
+    if (dagny_host_ends_early(frame, wire)) {
+        return DAGNY_ERROR_VALUE;
+    }
+    *size = wire;
+    return DAGNY_OK;
+}
+
+uint8_t *dagny_hardware_status_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+enum dagny_result dagny_hardware_status_end(uint8_t data_size, uint8_t *frame, size_t *size) {
+    size_t payload;
+    size_t wire;
+    if (data_size > 128U) {
+        return DAGNY_ERROR_RANGE;
+    }
+    payload = (size_t)data_size;
     wire = dagny_host_wrap(frame, payload, 0x48U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;
@@ -1294,6 +1537,34 @@ enum dagny_result dagny_laser_frame(const struct dagny_laser *message, uint8_t *
     return DAGNY_OK;
 }
 
+uint8_t *dagny_laser_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 512U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+enum dagny_result dagny_laser_end(uint16_t readings_count, uint8_t *frame, size_t *size) {
+    size_t payload;
+    size_t wire;
+    if (readings_count > 512U) {
+        return DAGNY_ERROR_RANGE;
+    }
+    payload = (size_t)readings_count;
+    wire = dagny_host_wrap(frame, payload, 0x4CU);
+    if (dagny_host_ends_early(frame, wire)) {
+        return DAGNY_ERROR_VALUE;
+    }
+    *size = wire;
+    return DAGNY_OK;
+}
+
 enum dagny_result dagny_command_frame(const struct dagny_command *message, uint8_t *frame,
                                       size_t capacity, size_t *size) {
     size_t payload;
@@ -1307,6 +1578,34 @@ enum dagny_result dagny_command_frame(const struct dagny_command *message, uint8
         return DAGNY_ERROR_SPACE;
     }
     dagny_command_store(message, dagny_host_payload(frame, payload));
+    wire = dagny_host_wrap(frame, payload, 0x43U);
+    if (dagny_host_ends_early(frame, wire)) {
+        return DAGNY_ERROR_VALUE;
+    }
+    *size = wire;
+    return DAGNY_OK;
+}
+
+uint8_t *dagny_command_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+enum dagny_result dagny_command_end(uint8_t data_size, uint8_t *frame, size_t *size) {
+    size_t payload;
+    size_t wire;
+    if (data_size > 128U) {
+        return DAGNY_ERROR_RANGE;
+    }
+    payload = (size_t)data_size;
     wire = dagny_host_wrap(frame, payload, 0x43U);
     if (dagny_host_ends_early(frame, wire)) {
         return DAGNY_ERROR_VALUE;

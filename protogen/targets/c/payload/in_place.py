@@ -295,8 +295,9 @@ class _Writing:
             if not place.amount:
                 fixed += place.size
                 continue
-            number = self._amounts[place.amount].number
-            size = str(times(number, place.width))
+            given = self._amounts[place.amount]
+            one = f"(size_t){given.name}"
+            size = one if place.width == 1 else str(times(given.number, place.width))
             yield Segment(start, f"{unsigned(fixed)} + {size}" if fixed else size)
             start, fixed = place.at + place.size, 0
         if fixed or not self._amounts:
