@@ -25,6 +25,7 @@ from protogen.model.payload_plan import (
 )
 from protogen.targets.c.payload.accessors import has_fixed_elements, is_readable
 from protogen.targets.c.payload.texts import PaddedText
+from protogen.targets.kept import Kept
 
 _LARGE = 32
 """Bytes of a payload from which on they are there; a struct of fewer takes little."""
@@ -67,26 +68,6 @@ class Places(msgspec.Struct, frozen=True):
     amounts: tuple[Amount, ...]
     size: int
     """Bytes of the room for all of them."""
-
-
-def written_places(item: Message) -> Places | None:
-    """The places of a message that can be written in its frame; None of others.
-
-    Such a message is large, and has an array of elements of one size, or bytes whose number varies.
-    All else has one size, and is no union, no run of bits and no part of the frame.
-    """
-    plan, steps = item.plan, item.plan.steps
-    if item.held or plan.packing is not None or item.sizes.greatest < _LARGE:
-        return None
-    varied = [step for step in steps if _varies(step)]
-    if varied:
-        is_fit = item.sizes.fixed is None
-    else:
-        is_fit = plan.sizes.fixed is not None and item.sizes.fixed == plan.sizes.fixed
-        is_fit = is_fit and any(map(is_readable, steps))
-    if not is_fit or not all(step in varied or _is_settable(step) for step in steps):
-        return None
-    return _laid_out(item, varied)
 
 
 def is_written_in_place(item: Message) -> bool:
@@ -190,3 +171,27 @@ def _can_be_given(step: IntegerStep) -> bool:
     """True if the field can be any number within its bounds, and no other."""
     is_special = bool(step.field.special) or step.type.enum is not None
     return step.type.role != "bool" and not is_special
+
+
+def _places_of(item: Message) -> Places | None:
+    """Places, unless a message can't be written in its frame.
+
+    One that can be is large, and has an array of elements of one size, or bytes whose number
+    varies. All else has one size, and is no union, no run of bits and no part of the frame.
+    """
+    plan, steps = item.plan, item.plan.steps
+    if item.held or plan.packing is not None or item.sizes.greatest < _LARGE:
+        return None
+    varied = [step for step in steps if _varies(step)]
+    if varied:
+        is_fit = item.sizes.fixed is None
+    else:
+        is_fit = plan.sizes.fixed is not None and item.sizes.fixed == plan.sizes.fixed
+        is_fit = is_fit and any(map(is_readable, steps))
+    if not is_fit or not all(step in varied or _is_settable(step) for step in steps):
+        return None
+    return _laid_out(item, varied)
+
+
+written_places = Kept(_places_of, most=1024)
+"""The places of a message that can be written in its frame; None of others."""
