@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import pytest
 from c_library import FLAGS, OK, write_sources
-from c_structs import Unfit, Values, fill, structure_of
+from c_structs import Unfit, Values, count_name, fill, structure_of
 from compiled import ROOT, module_at, protocol_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -23,7 +23,7 @@ from tooling import require_tool
 
 from protogen.fuzzing.samples import boundary_rounds, samples
 from protogen.model.messages import Message
-from protogen.model.types import Array, Field, Float, Integer, Struct
+from protogen.model.types import Array, Counted, Field, Fill, Float, Integer, Struct
 from protogen.runtime.attributes import arguments
 from protogen.runtime.errors import EncodeError
 from protogen.targets.c.emit import texts, unit_of
@@ -35,6 +35,7 @@ endpoints: {board: Board}
 types:
   kind: {type: uint8, values: {one: 1, two: 2}, closed: true}
   point: {fields: {x: sint16, tag: {type: uint8, const: 7}, y: {type: sint16, default: -3}}}
+  row: {fields: {cells: {type: sint16, count: 3, range: [-100, 100]}, end: point}}
   step: {fields: {kind: kind, level: {type: uint16, byte_order: big, range: [2, 300]}}}
 messages:
   turn:
@@ -84,6 +85,14 @@ frame:
   end: {literal: 0x00}
 transparency: {covers: id..crc, encoding: cobs}
 """,
+    "short_cobs": """
+frame:
+  id: {type: uint8, id: true}
+  payload: {}
+  sum: {type: uint8, algorithm: sum-8, covers: id..payload}
+  end: {literal: 0x00}
+transparency: {covers: id..sum, encoding: cobs}
+""",
     "slip": """
 frame:
   id: {type: uint8, id: true}
@@ -122,9 +131,16 @@ decisions:
 }
 SCHEMAS = [
     ROOT / "schemas" / "rn1.yaml",
-    *(ROOT / "tests" / "c_schemas" / f"{name}.yaml" for name in ("elements", "sampler", "tagged")),
+    *(
+        ROOT / "tests" / "c_schemas" / f"{name}.yaml"
+        for name in ("elements", "sampler", "sampler7", "tagged", "bounded", "by_position")
+    ),
+    *(
+        ROOT / "tests" / "framings" / f"{name}.yaml"
+        for name in ("hdlc_lenient", "digit_lengths", "sequences_marked", "virtual_parts", "forms")
+    ),
 ]
-"""Bytes that carry seven bits, floats, texts, and an array that is tagged."""
+"""Bytes that carry seven bits, floats, texts, and an array that is tagged; frames of many kinds."""
 
 HEAD = """
 #include "{name}.c"
@@ -143,6 +159,11 @@ static int ended(size_t made, size_t *size) {{
     return made == 0 ? 200 : 0;
 }}
 """
+BEGUN = """
+int begun_{name}(uint8_t *frame, size_t capacity, size_t *size{parts}) {{
+    return {begin}(frame, capacity) == NULL ? -1 : ended({end}({given}frame), size);
+}}
+"""
 WRITE = """
 int write_{name}({struct} *message, int skipped, uint8_t *frame, size_t capacity,
                  size_t *size{parts}) {{
@@ -156,10 +177,7 @@ int write_{name}({struct} *message, int skipped, uint8_t *frame, size_t capacity
     if (!refused && skipped < 0) {{
 {reads}
     }}
-    return refused ? 100 : ended({end}({given}frame), size);
-}}
-int begun_{name}(uint8_t *frame, size_t capacity, size_t *size{parts}) {{
-    return {begin}(frame, capacity) == NULL ? -1 : ended({end}({given}frame), size);
+    return refused ? 100 : ended({end}({numbers}{given}frame), size);
 }}
 """
 _NO_ROOM, _REFUSED, _NO_FRAME = -1, 100, 200
@@ -172,6 +190,8 @@ class Way(NamedTuple):
     sender: str
     message: Message
     library: ctypes.CDLL
+    suffix: str
+    """What tells the frame from the message's others."""
     room: int
     parts: tuple[str, ...]
 
@@ -193,7 +213,7 @@ class Way(NamedTuple):
         buffer, size = (ctypes.c_uint8 * self.room)(), ctypes.c_size_t(0)
         room = ctypes.c_size_t(self.room if capacity is None else capacity)
         given = (ctypes.c_uint64(parts[name]) for name in self.parts)
-        function = getattr(self.library, f"{word}_{self.message.name}")
+        function = getattr(self.library, f"{word}_{self.message.name}{self.suffix}")
         result = function(*first, buffer, room, ctypes.byref(size), *given)
         return result, bytes(buffer[: size.value])
 
@@ -220,15 +240,49 @@ def folder() -> TemporaryDirectory[str]:
 
 
 VARIED = """
-  varied: {id: 4, from: board, fields: {n: uint8, x: {type: uint8, count: n}}}
+  scan:
+    id: 0x10
+    from: board
+    fields:
+      status: {type: uint8, default: 3}
+      count: {type: uint8, range: [1, 40]}
+      ranges: {type: uint16, count: count, range: [1, 4000], special: {nothing: 0xFFFF}}
+      strengths: {type: uint8, count: count, range: [1, 200]}
+      number: {type: uint16, byte_order: big, range: [0, 9]}
+      steps: {type: step, count: number}
+      level: {type: sint24, range: [-5, -1]}
+  log:
+    id: 0x11
+    from: board
+    fields: {level: {type: uint8, range: [1, 5]}, text: {type: ascii, size: {fill: true, max: 90}}}
+  dump:
+    id: 0x12
+    from: board
+    fields:
+      size: {type: uint16, range: [0, 100]}
+      data: {type: bytes, size: size}
+      name: {type: ascii, size: 5, default: flash}
+      again: {type: ascii, size: size}
+  block: {id: 0x13, from: board, fields: {points: {type: point, count: {fill: true, max: 20}}}}
+  rows:
+    id: 0x14
+    from: board
+    fields: {n: {type: uint8, range: [2, 9]}, rows: {type: row, count: n}}
+  doubled: {id: 0x15, from: board, fields: {n: uint8, x: {type: uint8, count: n // 2}}}
+  few: {id: 0x16, from: board, fields: {n: {type: uint8, range: [0, 9]}, x: {type: ascii, size: n}}}
 """
+LONG = """
+  long: {id: 4, from: board, fields: {n: uint8, x: {type: uint8, count: n}}}
+"""
+WITHOUT = {"trimmed": "", "short_cobs": VARIED}
+"""Frames that do not take them all."""
 
 
 @cache
 def schema(name: str) -> Path:
     """The messages above in frames of one kind."""
     path = Path(folder().name, f"{name}.yaml")
-    messages = MESSAGES if name == "trimmed" else MESSAGES.rstrip() + VARIED
+    messages = MESSAGES.rstrip() + WITHOUT.get(name, VARIED.rstrip() + LONG)
     path.write_text(f"protocol: {name}{FRAMES[name]}{messages}", encoding="utf-8")
     return path
 
@@ -242,52 +296,80 @@ def ways(path: Path) -> list[Way]:
     name = write_sources(protocol, place)
     programs, found = [HEAD.format(name=name)], []
     for item in unit.framing.messages:
-        if item.view.in_place is None:
+        if item.in_place is None:
             continue
         given = [argument.name for argument in item.arguments]
         fields = [field for field in item.message.fields if field.const is None]
-        programs.append(
-            WRITE.format(
-                name=item.message.name,
-                struct=item.view.struct,
-                begin=item.called.begin,
-                end=item.called.end,
-                given="".join(f"({it.type}){it.name}, " for it in item.arguments),
-                parts="".join(f", uint64_t {name}" for name in given),
-                calls="\n".join(calls(item.view.struct[7:], fields)),
-                reads="\n".join(reads(item.view.struct[7:], fields)),
-            )
-        )
+        numbers = numbers_of(fields)
+        settable = [field for field in fields if field.name not in numbers.values()]
+        forms = {
+            "name": f"{item.message.name}{item.called.suffix}",
+            "struct": item.view.struct,
+            "begin": item.called.begin,
+            "end": item.called.end,
+            "given": "".join(f"({it.type}){it.name}, " for it in item.arguments),
+            "parts": "".join(f", uint64_t {name}" for name in given),
+            "numbers": "".join(f"message->{it}, " for it in dict.fromkeys(numbers.values())),
+            "calls": "\n".join(calls(item.view.struct[7:], settable, numbers)),
+            "reads": "\n".join(reads(item.view.struct[7:], settable)),
+        }
+        programs.append((WRITE if numbers else WRITE + BEGUN).format_map(forms))
         parts = tuple(argument.part for argument in item.arguments)
-        found.append((protocol.senders_of(item.message)[0].name, item.message, item.room, parts))
+        sender, suffix = item.decoder.name, item.called.suffix
+        found.append((sender, item.message, suffix, item.room, parts))
     (place / "shim.c").write_text("".join(programs), encoding="utf-8")
     command = [require_tool("cc"), *FLAGS, "-O1", "-fPIC", "-shared", "shim.c", "-o", "shim.so"]
     done = subprocess.run(command, cwd=place, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     library = ctypes.CDLL(str(place / "shim.so"))
-    return [Way(path, sender, it, library, room, parts) for sender, it, room, parts in found]
+    return [Way(path, sender, it, library, *others) for sender, it, *others in found]
 
 
-def calls(prefix: str, fields: Sequence[Field]) -> Iterator[str]:
+def numbers_of(fields: Sequence[Field]) -> dict[str, str]:
+    """For each field whose size varies, the member of the struct that says the number."""
+    found = {}
+    for field in fields:
+        extent = field.type.extent
+        if isinstance(extent, Counted):
+            found[field.name] = extent.label
+        elif isinstance(extent, Fill):
+            found[field.name] = count_name(fields, field)
+    return found
+
+
+def calls(prefix: str, fields: Sequence[Field], numbers: dict[str, str]) -> Iterator[str]:
     """Statements that set each field, and elements that are none."""
     for field in fields:
         function, member = f"{prefix}_{field.name}_set", f"message->{field.name}"
         and_ = "&" if isinstance(field.element, Struct) else ""
+        most = f"sizeof {member} / sizeof {member}[0]"
         if isinstance(field.type, Array):
-            count = f"sizeof {member} / sizeof {member}[0]"
-            yield f"    for (size_t i = 0; i < {count}; i++) {{"
+            count = f"message->{numbers[field.name]}" if field.name in numbers else most
+            yield f"    for (size_t i = 0; i < (size_t)({count}); i++) {{"
             yield f"        TRY({function}_at(payload, i, {and_}{member}[i]))\n    }}"
             yield "    for (size_t shift = 0; shift < 64; shift += 7) {"
-            past = f"{count} + (((size_t)1 << shift) - 1U)"
+            past = f"{most} + (((size_t)1 << shift) - 1U)"
             yield f"        if ({function}_at(payload, {past}, {and_}{member}[0])) {{"
             yield "            return -4;\n        }\n    }"
+        elif field.name in numbers:
+            all_ = f"(size_t)message->{numbers[field.name]}"
+            yield "    {"
+            yield f"        const size_t all = {all_}, half = all / 2;"
+            yield f"        TRY({function}_at(payload, half, {member} + half, all - half))"
+            yield f"        TRY({function}_at(payload, 0, {member}, half))"
+            for index, size in (("0", f"{most} + 1"), (f"{most} + 1", "0"), ("1", most)):
+                yield f"        if ({function}_at(payload, {index}, {member}, {size}) ||"
+                yield f"            {function}_at(payload, {index}, {member}, SIZE_MAX)) {{"
+                yield "            return -5;\n        }"
+            yield "    }"
         else:
             yield f"    TRY({function}(payload, {and_}{member}))"
 
 
 def reads(prefix: str, fields: Sequence[Field]) -> Iterator[str]:
-    """Statements that read numbers and structs again."""
-    for field in (it for it in fields if isinstance(it.type, Integer | Float | Struct)):
+    """Statements that read numbers and structs again, where they stay when the frame is ended."""
+    placed = (it for it in fields if it.position is not None)
+    for field in (it for it in placed if isinstance(it.type, Integer | Float | Struct)):
         member, read = f"message->{field.name}", f"{prefix}_{field.name}_get"
         yield f"        {{\n            __typeof__({member}) found;"
         yield "            memset(&found, 0, sizeof found);"
@@ -299,6 +381,9 @@ def reads(prefix: str, fields: Sequence[Field]) -> Iterator[str]:
 
 
 EVERY_SCHEMA = pytest.mark.parametrize("name", [*FRAMES, *(path.stem for path in SCHEMAS)])
+
+
+BYTES_MAY_BE_ANY = ("elements", "tagged", "bounded")
 
 
 def ways_of(name: str) -> list[Way]:
@@ -332,7 +417,7 @@ def test_values_that_python_refuses_are_refused_and_nothing_is_written(name: str
                     continue
                 assert made == ((_REFUSED, b"") if expected is None else (OK, expected))
                 count += expected is None
-    assert count or name in ("elements", "tagged")  # Their bytes may be any.
+    assert count or name in BYTES_MAY_BE_ANY
 
 
 @EVERY_SCHEMA
@@ -368,8 +453,10 @@ def test_what_has_no_default_that_is_allowed_has_to_be_set(name: str) -> None:
     assert way.write(values, parts, skipped=calls) == (OK, way.frame(values, parts))
 
 
-def test_there_is_nothing_for_messages_that_vary_or_are_short_or_have_no_array() -> None:
-    assert [way.message.name for way in ways_of("slip")] == ["turn", "all", "unset"]
+def test_there_is_nothing_for_messages_that_are_short_or_have_no_array() -> None:
+    """Nor where the number of elements is worked out."""
+    fixed, varied = ["turn", "all", "unset"], ["scan", "log", "dump", "block", "rows", "long"]
+    assert [way.message.name for way in ways_of("slip")] == [*fixed, *varied]
 
 
 TURN = 727

@@ -36,6 +36,8 @@ CONSTRUCTS = [
 """Schemas of what no document has, and C has to parse."""
 ELEMENTS = ROOT / "tests" / "c_schemas" / "elements.yaml"
 """Floats in arrays."""
+WRITTEN = ROOT / "tests" / "c_proof" / "written.yaml"
+"""Arrays whose number of elements varies, in frames that are stuffed and that are not."""
 TRIMMED = ROOT / "tests" / "framings" / "trimmed_stuffed.yaml"
 """Payloads that a decoder fills up in its buffer."""
 DIGITS = ROOT / "tests" / "framings" / "digit_words.yaml"
@@ -264,7 +266,7 @@ def test_no_input_harms_a_decoder_that_keeps_the_last_bytes(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-@pytest.mark.parametrize("path", [ROOT / "schemas" / "rn1.yaml", ELEMENTS], ids=name_of)
+@pytest.mark.parametrize("path", [ROOT / "schemas" / "rn1.yaml", ELEMENTS, WRITTEN], ids=name_of)
 def test_no_index_and_no_value_harms_a_frame_that_was_begun(
     path: Path, machine: str, tmp_path: Path
 ) -> None:

@@ -20,15 +20,6 @@
 #endif
 #endif
 
-static void dagny_copy(void *to, const void *from, size_t size) {
-    uint8_t *target = (uint8_t *)to;
-    const uint8_t *source = (const uint8_t *)from;
-    while (size > 0U) {
-        size--;
-        target[size] = source[size];
-    }
-}
-
 /* --- sonar ------------------------------------------------------------------------------------ */
 
 static size_t dagny_sonar_measure(const struct dagny_sonar *message) {
@@ -982,6 +973,30 @@ size_t dagny_sonar_frame(const struct dagny_sonar *message, uint8_t *frame, size
     return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
+uint8_t *dagny_sonar_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_sonar_end(uint8_t data_size, uint8_t *frame) {
+    size_t payload;
+    size_t size;
+    if (data_size > 128U) {
+        return 0U;
+    }
+    payload = (size_t)data_size;
+    size = dagny_host_wrap(frame, payload, 0x53U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
+}
+
 size_t dagny_gps_frame(const struct dagny_gps *message, uint8_t *frame, size_t capacity) {
     size_t payload;
     size_t size;
@@ -993,6 +1008,30 @@ size_t dagny_gps_frame(const struct dagny_gps *message, uint8_t *frame, size_t c
         return 0U;
     }
     dagny_gps_store(message, dagny_host_payload(frame, payload));
+    size = dagny_host_wrap(frame, payload, 0x47U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
+}
+
+uint8_t *dagny_gps_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_gps_end(uint8_t data_size, uint8_t *frame) {
+    size_t payload;
+    size_t size;
+    if (data_size > 128U) {
+        return 0U;
+    }
+    payload = (size_t)data_size;
     size = dagny_host_wrap(frame, payload, 0x47U);
     return dagny_host_ends_early(frame, size) ? 0U : size;
 }
@@ -1012,6 +1051,30 @@ size_t dagny_bump_frame(const struct dagny_bump *message, uint8_t *frame, size_t
     return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
+uint8_t *dagny_bump_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_bump_end(uint8_t data_size, uint8_t *frame) {
+    size_t payload;
+    size_t size;
+    if (data_size > 128U) {
+        return 0U;
+    }
+    payload = (size_t)data_size;
+    size = dagny_host_wrap(frame, payload, 0x42U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
+}
+
 size_t dagny_odometry_frame(const struct dagny_odometry *message, uint8_t *frame, size_t capacity) {
     size_t payload;
     size_t size;
@@ -1027,6 +1090,30 @@ size_t dagny_odometry_frame(const struct dagny_odometry *message, uint8_t *frame
     return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
+uint8_t *dagny_odometry_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_odometry_end(uint8_t data_size, uint8_t *frame) {
+    size_t payload;
+    size_t size;
+    if (data_size > 128U) {
+        return 0U;
+    }
+    payload = (size_t)data_size;
+    size = dagny_host_wrap(frame, payload, 0x4FU);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
+}
+
 size_t dagny_speed_frame(const struct dagny_speed *message, uint8_t *frame, size_t capacity) {
     size_t payload;
     size_t size;
@@ -1038,6 +1125,30 @@ size_t dagny_speed_frame(const struct dagny_speed *message, uint8_t *frame, size
         return 0U;
     }
     dagny_speed_store(message, dagny_host_payload(frame, payload));
+    size = dagny_host_wrap(frame, payload, 0x4FU);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
+}
+
+uint8_t *dagny_speed_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_speed_end(uint8_t data_size, uint8_t *frame) {
+    size_t payload;
+    size_t size;
+    if (data_size > 128U) {
+        return 0U;
+    }
+    payload = (size_t)data_size;
     size = dagny_host_wrap(frame, payload, 0x4FU);
     return dagny_host_ends_early(frame, size) ? 0U : size;
 }
@@ -1058,6 +1169,30 @@ size_t dagny_wheel_slip_frame(const struct dagny_wheel_slip *message, uint8_t *f
     return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
+uint8_t *dagny_wheel_slip_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_wheel_slip_end(uint8_t data_size, uint8_t *frame) {
+    size_t payload;
+    size_t size;
+    if (data_size > 128U) {
+        return 0U;
+    }
+    payload = (size_t)data_size;
+    size = dagny_host_wrap(frame, payload, 0x57U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
+}
+
 size_t dagny_battery_frame(const struct dagny_battery *message, uint8_t *frame, size_t capacity) {
     size_t payload;
     size_t size;
@@ -1069,6 +1204,30 @@ size_t dagny_battery_frame(const struct dagny_battery *message, uint8_t *frame, 
         return 0U;
     }
     dagny_battery_store(message, dagny_host_payload(frame, payload));
+    size = dagny_host_wrap(frame, payload, 0x62U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
+}
+
+uint8_t *dagny_battery_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_battery_end(uint8_t data_size, uint8_t *frame) {
+    size_t payload;
+    size_t size;
+    if (data_size > 128U) {
+        return 0U;
+    }
+    payload = (size_t)data_size;
     size = dagny_host_wrap(frame, payload, 0x62U);
     return dagny_host_ends_early(frame, size) ? 0U : size;
 }
@@ -1089,6 +1248,30 @@ size_t dagny_reflex_settings_frame(const struct dagny_reflex_settings *message, 
     return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
+uint8_t *dagny_reflex_settings_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_reflex_settings_end(uint8_t data_size, uint8_t *frame) {
+    size_t payload;
+    size_t size;
+    if (data_size > 128U) {
+        return 0U;
+    }
+    payload = (size_t)data_size;
+    size = dagny_host_wrap(frame, payload, 0x52U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
+}
+
 size_t dagny_hardware_status_frame(const struct dagny_hardware_status *message, uint8_t *frame,
                                    size_t capacity) {
     size_t payload;
@@ -1101,6 +1284,30 @@ size_t dagny_hardware_status_frame(const struct dagny_hardware_status *message, 
         return 0U;
     }
     dagny_hardware_status_store(message, dagny_host_payload(frame, payload));
+    size = dagny_host_wrap(frame, payload, 0x48U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
+}
+
+uint8_t *dagny_hardware_status_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_hardware_status_end(uint8_t data_size, uint8_t *frame) {
+    size_t payload;
+    size_t size;
+    if (data_size > 128U) {
+        return 0U;
+    }
+    payload = (size_t)data_size;
     size = dagny_host_wrap(frame, payload, 0x48U);
     return dagny_host_ends_early(frame, size) ? 0U : size;
 }
@@ -1200,6 +1407,30 @@ size_t dagny_laser_frame(const struct dagny_laser *message, uint8_t *frame, size
     return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
+uint8_t *dagny_laser_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 512U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_laser_end(uint16_t readings_count, uint8_t *frame) {
+    size_t payload;
+    size_t size;
+    if (readings_count > 512U) {
+        return 0U;
+    }
+    payload = (size_t)readings_count;
+    size = dagny_host_wrap(frame, payload, 0x4CU);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
+}
+
 size_t dagny_command_frame(const struct dagny_command *message, uint8_t *frame, size_t capacity) {
     size_t payload;
     size_t size;
@@ -1211,6 +1442,30 @@ size_t dagny_command_frame(const struct dagny_command *message, uint8_t *frame, 
         return 0U;
     }
     dagny_command_store(message, dagny_host_payload(frame, payload));
+    size = dagny_host_wrap(frame, payload, 0x43U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
+}
+
+uint8_t *dagny_command_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 128U;
+    uint8_t *at;
+    if (capacity < dagny_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_command_end(uint8_t data_size, uint8_t *frame) {
+    size_t payload;
+    size_t size;
+    if (data_size > 128U) {
+        return 0U;
+    }
+    payload = (size_t)data_size;
     size = dagny_host_wrap(frame, payload, 0x43U);
     return dagny_host_ends_early(frame, size) ? 0U : size;
 }

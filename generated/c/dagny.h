@@ -117,6 +117,17 @@ enum dagny_power_code {
  * no struct, nothing to load, and functions that take none.
  */
 
+/* What the functions below share that read an element of an array. */
+
+static inline void dagny_copy(void *to, const void *from, size_t size) {
+    uint8_t *target = (uint8_t *)to;
+    const uint8_t *source = (const uint8_t *)from;
+    while (size > 0U) {
+        size--;
+        target[size] = source[size];
+    }
+}
+
 /* --- sonar ------------------------------------------------------------------------------------ */
 
 #define DAGNY_SONAR_ID 'S'
@@ -139,6 +150,19 @@ DAGNY_API enum dagny_result dagny_sonar_encode(const struct dagny_sonar *message
 DAGNY_API enum dagny_result dagny_sonar_decode(struct dagny_sonar *message, const uint8_t *payload,
                                                size_t size);
 DAGNY_API void dagny_sonar_load(struct dagny_sonar *message, const uint8_t *payload, size_t size);
+
+/**
+ * Writes bytes from data[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool dagny_sonar_data_set_at(uint8_t *payload, size_t index, const uint8_t *value,
+                                           size_t size) {
+    if (index > 128U || size > 128U - index) {
+        return false;
+    }
+    dagny_copy(payload + index, value, size);
+    return true;
+}
 
 /* --- gps -------------------------------------------------------------------------------------- */
 
@@ -167,6 +191,19 @@ DAGNY_API enum dagny_result dagny_gps_decode(struct dagny_gps *message, const ui
                                              size_t size);
 DAGNY_API void dagny_gps_load(struct dagny_gps *message, const uint8_t *payload, size_t size);
 
+/**
+ * Writes bytes from data[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool dagny_gps_data_set_at(uint8_t *payload, size_t index, const uint8_t *value,
+                                         size_t size) {
+    if (index > 128U || size > 128U - index) {
+        return false;
+    }
+    dagny_copy(payload + index, value, size);
+    return true;
+}
+
 /* --- bump ------------------------------------------------------------------------------------- */
 
 #define DAGNY_BUMP_ID 'B'
@@ -189,6 +226,19 @@ DAGNY_API enum dagny_result dagny_bump_encode(const struct dagny_bump *message, 
 DAGNY_API enum dagny_result dagny_bump_decode(struct dagny_bump *message, const uint8_t *payload,
                                               size_t size);
 DAGNY_API void dagny_bump_load(struct dagny_bump *message, const uint8_t *payload, size_t size);
+
+/**
+ * Writes bytes from data[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool dagny_bump_data_set_at(uint8_t *payload, size_t index, const uint8_t *value,
+                                          size_t size) {
+    if (index > 128U || size > 128U - index) {
+        return false;
+    }
+    dagny_copy(payload + index, value, size);
+    return true;
+}
 
 /* --- odometry --------------------------------------------------------------------------------- */
 
@@ -214,6 +264,19 @@ DAGNY_API enum dagny_result dagny_odometry_decode(struct dagny_odometry *message
 DAGNY_API void dagny_odometry_load(struct dagny_odometry *message, const uint8_t *payload,
                                    size_t size);
 
+/**
+ * Writes bytes from data[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool dagny_odometry_data_set_at(uint8_t *payload, size_t index, const uint8_t *value,
+                                              size_t size) {
+    if (index > 128U || size > 128U - index) {
+        return false;
+    }
+    dagny_copy(payload + index, value, size);
+    return true;
+}
+
 /* --- speed ------------------------------------------------------------------------------------ */
 
 #define DAGNY_SPEED_ID 'O'
@@ -236,6 +299,19 @@ DAGNY_API enum dagny_result dagny_speed_encode(const struct dagny_speed *message
 DAGNY_API enum dagny_result dagny_speed_decode(struct dagny_speed *message, const uint8_t *payload,
                                                size_t size);
 DAGNY_API void dagny_speed_load(struct dagny_speed *message, const uint8_t *payload, size_t size);
+
+/**
+ * Writes bytes from data[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool dagny_speed_data_set_at(uint8_t *payload, size_t index, const uint8_t *value,
+                                           size_t size) {
+    if (index > 128U || size > 128U - index) {
+        return false;
+    }
+    dagny_copy(payload + index, value, size);
+    return true;
+}
 
 /* --- wheel_slip ------------------------------------------------------------------------------- */
 
@@ -266,6 +342,19 @@ DAGNY_API enum dagny_result dagny_wheel_slip_decode(struct dagny_wheel_slip *mes
 DAGNY_API void dagny_wheel_slip_load(struct dagny_wheel_slip *message, const uint8_t *payload,
                                      size_t size);
 
+/**
+ * Writes bytes from data[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool dagny_wheel_slip_data_set_at(uint8_t *payload, size_t index,
+                                                const uint8_t *value, size_t size) {
+    if (index > 128U || size > 128U - index) {
+        return false;
+    }
+    dagny_copy(payload + index, value, size);
+    return true;
+}
+
 /* --- battery ---------------------------------------------------------------------------------- */
 
 #define DAGNY_BATTERY_ID 'b'
@@ -294,6 +383,19 @@ DAGNY_API enum dagny_result dagny_battery_decode(struct dagny_battery *message,
 DAGNY_API void dagny_battery_load(struct dagny_battery *message, const uint8_t *payload,
                                   size_t size);
 
+/**
+ * Writes bytes from data[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool dagny_battery_data_set_at(uint8_t *payload, size_t index, const uint8_t *value,
+                                             size_t size) {
+    if (index > 128U || size > 128U - index) {
+        return false;
+    }
+    dagny_copy(payload + index, value, size);
+    return true;
+}
+
 /* --- reflex_settings -------------------------------------------------------------------------- */
 
 #define DAGNY_REFLEX_SETTINGS_ID 'R'
@@ -318,6 +420,19 @@ DAGNY_API enum dagny_result dagny_reflex_settings_decode(struct dagny_reflex_set
 DAGNY_API void dagny_reflex_settings_load(struct dagny_reflex_settings *message,
                                           const uint8_t *payload, size_t size);
 
+/**
+ * Writes bytes from data[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool dagny_reflex_settings_data_set_at(uint8_t *payload, size_t index,
+                                                     const uint8_t *value, size_t size) {
+    if (index > 128U || size > 128U - index) {
+        return false;
+    }
+    dagny_copy(payload + index, value, size);
+    return true;
+}
+
 /* --- hardware_status -------------------------------------------------------------------------- */
 
 #define DAGNY_HARDWARE_STATUS_ID 'H'
@@ -341,6 +456,19 @@ DAGNY_API enum dagny_result dagny_hardware_status_decode(struct dagny_hardware_s
                                                          const uint8_t *payload, size_t size);
 DAGNY_API void dagny_hardware_status_load(struct dagny_hardware_status *message,
                                           const uint8_t *payload, size_t size);
+
+/**
+ * Writes bytes from data[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool dagny_hardware_status_data_set_at(uint8_t *payload, size_t index,
+                                                     const uint8_t *value, size_t size) {
+    if (index > 128U || size > 128U - index) {
+        return false;
+    }
+    dagny_copy(payload + index, value, size);
+    return true;
+}
 
 /* --- motor ------------------------------------------------------------------------------------ */
 
@@ -517,6 +645,19 @@ static inline uint8_t dagny_laser_readings_at(const uint8_t *payload, size_t ind
     return at[0];
 }
 
+/**
+ * Writes readings[index] into a frame that was begun; false, and nothing, if the value or the index
+ * is refused.
+ */
+static inline bool dagny_laser_readings_set_at(uint8_t *payload, size_t index, uint8_t value) {
+    if (index >= 512U) {
+        return false;
+    }
+    uint8_t *at = payload + index;
+    at[0] = value;
+    return true;
+}
+
 /* --- command ---------------------------------------------------------------------------------- */
 
 #define DAGNY_COMMAND_ID 'C'
@@ -541,6 +682,19 @@ DAGNY_API enum dagny_result dagny_command_decode(struct dagny_command *message,
 DAGNY_API void dagny_command_load(struct dagny_command *message, const uint8_t *payload,
                                   size_t size);
 
+/**
+ * Writes bytes from data[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool dagny_command_data_set_at(uint8_t *payload, size_t index, const uint8_t *value,
+                                             size_t size) {
+    if (index > 128U || size > 128U - index) {
+        return false;
+    }
+    dagny_copy(payload + index, value, size);
+    return true;
+}
+
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
@@ -549,6 +703,12 @@ DAGNY_API void dagny_command_load(struct dagny_command *message, const uint8_t *
  * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
  * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
+ *
+ * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
+ * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
+ * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
+ * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
  */
 
 /** Takes the next byte of a frame. */
@@ -596,53 +756,71 @@ static inline bool dagny_transmitted(struct dagny_transmission *frame) {
 #define DAGNY_SONAR_FRAME_ROOM 131U
 DAGNY_API size_t dagny_sonar_frame(const struct dagny_sonar *message, uint8_t *frame,
                                    size_t capacity);
+DAGNY_API uint8_t *dagny_sonar_begin(uint8_t *frame, size_t capacity);
+DAGNY_API size_t dagny_sonar_end(uint8_t data_size, uint8_t *frame);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_GPS_FRAME_MAX 131U
 #define DAGNY_GPS_FRAME_ROOM 131U
 DAGNY_API size_t dagny_gps_frame(const struct dagny_gps *message, uint8_t *frame, size_t capacity);
+DAGNY_API uint8_t *dagny_gps_begin(uint8_t *frame, size_t capacity);
+DAGNY_API size_t dagny_gps_end(uint8_t data_size, uint8_t *frame);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_BUMP_FRAME_MAX 131U
 #define DAGNY_BUMP_FRAME_ROOM 131U
 DAGNY_API size_t dagny_bump_frame(const struct dagny_bump *message, uint8_t *frame,
                                   size_t capacity);
+DAGNY_API uint8_t *dagny_bump_begin(uint8_t *frame, size_t capacity);
+DAGNY_API size_t dagny_bump_end(uint8_t data_size, uint8_t *frame);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_ODOMETRY_FRAME_MAX 131U
 #define DAGNY_ODOMETRY_FRAME_ROOM 131U
 DAGNY_API size_t dagny_odometry_frame(const struct dagny_odometry *message, uint8_t *frame,
                                       size_t capacity);
+DAGNY_API uint8_t *dagny_odometry_begin(uint8_t *frame, size_t capacity);
+DAGNY_API size_t dagny_odometry_end(uint8_t data_size, uint8_t *frame);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_SPEED_FRAME_MAX 131U
 #define DAGNY_SPEED_FRAME_ROOM 131U
 DAGNY_API size_t dagny_speed_frame(const struct dagny_speed *message, uint8_t *frame,
                                    size_t capacity);
+DAGNY_API uint8_t *dagny_speed_begin(uint8_t *frame, size_t capacity);
+DAGNY_API size_t dagny_speed_end(uint8_t data_size, uint8_t *frame);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_WHEEL_SLIP_FRAME_MAX 131U
 #define DAGNY_WHEEL_SLIP_FRAME_ROOM 131U
 DAGNY_API size_t dagny_wheel_slip_frame(const struct dagny_wheel_slip *message, uint8_t *frame,
                                         size_t capacity);
+DAGNY_API uint8_t *dagny_wheel_slip_begin(uint8_t *frame, size_t capacity);
+DAGNY_API size_t dagny_wheel_slip_end(uint8_t data_size, uint8_t *frame);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_BATTERY_FRAME_MAX 131U
 #define DAGNY_BATTERY_FRAME_ROOM 131U
 DAGNY_API size_t dagny_battery_frame(const struct dagny_battery *message, uint8_t *frame,
                                      size_t capacity);
+DAGNY_API uint8_t *dagny_battery_begin(uint8_t *frame, size_t capacity);
+DAGNY_API size_t dagny_battery_end(uint8_t data_size, uint8_t *frame);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_REFLEX_SETTINGS_FRAME_MAX 131U
 #define DAGNY_REFLEX_SETTINGS_FRAME_ROOM 131U
 DAGNY_API size_t dagny_reflex_settings_frame(const struct dagny_reflex_settings *message,
                                              uint8_t *frame, size_t capacity);
+DAGNY_API uint8_t *dagny_reflex_settings_begin(uint8_t *frame, size_t capacity);
+DAGNY_API size_t dagny_reflex_settings_end(uint8_t data_size, uint8_t *frame);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_HARDWARE_STATUS_FRAME_MAX 131U
 #define DAGNY_HARDWARE_STATUS_FRAME_ROOM 131U
 DAGNY_API size_t dagny_hardware_status_frame(const struct dagny_hardware_status *message,
                                              uint8_t *frame, size_t capacity);
+DAGNY_API uint8_t *dagny_hardware_status_begin(uint8_t *frame, size_t capacity);
+DAGNY_API size_t dagny_hardware_status_end(uint8_t data_size, uint8_t *frame);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_MOTOR_FRAME_MAX 4U
@@ -686,12 +864,16 @@ DAGNY_API enum dagny_result dagny_power_send(const struct dagny_power *message, 
 #define DAGNY_LASER_FRAME_ROOM 515U
 DAGNY_API size_t dagny_laser_frame(const struct dagny_laser *message, uint8_t *frame,
                                    size_t capacity);
+DAGNY_API uint8_t *dagny_laser_begin(uint8_t *frame, size_t capacity);
+DAGNY_API size_t dagny_laser_end(uint16_t readings_count, uint8_t *frame);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_COMMAND_FRAME_MAX 131U
 #define DAGNY_COMMAND_FRAME_ROOM 131U
 DAGNY_API size_t dagny_command_frame(const struct dagny_command *message, uint8_t *frame,
                                      size_t capacity);
+DAGNY_API uint8_t *dagny_command_begin(uint8_t *frame, size_t capacity);
+DAGNY_API size_t dagny_command_end(uint8_t data_size, uint8_t *frame);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
 

@@ -40,24 +40,6 @@ typedef char dagny_library_odometry_layout[offsetof(struct dagny_library_odometr
 typedef char dagny_library_gps_position_layout[offsetof(struct dagny_library_gps_position, longitude) == 4U ? 1 : -1];
 #endif
 
-static void dagny_library_copy(void *to, const void *from, size_t size) {
-    uint8_t *target = (uint8_t *)to;
-    const uint8_t *source = (const uint8_t *)from;
-    while (size > 0U) {
-        size--;
-        target[size] = source[size];
-    }
-}
-
-static bool dagny_library_is_seven_bit(const void *at, size_t size) {
-    const uint8_t *bytes = (const uint8_t *)at;
-    uint8_t all = 0U;
-    for (size_t i = 0; i < size; i++) {
-        all |= bytes[i];
-    }
-    return all <= 0x7FU;
-}
-
 DAGNY_LIBRARY_INLINE void dagny_library_store_u16le(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)value;
     at[1] = (uint8_t)(value >> 8);
@@ -874,6 +856,34 @@ size_t dagny_library_gps_frame(const struct dagny_library_gps *message, uint8_t 
     return dagny_library_host_wrap(frame, payload, 0x47U);
 }
 
+uint8_t *dagny_library_gps_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 126U;
+    uint8_t *at;
+    if (capacity < dagny_library_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_library_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_library_gps_end(uint8_t nmea_size, uint8_t *frame) {
+    uint8_t *const written = dagny_library_host_payload(frame, 126U);
+    uint8_t *to;
+    size_t payload;
+    if (nmea_size > 126U) {
+        return 0U;
+    }
+    payload = (size_t)nmea_size;
+    to = dagny_library_host_payload(frame, payload);
+    for (size_t i = 0; i < (size_t)nmea_size; i++) {
+        to[i] = written[i];
+    }
+    return dagny_library_host_wrap(frame, payload, 0x47U);
+}
+
 enum dagny_library_result dagny_library_gps_send(const struct dagny_library_gps *message,
                                                  dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
@@ -1085,6 +1095,34 @@ size_t dagny_library_laser_frame(const struct dagny_library_laser *message, uint
         return 0U;
     }
     dagny_library_laser_store(message, dagny_library_host_payload(frame, payload));
+    return dagny_library_host_wrap(frame, payload, 0x4CU);
+}
+
+uint8_t *dagny_library_laser_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 512U;
+    uint8_t *at;
+    if (capacity < dagny_library_host_room(payload)) {
+        return NULL;
+    }
+    at = dagny_library_host_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t dagny_library_laser_end(uint16_t readings_count, uint8_t *frame) {
+    uint8_t *const written = dagny_library_host_payload(frame, 512U);
+    uint8_t *to;
+    size_t payload;
+    if (readings_count > 512U) {
+        return 0U;
+    }
+    payload = (size_t)readings_count;
+    to = dagny_library_host_payload(frame, payload);
+    for (size_t i = 0; i < (size_t)readings_count; i++) {
+        to[i] = written[i];
+    }
     return dagny_library_host_wrap(frame, payload, 0x4CU);
 }
 

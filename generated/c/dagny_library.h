@@ -105,6 +105,26 @@ enum dagny_library_power_code {
  * no struct, nothing to load, and functions that take none.
  */
 
+/* What the functions below share that read an element of an array. */
+
+static inline void dagny_library_copy(void *to, const void *from, size_t size) {
+    uint8_t *target = (uint8_t *)to;
+    const uint8_t *source = (const uint8_t *)from;
+    while (size > 0U) {
+        size--;
+        target[size] = source[size];
+    }
+}
+
+static inline bool dagny_library_is_seven_bit(const void *at, size_t size) {
+    const uint8_t *bytes = (const uint8_t *)at;
+    uint8_t all = 0U;
+    for (size_t i = 0; i < size; i++) {
+        all |= bytes[i];
+    }
+    return all <= 0x7FU;
+}
+
 /* --- sonar ------------------------------------------------------------------------------------ */
 
 #define DAGNY_LIBRARY_SONAR_ID 'S'
@@ -172,6 +192,22 @@ DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_decode(
     struct dagny_library_gps *message, const uint8_t *payload, size_t size);
 DAGNY_LIBRARY_API void dagny_library_gps_load(struct dagny_library_gps *message,
                                               const uint8_t *payload, size_t size);
+
+/**
+ * Writes characters from nmea[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool dagny_library_gps_nmea_set_at(uint8_t *payload, size_t index, const char *value,
+                                                 size_t size) {
+    if (index > 126U || size > 126U - index) {
+        return false;
+    }
+    if (!dagny_library_is_seven_bit(value, size)) {
+        return false;
+    }
+    dagny_library_copy(payload + index, value, size);
+    return true;
+}
 
 /* --- odometry --------------------------------------------------------------------------------- */
 
@@ -517,6 +553,20 @@ static inline uint8_t dagny_library_laser_readings_at(const uint8_t *payload, si
     return at[0];
 }
 
+/**
+ * Writes readings[index] into a frame that was begun; false, and nothing, if the value or the index
+ * is refused.
+ */
+static inline bool dagny_library_laser_readings_set_at(uint8_t *payload, size_t index,
+                                                       uint8_t value) {
+    if (index >= 512U) {
+        return false;
+    }
+    uint8_t *at = payload + index;
+    at[0] = value;
+    return true;
+}
+
 /* --- shutdown --------------------------------------------------------------------------------- */
 
 #define DAGNY_LIBRARY_SHUTDOWN_ID 'Z'
@@ -545,6 +595,12 @@ DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_decode(const 
  * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
  * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
+ *
+ * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
+ * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
+ * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
+ * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
  */
 
 /** Takes the next byte of a frame. */
@@ -600,6 +656,8 @@ DAGNY_LIBRARY_API enum dagny_library_result dagny_library_sonar_send(
 #define DAGNY_LIBRARY_GPS_FRAME_ROOM 255U
 DAGNY_LIBRARY_API size_t dagny_library_gps_frame(const struct dagny_library_gps *message,
                                                  uint8_t *frame, size_t capacity);
+DAGNY_LIBRARY_API uint8_t *dagny_library_gps_begin(uint8_t *frame, size_t capacity);
+DAGNY_LIBRARY_API size_t dagny_library_gps_end(uint8_t nmea_size, uint8_t *frame);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_send(
     const struct dagny_library_gps *message, dagny_library_put put, void *user);
 
@@ -672,6 +730,8 @@ DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_position_send(
 #define DAGNY_LIBRARY_LASER_FRAME_ROOM 1027U
 DAGNY_LIBRARY_API size_t dagny_library_laser_frame(const struct dagny_library_laser *message,
                                                    uint8_t *frame, size_t capacity);
+DAGNY_LIBRARY_API uint8_t *dagny_library_laser_begin(uint8_t *frame, size_t capacity);
+DAGNY_LIBRARY_API size_t dagny_library_laser_end(uint16_t readings_count, uint8_t *frame);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_laser_send(
     const struct dagny_library_laser *message, dagny_library_put put, void *user);
 

@@ -64,24 +64,6 @@ static uint16_t matty_load_u16le(const uint8_t *at) {
     return (uint16_t)(at[0] | ((uint16_t)at[1] << 8));
 }
 
-static bool matty_is_seven_bit(const void *at, size_t size) {
-    const uint8_t *bytes = (const uint8_t *)at;
-    uint8_t all = 0U;
-    for (size_t i = 0; i < size; i++) {
-        all |= bytes[i];
-    }
-    return all <= 0x7FU;
-}
-
-static void matty_copy(void *to, const void *from, size_t size) {
-    uint8_t *target = (uint8_t *)to;
-    const uint8_t *source = (const uint8_t *)from;
-    while (size > 0U) {
-        size--;
-        target[size] = source[size];
-    }
-}
-
 /* --- stop ------------------------------------------------------------------------------------- */
 
 MATTY_INLINE void matty_stop_store(uint8_t *payload) {
@@ -990,6 +972,34 @@ size_t matty_gps_frame(const struct matty_gps *message, uint8_t counter, uint8_t
         return 0U;
     }
     matty_gps_store(message, matty_pc_payload(frame, payload));
+    return matty_pc_wrap(frame, payload, 0x50U, counter);
+}
+
+uint8_t *matty_gps_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 121U;
+    uint8_t *at;
+    if (capacity < matty_pc_room(payload)) {
+        return NULL;
+    }
+    at = matty_pc_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t matty_gps_end(uint8_t nmea_size, uint8_t counter, uint8_t *frame) {
+    uint8_t *const written = matty_pc_payload(frame, 121U);
+    uint8_t *to;
+    size_t payload;
+    if (nmea_size > 121U) {
+        return 0U;
+    }
+    payload = (size_t)nmea_size;
+    to = matty_pc_payload(frame, payload);
+    for (size_t i = 0; i < (size_t)nmea_size; i++) {
+        to[i] = written[i];
+    }
     return matty_pc_wrap(frame, payload, 0x50U, counter);
 }
 

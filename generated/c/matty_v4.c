@@ -74,24 +74,6 @@ static uint32_t matty_v4_load_u24le(const uint8_t *at) {
     return (uint32_t)(at[0] | ((uint32_t)at[1] << 8) | ((uint32_t)at[2] << 16));
 }
 
-static bool matty_v4_is_seven_bit(const void *at, size_t size) {
-    const uint8_t *bytes = (const uint8_t *)at;
-    uint8_t all = 0U;
-    for (size_t i = 0; i < size; i++) {
-        all |= bytes[i];
-    }
-    return all <= 0x7FU;
-}
-
-static void matty_v4_copy(void *to, const void *from, size_t size) {
-    uint8_t *target = (uint8_t *)to;
-    const uint8_t *source = (const uint8_t *)from;
-    while (size > 0U) {
-        size--;
-        target[size] = source[size];
-    }
-}
-
 /* --- stop ------------------------------------------------------------------------------------- */
 
 MATTY_V4_INLINE void matty_v4_stop_store(const struct matty_v4_stop *message, uint8_t *payload) {
@@ -1195,6 +1177,34 @@ size_t matty_v4_gps_frame(const struct matty_v4_gps *message, uint8_t counter, u
         return 0U;
     }
     matty_v4_gps_store(message, matty_v4_pc_payload(frame, payload));
+    return matty_v4_pc_wrap(frame, payload, 0x50U, counter);
+}
+
+uint8_t *matty_v4_gps_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 121U;
+    uint8_t *at;
+    if (capacity < matty_v4_pc_room(payload)) {
+        return NULL;
+    }
+    at = matty_v4_pc_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t matty_v4_gps_end(uint8_t nmea_size, uint8_t counter, uint8_t *frame) {
+    uint8_t *const written = matty_v4_pc_payload(frame, 121U);
+    uint8_t *to;
+    size_t payload;
+    if (nmea_size > 121U) {
+        return 0U;
+    }
+    payload = (size_t)nmea_size;
+    to = matty_v4_pc_payload(frame, payload);
+    for (size_t i = 0; i < (size_t)nmea_size; i++) {
+        to[i] = written[i];
+    }
     return matty_v4_pc_wrap(frame, payload, 0x50U, counter);
 }
 

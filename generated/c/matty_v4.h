@@ -130,6 +130,26 @@ enum matty_v4_gps_mode_mode {
  * no struct, nothing to load, and functions that take none.
  */
 
+/* What the functions below share that read an element of an array. */
+
+static inline bool matty_v4_is_seven_bit(const void *at, size_t size) {
+    const uint8_t *bytes = (const uint8_t *)at;
+    uint8_t all = 0U;
+    for (size_t i = 0; i < size; i++) {
+        all |= bytes[i];
+    }
+    return all <= 0x7FU;
+}
+
+static inline void matty_v4_copy(void *to, const void *from, size_t size) {
+    uint8_t *target = (uint8_t *)to;
+    const uint8_t *source = (const uint8_t *)from;
+    while (size > 0U) {
+        size--;
+        target[size] = source[size];
+    }
+}
+
 /* --- stop ------------------------------------------------------------------------------------- */
 
 #define MATTY_V4_STOP_ID 'S'
@@ -490,6 +510,22 @@ MATTY_V4_API enum matty_v4_result matty_v4_gps_decode(struct matty_v4_gps *messa
 MATTY_V4_API void matty_v4_gps_load(struct matty_v4_gps *message, const uint8_t *payload,
                                     size_t size);
 
+/**
+ * Writes characters from nmea[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool matty_v4_gps_nmea_set_at(uint8_t *payload, size_t index, const char *value,
+                                            size_t size) {
+    if (index > 121U || size > 121U - index) {
+        return false;
+    }
+    if (!matty_v4_is_seven_bit(value, size)) {
+        return false;
+    }
+    matty_v4_copy(payload + index, value, size);
+    return true;
+}
+
 /* --- version ---------------------------------------------------------------------------------- */
 
 #define MATTY_V4_VERSION_ID 'V'
@@ -523,6 +559,12 @@ MATTY_V4_API void matty_v4_version_load(struct matty_v4_version *message, const 
  * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
  * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
+ *
+ * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
+ * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
+ * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
+ * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
  */
 
 /** Takes the next byte of a frame. */
@@ -664,6 +706,8 @@ MATTY_V4_API enum matty_v4_result matty_v4_status_send(const struct matty_v4_sta
 #define MATTY_V4_GPS_FRAME_ROOM 252U
 MATTY_V4_API size_t matty_v4_gps_frame(const struct matty_v4_gps *message, uint8_t counter,
                                        uint8_t *frame, size_t capacity);
+MATTY_V4_API uint8_t *matty_v4_gps_begin(uint8_t *frame, size_t capacity);
+MATTY_V4_API size_t matty_v4_gps_end(uint8_t nmea_size, uint8_t counter, uint8_t *frame);
 MATTY_V4_API enum matty_v4_result matty_v4_gps_send(const struct matty_v4_gps *message,
                                                     uint8_t counter, matty_v4_put put, void *user);
 

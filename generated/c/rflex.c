@@ -1615,6 +1615,35 @@ size_t rflex_sonar_data_frame(const struct rflex_sonar_data *message, uint8_t nu
     return rflex_linux_wrap(frame, payload, 0x04U, 0x02U, number);
 }
 
+uint8_t *rflex_sonar_data_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 254U;
+    uint8_t *at;
+    if (capacity < rflex_linux_room(payload)) {
+        return NULL;
+    }
+    at = rflex_linux_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    at[3] = 0x02U;
+    return at;
+}
+
+size_t rflex_sonar_data_end(uint8_t readings_count, uint8_t number, uint8_t *frame) {
+    uint8_t *const written = rflex_linux_payload(frame, 254U);
+    uint8_t *to;
+    size_t payload;
+    if (readings_count > 82U) {
+        return 0U;
+    }
+    payload = 8U + (size_t)3U * readings_count;
+    to = rflex_linux_payload(frame, payload);
+    for (size_t i = 0; i < 8U + (size_t)3U * readings_count; i++) {
+        to[i] = written[i];
+    }
+    return rflex_linux_wrap(frame, payload, 0x04U, 0x02U, number);
+}
+
 enum rflex_result rflex_sonar_data_send(const struct rflex_sonar_data *message, uint8_t number,
                                         rflex_put put, void *user) {
     struct rflex_writer writer;

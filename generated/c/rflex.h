@@ -599,6 +599,56 @@ static inline void rflex_sonar_data_readings_at(const uint8_t *payload, size_t i
     out->distance = rflex_load_u16be(at + 1);
 }
 
+/** Reads unknown from a payload that was received, unchecked. */
+static inline uint32_t rflex_sonar_data_unknown_get(const uint8_t *payload) {
+    const uint8_t *at = payload;
+    return (uint32_t)(at[3] | ((uint32_t)at[2] << 8) | ((uint32_t)at[1] << 16) |
+                      ((uint32_t)at[0] << 24));
+}
+
+/** Reads timestamp from a payload that was received, unchecked. */
+static inline uint32_t rflex_sonar_data_timestamp_get(const uint8_t *payload) {
+    const uint8_t *at = payload + 4U;
+    return (uint32_t)(at[3] | ((uint32_t)at[2] << 8) | ((uint32_t)at[1] << 16) |
+                      ((uint32_t)at[0] << 24));
+}
+
+/** Writes unknown into a frame that was begun; false, and nothing, if the value is refused. */
+static inline bool rflex_sonar_data_unknown_set(uint8_t *payload, uint32_t value) {
+    uint8_t *at = payload;
+    at[0] = (uint8_t)(value >> 24);
+    at[1] = (uint8_t)(value >> 16);
+    at[2] = (uint8_t)(value >> 8);
+    at[3] = (uint8_t)value;
+    return true;
+}
+
+/** Writes timestamp into a frame that was begun; false, and nothing, if the value is refused. */
+static inline bool rflex_sonar_data_timestamp_set(uint8_t *payload, uint32_t value) {
+    uint8_t *at = payload + 4U;
+    at[0] = (uint8_t)(value >> 24);
+    at[1] = (uint8_t)(value >> 16);
+    at[2] = (uint8_t)(value >> 8);
+    at[3] = (uint8_t)value;
+    return true;
+}
+
+/**
+ * Writes readings[index] into a frame that was begun; false, and nothing, if the value or the index
+ * is refused.
+ */
+static inline bool rflex_sonar_data_readings_set_at(uint8_t *payload, size_t index,
+                                                    const struct rflex_sonar_data_readings *value) {
+    if (index >= 82U) {
+        return false;
+    }
+    uint8_t *at = payload + 8U + 3U * index;
+    at[0] = value->cluster;
+    at[1] = (uint8_t)(value->distance >> 8);
+    at[2] = (uint8_t)value->distance;
+    return true;
+}
+
 /* --- initialize_digital_io -------------------------------------------------------------------- */
 
 #define RFLEX_INITIALIZE_DIGITAL_IO_ID_CLASS 0x05U
@@ -787,6 +837,12 @@ RFLEX_API void rflex_changed_byte_load(struct rflex_changed_byte *message, const
  * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
  * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
+ *
+ * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
+ * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
+ * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
+ * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
  */
 
 /** Takes the next byte of a frame. */
@@ -957,6 +1013,8 @@ RFLEX_API enum rflex_result rflex_confirm_start_stop_sonar_packets_send(
 #define RFLEX_SONAR_DATA_FRAME_ROOM 785U
 RFLEX_API size_t rflex_sonar_data_frame(const struct rflex_sonar_data *message, uint8_t number,
                                         uint8_t *frame, size_t capacity);
+RFLEX_API uint8_t *rflex_sonar_data_begin(uint8_t *frame, size_t capacity);
+RFLEX_API size_t rflex_sonar_data_end(uint8_t readings_count, uint8_t number, uint8_t *frame);
 RFLEX_API enum rflex_result rflex_sonar_data_send(const struct rflex_sonar_data *message,
                                                   uint8_t number, rflex_put put, void *user);
 

@@ -51,15 +51,6 @@ static uint32_t rflex_drivers_load_u32be(const uint8_t *at) {
                       ((uint32_t)at[0] << 24));
 }
 
-static void rflex_drivers_copy(void *to, const void *from, size_t size) {
-    uint8_t *target = (uint8_t *)to;
-    const uint8_t *source = (const uint8_t *)from;
-    while (size > 0U) {
-        size--;
-        target[size] = source[size];
-    }
-}
-
 RFLEX_DRIVERS_INLINE void rflex_drivers_store_u16be(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)(value >> 8);
     at[1] = (uint8_t)value;
@@ -1598,6 +1589,35 @@ size_t rflex_drivers_lcd_dump_frame(const struct rflex_drivers_lcd_dump *message
     return rflex_drivers_linux_wrap(frame, payload, 0x01U, 0x00U, number);
 }
 
+uint8_t *rflex_drivers_lcd_dump_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 255U;
+    uint8_t *at;
+    if (capacity < rflex_drivers_linux_room(payload)) {
+        return NULL;
+    }
+    at = rflex_drivers_linux_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t rflex_drivers_lcd_dump_end(uint8_t byte_count, uint8_t number, uint8_t *frame) {
+    uint8_t *const written = rflex_drivers_linux_payload(frame, 255U);
+    uint8_t *to;
+    size_t payload;
+    if (byte_count > 249U) {
+        return 0U;
+    }
+    payload = 6U + (size_t)byte_count;
+    written[5] = byte_count;
+    to = rflex_drivers_linux_payload(frame, payload);
+    for (size_t i = 0; i < 6U + (size_t)byte_count; i++) {
+        to[i] = written[i];
+    }
+    return rflex_drivers_linux_wrap(frame, payload, 0x01U, 0x00U, number);
+}
+
 enum rflex_drivers_result rflex_drivers_lcd_dump_send(const struct rflex_drivers_lcd_dump *message,
                                                       uint8_t number, rflex_drivers_put put,
                                                       void *user) {
@@ -1986,6 +2006,35 @@ size_t rflex_drivers_sonar_data_frame(const struct rflex_drivers_sonar_data *mes
     return rflex_drivers_linux_wrap(frame, payload, 0x04U, 0x02U, number);
 }
 
+uint8_t *rflex_drivers_sonar_data_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 254U;
+    uint8_t *at;
+    if (capacity < rflex_drivers_linux_room(payload)) {
+        return NULL;
+    }
+    at = rflex_drivers_linux_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    at[3] = 0x02U;
+    return at;
+}
+
+size_t rflex_drivers_sonar_data_end(uint8_t readings_count, uint8_t number, uint8_t *frame) {
+    uint8_t *const written = rflex_drivers_linux_payload(frame, 254U);
+    uint8_t *to;
+    size_t payload;
+    if (readings_count > 82U) {
+        return 0U;
+    }
+    payload = 8U + (size_t)3U * readings_count;
+    to = rflex_drivers_linux_payload(frame, payload);
+    for (size_t i = 0; i < 8U + (size_t)3U * readings_count; i++) {
+        to[i] = written[i];
+    }
+    return rflex_drivers_linux_wrap(frame, payload, 0x04U, 0x02U, number);
+}
+
 enum rflex_drivers_result rflex_drivers_sonar_data_send(
     const struct rflex_drivers_sonar_data *message, uint8_t number, rflex_drivers_put put,
     void *user) {
@@ -2196,6 +2245,34 @@ size_t rflex_drivers_ir_report_frame(const struct rflex_drivers_ir_report *messa
         return 0U;
     }
     rflex_drivers_ir_report_store(message, rflex_drivers_linux_payload(frame, payload));
+    return rflex_drivers_linux_wrap(frame, payload, 0x06U, 0x01U, number);
+}
+
+uint8_t *rflex_drivers_ir_report_begin(uint8_t *frame, size_t capacity) {
+    const size_t payload = 255U;
+    uint8_t *at;
+    if (capacity < rflex_drivers_linux_room(payload)) {
+        return NULL;
+    }
+    at = rflex_drivers_linux_payload(frame, payload);
+    for (size_t i = 0; i < payload; i++) {
+        at[i] = 0U;
+    }
+    return at;
+}
+
+size_t rflex_drivers_ir_report_end(uint8_t data_size, uint8_t number, uint8_t *frame) {
+    uint8_t *const written = rflex_drivers_linux_payload(frame, 255U);
+    uint8_t *to;
+    size_t payload;
+    payload = (size_t)data_size;
+    if (payload < 1U) {
+        return 0U;
+    }
+    to = rflex_drivers_linux_payload(frame, payload);
+    for (size_t i = 0; i < (size_t)data_size; i++) {
+        to[i] = written[i];
+    }
     return rflex_drivers_linux_wrap(frame, payload, 0x06U, 0x01U, number);
 }
 

@@ -171,6 +171,15 @@ struct rflex_drivers_sonar_data_readings {
 
 /* What the functions below share that read an element of an array. */
 
+static inline void rflex_drivers_copy(void *to, const void *from, size_t size) {
+    uint8_t *target = (uint8_t *)to;
+    const uint8_t *source = (const uint8_t *)from;
+    while (size > 0U) {
+        size--;
+        target[size] = source[size];
+    }
+}
+
 static inline uint16_t rflex_drivers_load_u16be(const uint8_t *at) {
     return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
 }
@@ -256,6 +265,55 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_lcd_dump_decode(
     struct rflex_drivers_lcd_dump *message, const uint8_t *payload, size_t size);
 RFLEX_DRIVERS_API void rflex_drivers_lcd_dump_load(struct rflex_drivers_lcd_dump *message,
                                                    const uint8_t *payload, size_t size);
+
+/** Reads timestamp from a payload that was received, unchecked. */
+static inline uint32_t rflex_drivers_lcd_dump_timestamp_get(const uint8_t *payload) {
+    const uint8_t *at = payload;
+    return (uint32_t)(at[3] | ((uint32_t)at[2] << 8) | ((uint32_t)at[1] << 16) |
+                      ((uint32_t)at[0] << 24));
+}
+
+/** Reads row from a payload that was received, unchecked. */
+static inline uint8_t rflex_drivers_lcd_dump_row_get(const uint8_t *payload) {
+    const uint8_t *at = payload + 4U;
+    return at[0];
+}
+
+/** Reads byte_count from a payload that was received, unchecked. */
+static inline uint8_t rflex_drivers_lcd_dump_byte_count_get(const uint8_t *payload) {
+    const uint8_t *at = payload + 5U;
+    return at[0];
+}
+
+/** Writes timestamp into a frame that was begun; false, and nothing, if the value is refused. */
+static inline bool rflex_drivers_lcd_dump_timestamp_set(uint8_t *payload, uint32_t value) {
+    uint8_t *at = payload;
+    at[0] = (uint8_t)(value >> 24);
+    at[1] = (uint8_t)(value >> 16);
+    at[2] = (uint8_t)(value >> 8);
+    at[3] = (uint8_t)value;
+    return true;
+}
+
+/** Writes row into a frame that was begun; false, and nothing, if the value is refused. */
+static inline bool rflex_drivers_lcd_dump_row_set(uint8_t *payload, uint8_t value) {
+    uint8_t *at = payload + 4U;
+    at[0] = value;
+    return true;
+}
+
+/**
+ * Writes bytes from pixels[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool rflex_drivers_lcd_dump_pixels_set_at(uint8_t *payload, size_t index,
+                                                        const uint8_t *value, size_t size) {
+    if (index > 249U || size > 249U - index) {
+        return false;
+    }
+    rflex_drivers_copy(payload + 6U + index, value, size);
+    return true;
+}
 
 /* --- axis_get_system -------------------------------------------------------------------------- */
 
@@ -702,6 +760,56 @@ static inline void rflex_drivers_sonar_data_readings_at(
     out->distance = rflex_drivers_load_u16be(at + 1);
 }
 
+/** Reads retval from a payload that was received, unchecked. */
+static inline uint32_t rflex_drivers_sonar_data_retval_get(const uint8_t *payload) {
+    const uint8_t *at = payload;
+    return (uint32_t)(at[3] | ((uint32_t)at[2] << 8) | ((uint32_t)at[1] << 16) |
+                      ((uint32_t)at[0] << 24));
+}
+
+/** Reads timestamp from a payload that was received, unchecked. */
+static inline uint32_t rflex_drivers_sonar_data_timestamp_get(const uint8_t *payload) {
+    const uint8_t *at = payload + 4U;
+    return (uint32_t)(at[3] | ((uint32_t)at[2] << 8) | ((uint32_t)at[1] << 16) |
+                      ((uint32_t)at[0] << 24));
+}
+
+/** Writes retval into a frame that was begun; false, and nothing, if the value is refused. */
+static inline bool rflex_drivers_sonar_data_retval_set(uint8_t *payload, uint32_t value) {
+    uint8_t *at = payload;
+    at[0] = (uint8_t)(value >> 24);
+    at[1] = (uint8_t)(value >> 16);
+    at[2] = (uint8_t)(value >> 8);
+    at[3] = (uint8_t)value;
+    return true;
+}
+
+/** Writes timestamp into a frame that was begun; false, and nothing, if the value is refused. */
+static inline bool rflex_drivers_sonar_data_timestamp_set(uint8_t *payload, uint32_t value) {
+    uint8_t *at = payload + 4U;
+    at[0] = (uint8_t)(value >> 24);
+    at[1] = (uint8_t)(value >> 16);
+    at[2] = (uint8_t)(value >> 8);
+    at[3] = (uint8_t)value;
+    return true;
+}
+
+/**
+ * Writes readings[index] into a frame that was begun; false, and nothing, if the value or the index
+ * is refused.
+ */
+static inline bool rflex_drivers_sonar_data_readings_set_at(
+    uint8_t *payload, size_t index, const struct rflex_drivers_sonar_data_readings *value) {
+    if (index >= 82U) {
+        return false;
+    }
+    uint8_t *at = payload + 8U + 3U * index;
+    at[0] = value->cluster;
+    at[1] = (uint8_t)(value->distance >> 8);
+    at[2] = (uint8_t)value->distance;
+    return true;
+}
+
 /* --- initialize_digital_io -------------------------------------------------------------------- */
 
 #define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_ID_CLASS 0x05U
@@ -958,6 +1066,19 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_report_decode(
 RFLEX_DRIVERS_API void rflex_drivers_ir_report_load(struct rflex_drivers_ir_report *message,
                                                     const uint8_t *payload, size_t size);
 
+/**
+ * Writes bytes from data[index] on into a frame that was begun; false, and nothing, if they or
+ * their places are refused.
+ */
+static inline bool rflex_drivers_ir_report_data_set_at(uint8_t *payload, size_t index,
+                                                       const uint8_t *value, size_t size) {
+    if (index > 255U || size > 255U - index) {
+        return false;
+    }
+    rflex_drivers_copy(payload + index, value, size);
+    return true;
+}
+
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
@@ -966,6 +1087,12 @@ RFLEX_DRIVERS_API void rflex_drivers_ir_report_load(struct rflex_drivers_ir_repo
  * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
  * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
+ *
+ * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
+ * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
+ * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
+ * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
  */
 
 /** Takes the next byte of a frame. */
@@ -1032,6 +1159,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_system_status_send(
 RFLEX_DRIVERS_API size_t rflex_drivers_lcd_dump_frame(const struct rflex_drivers_lcd_dump *message,
                                                       uint8_t number, uint8_t *frame,
                                                       size_t capacity);
+RFLEX_DRIVERS_API uint8_t *rflex_drivers_lcd_dump_begin(uint8_t *frame, size_t capacity);
+RFLEX_DRIVERS_API size_t rflex_drivers_lcd_dump_end(uint8_t byte_count, uint8_t number,
+                                                    uint8_t *frame);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_lcd_dump_send(
     const struct rflex_drivers_lcd_dump *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1177,6 +1307,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_son
 RFLEX_DRIVERS_API size_t rflex_drivers_sonar_data_frame(
     const struct rflex_drivers_sonar_data *message, uint8_t number, uint8_t *frame,
     size_t capacity);
+RFLEX_DRIVERS_API uint8_t *rflex_drivers_sonar_data_begin(uint8_t *frame, size_t capacity);
+RFLEX_DRIVERS_API size_t rflex_drivers_sonar_data_end(uint8_t readings_count, uint8_t number,
+                                                      uint8_t *frame);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_sonar_data_send(
     const struct rflex_drivers_sonar_data *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1255,6 +1388,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_run_send(
 #define RFLEX_DRIVERS_IR_REPORT_FRAME_ROOM 788U
 RFLEX_DRIVERS_API size_t rflex_drivers_ir_report_frame(
     const struct rflex_drivers_ir_report *message, uint8_t number, uint8_t *frame, size_t capacity);
+RFLEX_DRIVERS_API uint8_t *rflex_drivers_ir_report_begin(uint8_t *frame, size_t capacity);
+RFLEX_DRIVERS_API size_t rflex_drivers_ir_report_end(uint8_t data_size, uint8_t number,
+                                                     uint8_t *frame);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_report_send(
     const struct rflex_drivers_ir_report *message, uint8_t number, rflex_drivers_put put,
     void *user);

@@ -1,33 +1,32 @@
-"""A cache of things made of protocols."""
+"""A cache of things made of protocols, or of their messages."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from protogen.model.protocol import Protocol
-
+GivenT = TypeVar("GivenT")
 MadeT = TypeVar("MadeT")
 
 
-class Kept(Generic[MadeT]):
-    """Makes something of a protocol, and remembers it for some protocols.
+class Kept(Generic[GivenT, MadeT]):
+    """Makes something of a protocol, and remembers it for some of them.
 
     They are known by their addresses, as to compare two takes long; one that is kept keeps its own.
     """
 
-    def __init__(self, make: Callable[[Protocol], MadeT], most: int) -> None:
+    def __init__(self, make: Callable[[GivenT], MadeT], most: int) -> None:
         self._make = make
         self._most = most
-        self._made: dict[int, tuple[Protocol, MadeT]] = {}
+        self._made: dict[int, tuple[GivenT, MadeT]] = {}
 
-    def __call__(self, protocol: Protocol) -> MadeT:
-        """The thing made of the protocol, now or earlier. Raises what making it raises."""
-        found = self._made.get(id(protocol))
-        if found is not None and found[0] is protocol:
+    def __call__(self, given: GivenT) -> MadeT:
+        """The thing made of it, now or earlier. Raises what making it raises."""
+        found = self._made.get(id(given))
+        if found is not None and found[0] is given:
             return found[1]
-        made = self._make(protocol)
+        made = self._make(given)
         while len(self._made) >= self._most:
             del self._made[next(iter(self._made))]
-        self._made[id(protocol)] = (protocol, made)
+        self._made[id(given)] = (given, made)
         return made

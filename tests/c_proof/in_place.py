@@ -1,7 +1,7 @@
 """Programs for EVA that write messages field by field where they stand in their frames.
 
 They are made from the header alone. A buffer suffices for a frame, or none of it is touched;
-elements have any index, and values any that their types have.
+elements have any index, values any that their types have, and there are any number of elements.
 """
 
 from __future__ import annotations
@@ -27,12 +27,32 @@ static void prove_{begin}(void) {{
     payload = {begin}(frame, {room});
     while (any != 0) {{
 {sets}    }}
-    size = {prefix}_end({parts}frame);
+{numbers}    size = {prefix}_end({parts}frame);
     //@ assert size <= {room};
 }}
 """
+_NUMBER = """    {type} {name} = ({type})any;
+    if ({name} <= {followed}) {{
+        //@ split {name};
+        ;
+    }}
+"""
+"""What `end` is given: numbers of elements, of which EVA follows each alone."""
+_FOLLOWED = 12
+"""The greatest of them."""
 _CALL = """        if (any != 0) {{
             {declared}(void){name}(payload, {given});
+        }}
+"""
+_PIECE = """        if (any != 0) {{
+            size_t index = (size_t)Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU);
+            {declared}if (index <= {followed}) {{
+                //@ split index;
+                ;
+            }}
+            (void){name}(payload, index, {given});
+            //@ merge index;
+            ;
         }}
 """
 
@@ -48,18 +68,31 @@ def in_place_driver(protocol: Protocol, header: str) -> Driver:
         reads = [name for name in _GET.findall(flat) if name.startswith(f"{prefix}_")]
         sets = [_call(name, arguments.split(", ")) for name, arguments in own]
         sets += [f"        sink = {name}(payload) != 0;\n" for name in reads]
-        given = re.sub(r"(\w+) \w+,", r"(\1)any,", ends[prefix])
+        given = re.findall(r"(\w+) (\w+),", ends[prefix])
         room = rooms[f"{prefix.upper()}_FRAME_ROOM"]
         parts.append(
-            _WRITE.format(begin=begin, prefix=prefix, room=room, sets="".join(sets), parts=given)
+            _WRITE.format(
+                begin=begin,
+                prefix=prefix,
+                room=room,
+                sets="".join(sets),
+                numbers="".join(
+                    _NUMBER.format(type=type_, name=name, followed=_FOLLOWED)
+                    for type_, name in given
+                ),
+                parts="".join(f"{name}, " for _, name in given),
+            )
         )
         proofs.append(begin)
     return replace(program(parts, proofs), options=(STATES,))
 
 
 def _call(name: str, arguments: list[str]) -> str:
-    """The call of a function that sets a field, or an element of one."""
-    index = "(size_t)Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU), "
+    """The call of a function that sets a field, an element of one, or several of its bytes."""
+    number = "(size_t)Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU)"
+    is_piece = arguments[-1] == "size_t size"
+    if is_piece:
+        arguments = arguments[:-1]
     kind = arguments[-1].rpartition(" ")[0]
     declared, value = "", f"({kind})Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU)"
     if arguments[-1].startswith("const "):
@@ -67,5 +100,8 @@ def _call(name: str, arguments: list[str]) -> str:
         size = "" if kind.startswith("struct") else "[256]"
         declared = f"{kind} value{size}; Frama_C_make_unknown((char *)&value, sizeof value); "
         value = "value" if size else "&value"
-    given = f"{index if len(arguments) > 1 else ''}{value}"
+    if is_piece:
+        given = f"{value}, {number}"
+        return _PIECE.format(declared=declared, name=name, given=given, followed=_FOLLOWED)
+    given = f"{number}, {value}" if len(arguments) > 1 else value
     return _CALL.format(declared=declared, name=name, given=given)

@@ -9,6 +9,7 @@ from protogen.model.meanings import Enum, Flags
 from protogen.model.protocol import Protocol
 from protogen.model.types import Field
 from protogen.targets import naming
+from protogen.targets.c.payload.written_places import is_written_in_place
 from protogen.targets.c.spelling import from_sender
 from protogen.targets.kept import Kept
 from protogen.targets.naming import OWN, PROTOCOL, NameTable, Thing, endpoint, named_type
@@ -37,6 +38,11 @@ class CppNames:
         self._outside = outside
         for thing, words in _claimed(protocol):
             self.of(thing, *words)
+        for message in protocol.messages:
+            if is_written_in_place(message):
+                senders = protocol.senders_of(message)
+                for suffix in ("", *(from_sender(sender.name) for sender in senders)):
+                    self.writer(message.name, suffix)
         for enum in protocol.enums:
             self.values(enum)
         for flags in protocol.flags:
@@ -50,6 +56,10 @@ class CppNames:
     def of(self, thing: Thing, *words: str) -> str:
         """A type or a function of the namespace."""
         return self._inside.add("_".join(words), thing)
+
+    def writer(self, message: str, suffix: str) -> str:
+        """The class that writes a message in its frame, and the kind of frame by its suffix."""
+        return self.of(naming.message(message), message, f"writer{suffix}")
 
     def values(self, item: Enum | Flags) -> tuple[str, ...]:
         """The names of an enum's values, or of flags, in their order."""

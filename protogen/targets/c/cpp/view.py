@@ -12,6 +12,7 @@ from protogen.targets import naming
 from protogen.targets.c.cpp.enums import CppEnum, cpp_enums
 from protogen.targets.c.cpp.names import CppNames, cpp_names
 from protogen.targets.c.cpp.physical import CppPhysical, cpp_physical
+from protogen.targets.c.cpp.writers import CppWriter, cpp_writers
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.forms import FormsDecoder
 from protogen.targets.c.frame.framing import FramingView
@@ -155,6 +156,7 @@ class CppModule(msgspec.Struct, frozen=True):
     structs: tuple[CppStruct, ...]
     messages: tuple[CppMessage, ...]
     frames: tuple[CppFrame, ...]
+    writers: tuple[CppWriter, ...]
     decoders: tuple[CppDecoder, ...]
     together: tuple[CppForms, ...]
     physical: tuple[CppPhysical, ...]
@@ -195,6 +197,9 @@ def cpp_module(
         ),
         messages=messages,
         frames=tuple(_frame(item, by_name) for item in framing.messages),
+        writers=tuple(
+            cpp_writers(framing.messages, {it.view.name: it.name for it in messages}, cpp)
+        ),
         decoders=decoders,
         together=tuple(_forms(item, by_sender, cpp) for item in framing.together),
         physical=tuple(

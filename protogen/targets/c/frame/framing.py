@@ -45,6 +45,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """What the names of their functions begin with."""
     puts: tuple[str, ...]
     """The functions that hand payloads to a writer."""
+    written: tuple[str, ...]
+    """Functions for those below that read what was written in a frame."""
     unset: tuple[str, ...]
     """Functions that say whether a message that was begun in its frame can end."""
     stateless: bool
@@ -170,11 +172,16 @@ def framing_view(
         streaming=streaming,
         writers=tuple(names.senders[name] for name in streaming),
         puts=puts,
+        written=tuple(
+            dict.fromkeys(
+                text for item in message_frames if item.in_place for text in item.in_place.written
+            )
+        ),
         unset=tuple(
             dict.fromkeys(
                 place.unset_function
                 for item in message_frames
-                if (place := item.view.in_place) and place.unset
+                if (place := item.in_place) and place.unset
             )
         ),
         stateless=is_stateless(protocol),

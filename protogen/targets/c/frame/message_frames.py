@@ -19,6 +19,7 @@ from protogen.model.types import Field
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.frames import Argument, FrameView, argument_of, one_of
 from protogen.targets.c.frame.virtual import value_of
+from protogen.targets.c.payload.in_place import InPlace
 from protogen.targets.c.payload.message_names import FrameNames
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.payload.one_byte import only_byte
@@ -196,6 +197,28 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
         """True if the frame can be handed over byte by byte."""
         return self.frame.plan.streams and not self.is_refused
 
+    # --- written in place -------------------------------------------------------------------------
+
+    @cached_property
+    def in_place(self) -> InPlace | None:
+        """What writes the message in its frame; None where that is no way, or has no room."""
+        place = self.view.in_place
+        return place if place is not None and place.room <= self.greatest_payload else None
+
+    @property
+    def refused_in_place(self) -> tuple[str, ...]:
+        """The conditions of arguments that are refused when such a frame is ended."""
+        amounts = self.in_place.amounts if self.in_place else ()
+        refused = [*(item.refused for item in amounts), *(item.refused for item in self.values)]
+        return tuple(filter(None, refused))
+
+    @property
+    def too_short_in_place(self) -> str:
+        """The condition of too short a payload there; empty if there is none."""
+        least = max(self.least_payload, self.message.sizes.least)
+        is_short = self.message.plan.sizes.least < least
+        return f"payload < {least}U" if is_short else ""
+
     # --- parameters -------------------------------------------------------------------------------
 
     @property
@@ -210,7 +233,13 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def end_arguments(self) -> tuple[str, ...]:
         """Parameters of the function that ends a frame that was begun in its buffer."""
-        return (*self._parts(), "uint8_t *frame")
+        return (*self.end_given, "uint8_t *frame")
+
+    @property
+    def end_given(self) -> tuple[str, ...]:
+        """Those for what the caller gives: numbers of elements, and parts of the frame."""
+        amounts = self.in_place.amounts if self.in_place else ()
+        return (*(f"{item.type} {item.name}" for item in amounts), *self._parts())
 
     def _given(self) -> tuple[str, ...]:
         return (*self.view.parameter, *self._parts())

@@ -25,10 +25,14 @@ from protogen.targets.naming import inside
 
 def is_readable(step: AnyStep) -> bool:
     """True if there is such a function: elements of one size lie at a place that is known."""
-    if not isinstance(step, RepeatStep) or step.field.position is None:
+    is_placed = isinstance(step, RepeatStep) and step.field.position is not None
+    return is_placed and has_fixed_elements(step)
+
+
+def has_fixed_elements(step: AnyStep) -> bool:
+    """True for an array of elements of one size that begin at whole bytes."""
+    if not isinstance(step, RepeatStep) or step.packing is not None:
         return False
-    if step.packing is not None:
-        return False  # Its elements begin anywhere in a byte.
     element = step.element
     if isinstance(element, RecordStep):
         # Nothing outside of it may say what is in it.

@@ -13,7 +13,8 @@ from protogen.model.protocol import Sender
 from protogen.targets import naming
 from protogen.targets.c.named import Macro, claim_fields
 from protogen.targets.c.payload.accessors import claim_accessor, is_readable
-from protogen.targets.c.payload.in_place import claim_in_place, is_written_in_place
+from protogen.targets.c.payload.in_place import claim_in_place
+from protogen.targets.c.payload.written_places import is_written_in_place
 from protogen.targets.c.spelling import Names, from_sender
 
 _FUNCTIONS = "check load validate refused measure store put encode decode"

@@ -133,10 +133,11 @@ class MessagePrinter(msgspec.Struct, frozen=True):
         read = (
             accessor(item.name, step, names, self.helpers, self.records) for step in item.plan.steps
         )
-        place = in_place(item, names, self.helpers, self.records)
+        parts = [part.name for it in self.senders_of(item) for part in it.frame.declared]
+        place = in_place(item, names, self.helpers, self.records, list(map(names.member, parts)))
         accessors = tuple(text for text in read if text)
         if place is not None:
-            accessors += (*place.getters, *place.setters)
+            accessors += (*place.getters, *(setter.text for setter in place.setters))
         zeros = f"{names.prefix.upper()}_ZEROS"
         struct = f"struct {tag}" if has_struct(item) else ""
         codec = _Codec(self, item, struct, called)

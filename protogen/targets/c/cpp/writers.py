@@ -1,0 +1,86 @@
+"""Classes of the header for C++ that write messages where they stand in their frames."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import msgspec
+
+from protogen.model.payload_plan import BytesStep, RecordStep
+from protogen.model.types import Text
+from protogen.targets import naming
+from protogen.targets.c.cpp.names import CppNames
+from protogen.targets.c.frame.message_frames import MessageFrame
+from protogen.targets.c.payload.in_place import Setter
+
+
+class CppSetter(msgspec.Struct, frozen=True):
+    """A function that writes a field, an element of one, or a piece of its bytes."""
+
+    name: str
+    parameters: str
+    call: str
+
+
+class CppWriter(msgspec.Struct, frozen=True):
+    """The class for the frames of a message from senders of one kind of frame."""
+
+    name: str
+    message: str
+    item: MessageFrame
+    setters: tuple[CppSetter, ...]
+
+    @property
+    def begin(self) -> str:
+        """The call of C's function that begins a frame."""
+        return f"::{self.item.called.begin}(frame.data(), frame.size())"
+
+    @property
+    def given(self) -> str:
+        """Parameters of `end`: numbers of elements, and parts of the frame."""
+        return ", ".join(self.item.end_given)
+
+    @property
+    def end(self) -> str:
+        """The call of C's function that ends it."""
+        names = [argument.rpartition(" ")[2] for argument in self.item.end_given]
+        return f"::{self.item.called.end}({', '.join([*names, 'frame_'])})"
+
+
+def cpp_writers(
+    frames: tuple[MessageFrame, ...], messages: dict[str, str], cpp: CppNames
+) -> Iterator[CppWriter]:
+    """The classes; `messages` are the names that messages have."""
+    for item in frames:
+        if item.in_place is not None:
+            yield CppWriter(
+                name=cpp.writer(item.message.name, item.called.suffix),
+                message=messages[item.message.name],
+                item=item,
+                setters=tuple(_setter(setter, cpp) for setter in item.in_place.setters),
+            )
+
+
+def _setter(setter: Setter, cpp: CppNames) -> CppSetter:
+    space = f"::{cpp.space}"
+    parameters, arguments = ["size_t index"] * setter.indexed, ["index"] * setter.indexed
+    match setter.value:
+        case RecordStep() as step:
+            name = cpp.of(naming.named_type(step.type.name), step.type.name)
+            parameters.append(f"const {space}::{name} &value")
+            arguments.append("&value")
+        case BytesStep() as step if setter.pieces and isinstance(step.type, Text):
+            parameters += ["const char *value", "size_t size"]
+            arguments += ["value", "size"]
+        case BytesStep() if setter.pieces:
+            parameters.append(f"{space}::bytes value")
+            arguments += ["value.data()", "value.size()"]
+        case BytesStep() as step:
+            kind = "char" if isinstance(step.type, Text) else "uint8_t"
+            parameters.append(f"const {kind} (&value)[{step.count.greatest}]")
+            arguments.append("value")
+        case _:
+            parameters.append(f"{setter.type} value")
+            arguments.append("value")
+    call = f"::{setter.name}({', '.join(['payload_', *arguments])})"
+    return CppSetter(f"set_{setter.field}", ", ".join(parameters), call)
