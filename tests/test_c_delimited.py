@@ -199,3 +199,25 @@ def test_the_buffer_is_as_large_as_the_greatest_message() -> None:
         "buffer": 1 + 1 + 5 + 2,
     }
     assert memory_of(board) == 11
+
+
+def test_no_start_is_kept() -> None:
+    """Of the tether: identity, eight bytes and a checksum stand between two flags."""
+    tether = protocol_of(ROOT / "benchmarks" / "c" / "tether.yaml")
+    [winch] = unit_of(tether, MESSAGES).framing.decoders
+    assert {member.name: member.size for member in members_of(winch)} == {
+        "content": 1,
+        "node": 1,
+        "buffer": 1 + 8 + 2,
+    }
+
+
+def test_a_length_that_is_kept_is_not_counted_again() -> None:
+    """rFLEX's sonars vary in number; class, number, subclass, length and checksum are kept."""
+    atrv = protocol_of(ROOT / "benchmarks" / "c" / "atrv.yaml")
+    [flex] = [d for d in unit_of(atrv, MESSAGES).framing.decoders if d.name == "flex"]
+    assert {member.name: member.size for member in members_of(flex)} == {
+        "content": 1,
+        "node": 1,
+        "buffer": 4 + flex.delimited.greatest_payload + 1,
+    }

@@ -100,7 +100,7 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
     @property
     def tells_sizes(self) -> bool:
         """True if the message tells it, and there are several."""
-        return self.only_size is None and not self._size_varies
+        return self.only_size is None and not self._size_varies and not self.size_in_buffer
 
     @cached_property
     def sizes(self) -> dict[int, tuple[str, ...]]:
@@ -123,7 +123,7 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
             return ""
         if self.size_is_kept:
             return "decoder->payload, "
-        if self._size_varies:
+        if self.size_in_buffer:
             return f"{self.size_in_buffer}, "
         return f"{self.prefix}_payload_size(message), "
 
