@@ -83,8 +83,7 @@ STEPS = [
 ]
 
 WHOLE = [("bounded/trimmed", 13), ("bounded/escaped", 23)]
-"""Frames that are taken whole: of payloads that are filled up, and stuffed; and a pass more than any
-loop needs."""
+"""Frames that are taken whole: of payloads that are filled up, and stuffed ones."""
 
 
 def made_of(path: str, folder: Path) -> Generated:
