@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from c_proof.bounded import Between, Harness, decode_harness, step_harness
+from c_proof.bounded import Between, Harness, decode_harness, step_harness, whole_harness
 from c_proof.esbmc import Verdict, check
 from c_proof.generated import Generated, generate
 from compiled import ROOT, protocol_of
@@ -82,6 +82,9 @@ STEPS = [
     Steps("bounded/counted_wire", "device", 15, COUNTED, "decoder->match <= decoder->next"),
 ]
 
+WHOLE = [("bounded/trimmed", 13), ("bounded/escaped", 23)]
+"""Frames that are taken whole: of payloads that are filled up, and stuffed ones."""
+
 
 def made_of(path: str, folder: Path) -> Generated:
     """The C of a schema of this folder."""
@@ -105,6 +108,11 @@ def prove(made: Generated, harness: Harness, unwind: int) -> Verdict:
 def prove_decode(made: Generated, message: str, unwind: int) -> Verdict:
     """Give `decode` each small payload."""
     return prove(made, decode_harness(made.protocol, *texts(made), message), unwind)
+
+
+def prove_whole(made: Generated, unwind: int) -> Verdict:
+    """Feed any bytes to what takes frames whole."""
+    return prove(made, whole_harness(made.protocol, *texts(made), "device"), unwind)
 
 
 def prove_steps(made: Generated, steps: Steps) -> Verdict:
@@ -136,6 +144,13 @@ def test_no_small_payload_harms_decode(
 @pytest.mark.parametrize("steps", STEPS, ids=lambda steps: Path(steps.path).name)
 def test_no_step_of_a_decoder_harms_or_loses_what_holds(steps: Steps, tmp_path: Path) -> None:
     verdict = prove_steps(made_of(steps.path, tmp_path), steps)
+    assert verdict.found == ()
+    assert verdict.claims > 50
+
+
+@pytest.mark.parametrize(("path", "unwind"), WHOLE)
+def test_no_bytes_harm_what_takes_frames_whole(path: str, unwind: int, tmp_path: Path) -> None:
+    verdict = prove_whole(made_of(path, tmp_path), unwind)
     assert verdict.found == ()
     assert verdict.claims > 50
 

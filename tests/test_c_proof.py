@@ -182,7 +182,7 @@ def prove_sending(made: Generated, *, first: bool = False) -> Report:
     assert made.source is not None
     header, source = (path.read_text(encoding="utf-8") for path in (made.header, made.source))
     made.source.write_text(unrolled(source), encoding="utf-8")
-    return prove(made, send_driver(made.protocol, header, source), first=first)
+    return prove(made, send_driver(made.protocol, header, source, stuffs_great=ALL), first=first)
 
 
 def plain_driver(made: Generated, path: Path) -> Driver:

@@ -122,8 +122,6 @@ int main(void) {{
     return 0;
 }}
 """
-WORD = 8
-"""Bytes that are looked at together."""
 
 
 _ROOM = """
@@ -223,7 +221,7 @@ def step_harness(
 
 
 def whole_harness(protocol: Protocol, header: str, source: str, sender: str) -> Harness:
-    """Any bytes, of up to a word more than the greatest frame, for what takes frames whole.
+    """Any bytes, of up to one more than the greatest frame has, for what takes frames whole.
 
     So `feed` does with what is fed to a decoder between two frames.
     """
@@ -235,7 +233,7 @@ def whole_harness(protocol: Protocol, header: str, source: str, sender: str) -> 
         prefix=prefix,
         arrays="".join(f"    {type_} {name}[{size}];\n" for type_, name, size in arrays),
         points="".join(f"    decoder.{name} = {name};\n" for _, name, _ in arrays),
-        room=int(greatest[1]) + WORD,
+        room=int(greatest[1]) + 1,
     )
     return Harness(_head(protocol, source, fast=True) + text, changed)
 

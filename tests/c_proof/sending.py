@@ -15,7 +15,7 @@ from protogen.model.protocol import Protocol
 
 GREATEST = 64
 """Greater payloads take minutes if EVA follows each of their sizes: buffers for these have room for
-the greatest, and all sizes are looked at together."""
+the greatest, and all sizes are looked at together unless they are stuffed."""
 STUFFED = 300
 """More bytes than are stuffed in any frame."""
 _ENCODERS = re.compile(
@@ -79,8 +79,12 @@ static void put(void *user, uint8_t byte) {
 """
 
 
-def send_driver(protocol: Protocol, header: str, source: str) -> Driver:
-    """Each message with any values of its fields, into buffers that suffice or do not, and away."""
+def send_driver(protocol: Protocol, header: str, source: str, *, stuffs_great: bool) -> Driver:
+    """Each message with any values of its fields, into buffers that suffice or do not, and away.
+
+    Where it `stuffs_great`, frames of great messages are stuffed, too: a quarter of a minute each.
+    """
+    is_stuffed = bool(_WRAP.search(source))
     flat = re.sub(r"\s+", " ", header)
     rooms = {name: int(size) for name, size in _ROOM.findall(flat)}
     truths = {name: _TRUTH.findall(members) for name, members in _STRUCT.findall(header)}
@@ -88,10 +92,13 @@ def send_driver(protocol: Protocol, header: str, source: str) -> Driver:
     for function, prefix, kind, struct, arguments in _ENCODERS.findall(flat):
         measure = _body(source, f"{prefix}_measure")
         greatest = rooms[f"{prefix.upper()}_PAYLOAD_MAX"]
+        stuffs = kind == "frame" and is_stuffed
+        if greatest > GREATEST and stuffs and not stuffs_great:
+            continue
         values = [f"struct {struct} message;"] if struct else []
         values += ["Frama_C_make_unknown((char *)&message, sizeof message);"] if struct else []
         values += [f"message.{name} = any != 0;" for name in truths.get(struct, ())]
-        if greatest <= GREATEST or (kind == "frame" and _WRAP.search(source)):
+        if greatest <= GREATEST or stuffs:
             for value in _apart(measure, greatest):
                 values += [f"//@ split {value};", ";"]
         given = {
