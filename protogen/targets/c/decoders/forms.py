@@ -134,7 +134,7 @@ class FormsDecoder(NamedDecoder, frozen=True, dict=True):
 
     @property
     def bytes_kept(self) -> tuple[str, str, str]:
-        """Bytes of a frame that is complete, behind it, and those kept where none is, for counters."""
+        """For counters: bytes of a complete frame, behind it, and those kept where none is."""
         return bytes_kept(shares=self.search.plan.shares_delimiter)
 
     # --- what it is told --------------------------------------------------------------------------

@@ -194,7 +194,7 @@ class PushDecoder(PushStates, frozen=True, dict=True):
 
     @property
     def bytes_kept(self) -> tuple[str, str, str]:
-        """Bytes of a frame that is complete, behind it, and those kept where none is, for counters."""
+        """For counters: bytes of a complete frame, behind it, and those kept where none is."""
         return bytes_kept(shares=self.plan.shares_delimiter)
 
     # --- the stuffed region -----------------------------------------------------------------------
