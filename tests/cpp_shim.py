@@ -154,6 +154,22 @@ enum {self.name}_result cpp_{name}({parameters}) {{
 }}""",
         )
 
+    def framed(self, name: str, given: Sequence[str], call: str) -> Function:
+        """A function that makes a frame."""
+        parameters = ", ".join([*given, "uint8_t *to", "size_t capacity"])
+        return (
+            name,
+            f"""
+size_t cpp_{name}({parameters}) {{
+    const {self.space}::framed made = {self.space}::{call};
+    if (!made != (made.size() == 0) || made.data() != to ||
+        made.end() - made.begin() != static_cast<long>(made.size())) {{
+        std::abort();
+    }}
+    return made.size();
+}}""",
+        )
+
     def payload(self, item: CppMessage) -> Iterator[Function]:
         view, held = item.view, item.view.held
         yield self.made(view.encode, view.parameter, f"encode({self.sent(item)}, {{to, capacity}})")
@@ -182,7 +198,7 @@ enum {self.name}_result cpp_{view.decode}({parameters}) {{
         parts = "".join(f", {argument.name}" for argument in item.arguments)
         message = f"{self.sent(frame.message)}{parts}"
         call = f"{frame.frame}({message}, {{to, capacity}})"
-        yield self.made(item.called.function, given, call)
+        yield self.framed(item.called.function, given, call)
         if frame.send:
             name = item.called.send
             parameters = ", ".join([*given, f"{self.name}_put put", "void *user"])

@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import pytest
-from c_library import FLAGS, OK, RANGE, write_sources
+from c_library import FLAGS, OK, write_sources
 from c_structs import Unfit, Values, fill, structure_of
 from compiled import ROOT, module_at, protocol_of
 from hypothesis import given, settings
@@ -138,6 +138,10 @@ static uint8_t before[2048];
             if (memcmp(before, frame, capacity) != 0) {{ return -2; }} \\
         }} \\
     }}
+static int ended(size_t made, size_t *size) {{
+    *size = made;
+    return made == 0 ? 200 : 0;
+}}
 """
 WRITE = """
 int write_{name}({struct} *message, int skipped, uint8_t *frame, size_t capacity,
@@ -152,13 +156,13 @@ int write_{name}({struct} *message, int skipped, uint8_t *frame, size_t capacity
     if (!refused && skipped < 0) {{
 {reads}
     }}
-    return refused ? 100 : (int){end}({given}frame, size);
+    return refused ? 100 : ended({end}({given}frame), size);
 }}
 int begun_{name}(uint8_t *frame, size_t capacity, size_t *size{parts}) {{
-    return {begin}(frame, capacity) == NULL ? -1 : (int){end}({given}frame, size);
+    return {begin}(frame, capacity) == NULL ? -1 : ended({end}({given}frame), size);
 }}
 """
-_NO_ROOM, _REFUSED = -1, 100
+_NO_ROOM, _REFUSED, _NO_FRAME = -1, 100, 200
 
 
 class Way(NamedTuple):
@@ -357,10 +361,10 @@ def test_what_was_begun_has_the_defaults_of_its_fields() -> None:
 def test_what_has_no_default_that_is_allowed_has_to_be_set(name: str) -> None:
     [way] = [way for way in ways_of(name) if way.message.name == "unset"]
     values, parts = way.samples(Random(name), 1)[-1]
-    assert way.begun(parts) == (RANGE, b"")
+    assert way.begun(parts) == (_NO_FRAME, b"")
     calls = 21  # One for each field, and each element.
     for skipped in range(calls):
-        assert way.write(values, parts, skipped=skipped) == (RANGE, b"")
+        assert way.write(values, parts, skipped=skipped) == (_NO_FRAME, b"")
     assert way.write(values, parts, skipped=calls) == (OK, way.frame(values, parts))
 
 
@@ -375,13 +379,13 @@ SENDS = """
 volatile uint8_t port;
 static uint8_t frame[RN1_LIDAR_FRAME_ROOM];
 int main(void) {
-    size_t size = 0;
     uint8_t *const turn = rn1_lidar_begin(frame, sizeof frame);
+    size_t size;
     (void)rn1_lidar_status_set(turn, port);
     for (size_t i = 0; i < 360; i++) {
         (void)rn1_lidar_distances_set_at(turn, i, (uint16_t)(port * 60U));
     }
-    (void)rn1_lidar_end(frame, &size);
+    size = rn1_lidar_end(frame);
     for (size_t i = 0; i < size; i++) {
         port = frame[i];
     }

@@ -25,10 +25,10 @@ from compiled import DIALECTS, DOCUMENTS, SCHEMAS, covering, module_at, name_of,
 from corpus import material_of, stream_of
 from test_c_codecs import Case, Content
 from test_c_decoder import steps_of
-from test_c_frames import frame_of, refusal
+from test_c_frames import frame_of
 from tooling import PROGRAM, require_compiler, require_tool
 
-from protogen.fuzzing.c_calls import OK, RANGE, Calls, Encoded
+from protogen.fuzzing.c_calls import OK, RANGE, REFUSED, Calls, Encoded
 from protogen.fuzzing.c_driver import Driver
 from protogen.fuzzing.c_values import Answers
 from protogen.fuzzing.samples import boundary_rounds, samples
@@ -256,7 +256,7 @@ def _frames(path: Path, sender: Sender, message: str) -> Iterator[Vector]:
     found = samples(model, sender.frame, Random(message))
     for values, parts in islice(found, boundary_rounds(model, sender.frame) + 3):
         frame = frame_of(path, sender.name, message, values, parts)
-        result = (refusal(path, sender.name), b"") if frame is None else (OK, frame)
+        result = (REFUSED, b"") if frame is None else (OK, frame)
         given = (sender.name, message, values, parts)
         yield Vector(message, _frame(*given), _is_frame(*result), result)
         if frame is not None:

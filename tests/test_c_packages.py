@@ -38,9 +38,9 @@ PROGRAM = """\
 
 int main(void) {
     uint8_t frame[MATTY_STOP_FRAME_ROOM];
-    size_t size = 0;
+    const size_t size = matty_stop_frame(7, frame, sizeof frame);
     size_t index;
-    if (matty_stop_frame(7, frame, sizeof frame, &size) != MATTY_OK) {
+    if (size == 0) {
         return 1;
     }
     for (index = 0; index < size; index++) {

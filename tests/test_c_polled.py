@@ -128,11 +128,11 @@ int main(void) {
     unsigned way, number;
     for (number = 0; number < 3; number++) {
         const struct weather_wind wind = {(uint16_t)(0x0A55U << number)};
-        size_t room = 0;
-        if (weather_wind_frame(&wind, &stream[size], sizeof stream - size, &room) != WEATHER_OK) {
+        const size_t taken = weather_wind_frame(&wind, &stream[size], sizeof stream - size);
+        if (taken == 0) {
             return 1;
         }
-        size += room;
+        size += taken;
         ends[number + 1] = size;
     }
     for (way = 0; way < 3; way++) {

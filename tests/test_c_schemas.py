@@ -21,7 +21,7 @@ from schema_fuzzing.text import to_yaml
 from test_c_decoder import steps_of
 
 from protogen.compiler import compile_file
-from protogen.fuzzing.c_calls import OK, RANGE, SPACE, VALUE, Encoded
+from protogen.fuzzing.c_calls import OK, RANGE, REFUSED, Encoded
 from protogen.fuzzing.c_values import Unfit
 from protogen.fuzzing.samples import Values, boundary_rounds, samples
 from protogen.fuzzing.trips import same
@@ -151,11 +151,11 @@ def check_frame(
     encoded = process.do(process.calls.frame(sender.name, message.name, values, parts))
     assert encoded.intact
     if frame is None:
-        assert encoded.result in (RANGE, VALUE), f"{values} {parts}: Python refuses"
+        assert encoded.result == REFUSED, f"{values} {parts}: Python refuses"
         return None
     assert (encoded.result, encoded.data) == (OK, frame), f"{values} {parts}: {frame.hex(' ')}"
     short = process.calls.frame(sender.name, message.name, values, parts, len(frame) - 1)
-    assert process.do(short) == Encoded(SPACE, b"")
+    assert process.do(short) == Encoded(REFUSED, b"")
     if process.calls.sends(sender.name, message.name):
         sent = process.do(process.calls.send(sender.name, message.name, values, parts))
         assert (sent.result, sent.data) == (OK, frame), (values, parts)

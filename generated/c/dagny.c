@@ -574,10 +574,6 @@ enum dagny_result dagny_motor_encode(const struct dagny_motor *message, uint8_t 
     return DAGNY_OK;
 }
 
-void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload) {
-    message->s = payload[0];
-}
-
 enum dagny_result dagny_motor_decode(struct dagny_motor *message, const uint8_t *payload,
                                      size_t size) {
     if (size != 1U) {
@@ -603,10 +599,6 @@ enum dagny_result dagny_steering_encode(const struct dagny_steering *message, ui
     return DAGNY_OK;
 }
 
-void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload) {
-    message->s = payload[0];
-}
-
 enum dagny_result dagny_steering_decode(struct dagny_steering *message, const uint8_t *payload,
                                         size_t size) {
     if (size != 1U) {
@@ -630,10 +622,6 @@ enum dagny_result dagny_reflex_encode(const struct dagny_reflex *message, uint8_
     dagny_reflex_store(message, payload);
     *size = 1U;
     return DAGNY_OK;
-}
-
-void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload) {
-    message->reflex = payload[0];
 }
 
 enum dagny_result dagny_reflex_decode(struct dagny_reflex *message, const uint8_t *payload,
@@ -693,10 +681,6 @@ enum dagny_result dagny_power_encode(const struct dagny_power *message, uint8_t 
     dagny_power_store(message, payload);
     *size = 1U;
     return DAGNY_OK;
-}
-
-void dagny_power_load(struct dagny_power *message, const uint8_t *payload) {
-    message->code = payload[0];
 }
 
 enum dagny_result dagny_power_decode(struct dagny_power *message, const uint8_t *payload,
@@ -896,12 +880,23 @@ static size_t dagny_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
     if (payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, &content[0U], 1U + payload - 0U);
+        sum = dagny_xor_8_run(sum, &content[0U], 1U + payload);
         due = dagny_xor_8_final(sum);
         tail[0U] = (uint8_t)due;
     }
     frame[size] = 0x0AU;
     return size + 1U;
+}
+
+/* The frame of a message that is a byte; returns its size, 0 where it has no room. The byte is the
+   first parameter as the message is that of the caller: then nothing has to be moved. */
+DAGNY_APART size_t dagny_host_wrap_byte(const uint8_t *byte, uint8_t *frame, size_t capacity,
+                                        uint8_t id) {
+    if (capacity < dagny_host_room(1U)) {
+        return 0U;
+    }
+    *dagny_host_payload(frame, 1U) = *byte;
+    return dagny_host_wrap(frame, 1U, id);
 }
 
 /* Whether a decoder would end the frame before its end. */
@@ -972,204 +967,146 @@ DAGNY_INLINE void dagny_power_put(const struct dagny_power *message, struct dagn
     dagny_write(writer, message->code);
 }
 
-enum dagny_result dagny_sonar_frame(const struct dagny_sonar *message, uint8_t *frame,
-                                    size_t capacity, size_t *size) {
+size_t dagny_sonar_frame(const struct dagny_sonar *message, uint8_t *frame, size_t capacity) {
     size_t payload;
-    size_t wire;
-    const enum dagny_result result = dagny_sonar_validate(message);
-    if (result != DAGNY_OK) {
-        return result;
+    size_t size;
+    if (dagny_sonar_validate(message) != DAGNY_OK) {
+        return 0U;
     }
     payload = dagny_sonar_measure(message);
     if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
+        return 0U;
     }
     dagny_sonar_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x53U);
-    if (dagny_host_ends_early(frame, wire)) {
-        return DAGNY_ERROR_VALUE;
-    }
-    *size = wire;
-    return DAGNY_OK;
+    size = dagny_host_wrap(frame, payload, 0x53U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
-enum dagny_result dagny_gps_frame(const struct dagny_gps *message, uint8_t *frame, size_t capacity,
-                                  size_t *size) {
+size_t dagny_gps_frame(const struct dagny_gps *message, uint8_t *frame, size_t capacity) {
     size_t payload;
-    size_t wire;
-    const enum dagny_result result = dagny_gps_validate(message);
-    if (result != DAGNY_OK) {
-        return result;
+    size_t size;
+    if (dagny_gps_validate(message) != DAGNY_OK) {
+        return 0U;
     }
     payload = dagny_gps_measure(message);
     if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
+        return 0U;
     }
     dagny_gps_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x47U);
-    if (dagny_host_ends_early(frame, wire)) {
-        return DAGNY_ERROR_VALUE;
-    }
-    *size = wire;
-    return DAGNY_OK;
+    size = dagny_host_wrap(frame, payload, 0x47U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
-enum dagny_result dagny_bump_frame(const struct dagny_bump *message, uint8_t *frame,
-                                   size_t capacity, size_t *size) {
+size_t dagny_bump_frame(const struct dagny_bump *message, uint8_t *frame, size_t capacity) {
     size_t payload;
-    size_t wire;
-    const enum dagny_result result = dagny_bump_validate(message);
-    if (result != DAGNY_OK) {
-        return result;
+    size_t size;
+    if (dagny_bump_validate(message) != DAGNY_OK) {
+        return 0U;
     }
     payload = dagny_bump_measure(message);
     if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
+        return 0U;
     }
     dagny_bump_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x42U);
-    if (dagny_host_ends_early(frame, wire)) {
-        return DAGNY_ERROR_VALUE;
-    }
-    *size = wire;
-    return DAGNY_OK;
+    size = dagny_host_wrap(frame, payload, 0x42U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
-enum dagny_result dagny_odometry_frame(const struct dagny_odometry *message, uint8_t *frame,
-                                       size_t capacity, size_t *size) {
+size_t dagny_odometry_frame(const struct dagny_odometry *message, uint8_t *frame, size_t capacity) {
     size_t payload;
-    size_t wire;
-    const enum dagny_result result = dagny_odometry_validate(message);
-    if (result != DAGNY_OK) {
-        return result;
+    size_t size;
+    if (dagny_odometry_validate(message) != DAGNY_OK) {
+        return 0U;
     }
     payload = dagny_odometry_measure(message);
     if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
+        return 0U;
     }
     dagny_odometry_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x4FU);
-    if (dagny_host_ends_early(frame, wire)) {
-        return DAGNY_ERROR_VALUE;
-    }
-    *size = wire;
-    return DAGNY_OK;
+    size = dagny_host_wrap(frame, payload, 0x4FU);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
-enum dagny_result dagny_speed_frame(const struct dagny_speed *message, uint8_t *frame,
-                                    size_t capacity, size_t *size) {
+size_t dagny_speed_frame(const struct dagny_speed *message, uint8_t *frame, size_t capacity) {
     size_t payload;
-    size_t wire;
-    const enum dagny_result result = dagny_speed_validate(message);
-    if (result != DAGNY_OK) {
-        return result;
+    size_t size;
+    if (dagny_speed_validate(message) != DAGNY_OK) {
+        return 0U;
     }
     payload = dagny_speed_measure(message);
     if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
+        return 0U;
     }
     dagny_speed_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x4FU);
-    if (dagny_host_ends_early(frame, wire)) {
-        return DAGNY_ERROR_VALUE;
-    }
-    *size = wire;
-    return DAGNY_OK;
+    size = dagny_host_wrap(frame, payload, 0x4FU);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
-enum dagny_result dagny_wheel_slip_frame(const struct dagny_wheel_slip *message, uint8_t *frame,
-                                         size_t capacity, size_t *size) {
+size_t dagny_wheel_slip_frame(const struct dagny_wheel_slip *message, uint8_t *frame,
+                              size_t capacity) {
     size_t payload;
-    size_t wire;
-    const enum dagny_result result = dagny_wheel_slip_validate(message);
-    if (result != DAGNY_OK) {
-        return result;
+    size_t size;
+    if (dagny_wheel_slip_validate(message) != DAGNY_OK) {
+        return 0U;
     }
     payload = dagny_wheel_slip_measure(message);
     if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
+        return 0U;
     }
     dagny_wheel_slip_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x57U);
-    if (dagny_host_ends_early(frame, wire)) {
-        return DAGNY_ERROR_VALUE;
-    }
-    *size = wire;
-    return DAGNY_OK;
+    size = dagny_host_wrap(frame, payload, 0x57U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
-enum dagny_result dagny_battery_frame(const struct dagny_battery *message, uint8_t *frame,
-                                      size_t capacity, size_t *size) {
+size_t dagny_battery_frame(const struct dagny_battery *message, uint8_t *frame, size_t capacity) {
     size_t payload;
-    size_t wire;
-    const enum dagny_result result = dagny_battery_validate(message);
-    if (result != DAGNY_OK) {
-        return result;
+    size_t size;
+    if (dagny_battery_validate(message) != DAGNY_OK) {
+        return 0U;
     }
     payload = dagny_battery_measure(message);
     if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
+        return 0U;
     }
     dagny_battery_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x62U);
-    if (dagny_host_ends_early(frame, wire)) {
-        return DAGNY_ERROR_VALUE;
-    }
-    *size = wire;
-    return DAGNY_OK;
+    size = dagny_host_wrap(frame, payload, 0x62U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
-enum dagny_result dagny_reflex_settings_frame(const struct dagny_reflex_settings *message,
-                                              uint8_t *frame, size_t capacity, size_t *size) {
+size_t dagny_reflex_settings_frame(const struct dagny_reflex_settings *message, uint8_t *frame,
+                                   size_t capacity) {
     size_t payload;
-    size_t wire;
-    const enum dagny_result result = dagny_reflex_settings_validate(message);
-    if (result != DAGNY_OK) {
-        return result;
+    size_t size;
+    if (dagny_reflex_settings_validate(message) != DAGNY_OK) {
+        return 0U;
     }
     payload = dagny_reflex_settings_measure(message);
     if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
+        return 0U;
     }
     dagny_reflex_settings_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x52U);
-    if (dagny_host_ends_early(frame, wire)) {
-        return DAGNY_ERROR_VALUE;
-    }
-    *size = wire;
-    return DAGNY_OK;
+    size = dagny_host_wrap(frame, payload, 0x52U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
-enum dagny_result dagny_hardware_status_frame(const struct dagny_hardware_status *message,
-                                              uint8_t *frame, size_t capacity, size_t *size) {
+size_t dagny_hardware_status_frame(const struct dagny_hardware_status *message, uint8_t *frame,
+                                   size_t capacity) {
     size_t payload;
-    size_t wire;
-    const enum dagny_result result = dagny_hardware_status_validate(message);
-    if (result != DAGNY_OK) {
-        return result;
+    size_t size;
+    if (dagny_hardware_status_validate(message) != DAGNY_OK) {
+        return 0U;
     }
     payload = dagny_hardware_status_measure(message);
     if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
+        return 0U;
     }
     dagny_hardware_status_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x48U);
-    if (dagny_host_ends_early(frame, wire)) {
-        return DAGNY_ERROR_VALUE;
-    }
-    *size = wire;
-    return DAGNY_OK;
+    size = dagny_host_wrap(frame, payload, 0x48U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
-enum dagny_result dagny_motor_frame(const struct dagny_motor *message, uint8_t *frame,
-                                    size_t capacity, size_t *size) {
-    const size_t payload = 1U;
-    if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
-    }
-    dagny_motor_store(message, dagny_host_payload(frame, payload));
-    *size = dagny_host_wrap(frame, payload, 0x4DU);
-    return DAGNY_OK;
+size_t dagny_motor_frame(const struct dagny_motor *message, uint8_t *frame, size_t capacity) {
+    return dagny_host_wrap_byte(&message->s, frame, capacity, 0x4DU);
 }
 
 enum dagny_result dagny_motor_send(const struct dagny_motor *message, dagny_put put, void *user) {
@@ -1185,15 +1122,8 @@ enum dagny_result dagny_motor_send(const struct dagny_motor *message, dagny_put 
     return DAGNY_OK;
 }
 
-enum dagny_result dagny_steering_frame(const struct dagny_steering *message, uint8_t *frame,
-                                       size_t capacity, size_t *size) {
-    const size_t payload = 1U;
-    if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
-    }
-    dagny_steering_store(message, dagny_host_payload(frame, payload));
-    *size = dagny_host_wrap(frame, payload, 0x53U);
-    return DAGNY_OK;
+size_t dagny_steering_frame(const struct dagny_steering *message, uint8_t *frame, size_t capacity) {
+    return dagny_host_wrap_byte(&message->s, frame, capacity, 0x53U);
 }
 
 enum dagny_result dagny_steering_send(const struct dagny_steering *message, dagny_put put,
@@ -1210,15 +1140,8 @@ enum dagny_result dagny_steering_send(const struct dagny_steering *message, dagn
     return DAGNY_OK;
 }
 
-enum dagny_result dagny_reflex_frame(const struct dagny_reflex *message, uint8_t *frame,
-                                     size_t capacity, size_t *size) {
-    const size_t payload = 1U;
-    if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
-    }
-    dagny_reflex_store(message, dagny_host_payload(frame, payload));
-    *size = dagny_host_wrap(frame, payload, 0x52U);
-    return DAGNY_OK;
+size_t dagny_reflex_frame(const struct dagny_reflex *message, uint8_t *frame, size_t capacity) {
+    return dagny_host_wrap_byte(&message->reflex, frame, capacity, 0x52U);
 }
 
 enum dagny_result dagny_reflex_send(const struct dagny_reflex *message, dagny_put put, void *user) {
@@ -1234,30 +1157,19 @@ enum dagny_result dagny_reflex_send(const struct dagny_reflex *message, dagny_pu
     return DAGNY_OK;
 }
 
-enum dagny_result dagny_power_down_frame(uint8_t *frame, size_t capacity, size_t *size) {
+size_t dagny_power_down_frame(uint8_t *frame, size_t capacity) {
     const size_t payload = 1U;
-    size_t wire;
+    size_t size;
     if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
+        return 0U;
     }
     dagny_power_down_store(dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x50U);
-    if (dagny_host_ends_early(frame, wire)) {
-        return DAGNY_ERROR_VALUE;
-    }
-    *size = wire;
-    return DAGNY_OK;
+    size = dagny_host_wrap(frame, payload, 0x50U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
-enum dagny_result dagny_power_frame(const struct dagny_power *message, uint8_t *frame,
-                                    size_t capacity, size_t *size) {
-    const size_t payload = 1U;
-    if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
-    }
-    dagny_power_store(message, dagny_host_payload(frame, payload));
-    *size = dagny_host_wrap(frame, payload, 0x50U);
-    return DAGNY_OK;
+size_t dagny_power_frame(const struct dagny_power *message, uint8_t *frame, size_t capacity) {
+    return dagny_host_wrap_byte(&message->code, frame, capacity, 0x50U);
 }
 
 enum dagny_result dagny_power_send(const struct dagny_power *message, dagny_put put, void *user) {
@@ -1273,46 +1185,34 @@ enum dagny_result dagny_power_send(const struct dagny_power *message, dagny_put 
     return DAGNY_OK;
 }
 
-enum dagny_result dagny_laser_frame(const struct dagny_laser *message, uint8_t *frame,
-                                    size_t capacity, size_t *size) {
+size_t dagny_laser_frame(const struct dagny_laser *message, uint8_t *frame, size_t capacity) {
     size_t payload;
-    size_t wire;
-    const enum dagny_result result = dagny_laser_validate(message);
-    if (result != DAGNY_OK) {
-        return result;
+    size_t size;
+    if (dagny_laser_validate(message) != DAGNY_OK) {
+        return 0U;
     }
     payload = dagny_laser_measure(message);
     if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
+        return 0U;
     }
     dagny_laser_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x4CU);
-    if (dagny_host_ends_early(frame, wire)) {
-        return DAGNY_ERROR_VALUE;
-    }
-    *size = wire;
-    return DAGNY_OK;
+    size = dagny_host_wrap(frame, payload, 0x4CU);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
-enum dagny_result dagny_command_frame(const struct dagny_command *message, uint8_t *frame,
-                                      size_t capacity, size_t *size) {
+size_t dagny_command_frame(const struct dagny_command *message, uint8_t *frame, size_t capacity) {
     size_t payload;
-    size_t wire;
-    const enum dagny_result result = dagny_command_validate(message);
-    if (result != DAGNY_OK) {
-        return result;
+    size_t size;
+    if (dagny_command_validate(message) != DAGNY_OK) {
+        return 0U;
     }
     payload = dagny_command_measure(message);
     if (capacity < dagny_host_room(payload)) {
-        return DAGNY_ERROR_SPACE;
+        return 0U;
     }
     dagny_command_store(message, dagny_host_payload(frame, payload));
-    wire = dagny_host_wrap(frame, payload, 0x43U);
-    if (dagny_host_ends_early(frame, wire)) {
-        return DAGNY_ERROR_VALUE;
-    }
-    *size = wire;
-    return DAGNY_OK;
+    size = dagny_host_wrap(frame, payload, 0x43U);
+    return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
 /* --- what host sends: the decoder ------------------------------------------------------------- */
@@ -1395,7 +1295,7 @@ static uint8_t dagny_host_complete(struct dagny_host_decoder *decoder) {
     if (decoder->payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload - 0U);
+        sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload);
         due = dagny_xor_8_final(sum);
         if (content[1U + decoder->payload] != due) {
             return DAGNY_CHECKSUM;
@@ -1869,7 +1769,7 @@ static uint8_t dagny_robot_complete(struct dagny_robot_decoder *decoder) {
     if (decoder->payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload - 0U);
+        sum = dagny_xor_8_run(sum, &content[0U], 1U + (size_t)decoder->payload);
         due = dagny_xor_8_final(sum);
         if (content[1U + decoder->payload] != due) {
             return DAGNY_CHECKSUM;

@@ -362,7 +362,9 @@ DAGNY_API enum dagny_result dagny_motor_encode(const struct dagny_motor *message
                                                size_t capacity, size_t *size);
 DAGNY_API enum dagny_result dagny_motor_decode(struct dagny_motor *message, const uint8_t *payload,
                                                size_t size);
-DAGNY_API void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload);
+static inline void dagny_motor_load(struct dagny_motor *message, const uint8_t *payload) {
+    message->s = payload[0];
+}
 
 /* --- steering --------------------------------------------------------------------------------- */
 
@@ -384,7 +386,9 @@ DAGNY_API enum dagny_result dagny_steering_encode(const struct dagny_steering *m
                                                   uint8_t *payload, size_t capacity, size_t *size);
 DAGNY_API enum dagny_result dagny_steering_decode(struct dagny_steering *message,
                                                   const uint8_t *payload, size_t size);
-DAGNY_API void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload);
+static inline void dagny_steering_load(struct dagny_steering *message, const uint8_t *payload) {
+    message->s = payload[0];
+}
 
 /* --- reflex ----------------------------------------------------------------------------------- */
 
@@ -411,7 +415,9 @@ DAGNY_API enum dagny_result dagny_reflex_encode(const struct dagny_reflex *messa
                                                 uint8_t *payload, size_t capacity, size_t *size);
 DAGNY_API enum dagny_result dagny_reflex_decode(struct dagny_reflex *message,
                                                 const uint8_t *payload, size_t size);
-DAGNY_API void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload);
+static inline void dagny_reflex_load(struct dagny_reflex *message, const uint8_t *payload) {
+    message->reflex = payload[0];
+}
 
 /** What to do with the reflex; bits 6 to 7 of reflex. */
 #define DAGNY_REFLEX_REFLEX_COMMAND_MASK 0xC0U
@@ -470,7 +476,9 @@ DAGNY_API enum dagny_result dagny_power_encode(const struct dagny_power *message
                                                size_t capacity, size_t *size);
 DAGNY_API enum dagny_result dagny_power_decode(struct dagny_power *message, const uint8_t *payload,
                                                size_t size);
-DAGNY_API void dagny_power_load(struct dagny_power *message, const uint8_t *payload);
+static inline void dagny_power_load(struct dagny_power *message, const uint8_t *payload) {
+    message->code = payload[0];
+}
 
 /* --- laser ------------------------------------------------------------------------------------ */
 
@@ -536,10 +544,10 @@ DAGNY_API void dagny_command_load(struct dagny_command *message, const uint8_t *
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
- * most `capacity` bytes and says in `size` how many the frame has. A buffer of ..._FRAME_ROOM bytes
- * always suffices; for a shorter payload less does, but the buffer has to take the most that its
- * bytes can need.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
+ * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
+ * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
+ * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
  */
 
@@ -586,107 +594,104 @@ static inline bool dagny_transmitted(struct dagny_transmission *frame) {
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_SONAR_FRAME_MAX 131U
 #define DAGNY_SONAR_FRAME_ROOM 131U
-DAGNY_API enum dagny_result dagny_sonar_frame(const struct dagny_sonar *message, uint8_t *frame,
-                                              size_t capacity, size_t *size);
+DAGNY_API size_t dagny_sonar_frame(const struct dagny_sonar *message, uint8_t *frame,
+                                   size_t capacity);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_GPS_FRAME_MAX 131U
 #define DAGNY_GPS_FRAME_ROOM 131U
-DAGNY_API enum dagny_result dagny_gps_frame(const struct dagny_gps *message, uint8_t *frame,
-                                            size_t capacity, size_t *size);
+DAGNY_API size_t dagny_gps_frame(const struct dagny_gps *message, uint8_t *frame, size_t capacity);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_BUMP_FRAME_MAX 131U
 #define DAGNY_BUMP_FRAME_ROOM 131U
-DAGNY_API enum dagny_result dagny_bump_frame(const struct dagny_bump *message, uint8_t *frame,
-                                             size_t capacity, size_t *size);
+DAGNY_API size_t dagny_bump_frame(const struct dagny_bump *message, uint8_t *frame,
+                                  size_t capacity);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_ODOMETRY_FRAME_MAX 131U
 #define DAGNY_ODOMETRY_FRAME_ROOM 131U
-DAGNY_API enum dagny_result dagny_odometry_frame(const struct dagny_odometry *message,
-                                                 uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_API size_t dagny_odometry_frame(const struct dagny_odometry *message, uint8_t *frame,
+                                      size_t capacity);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_SPEED_FRAME_MAX 131U
 #define DAGNY_SPEED_FRAME_ROOM 131U
-DAGNY_API enum dagny_result dagny_speed_frame(const struct dagny_speed *message, uint8_t *frame,
-                                              size_t capacity, size_t *size);
+DAGNY_API size_t dagny_speed_frame(const struct dagny_speed *message, uint8_t *frame,
+                                   size_t capacity);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_WHEEL_SLIP_FRAME_MAX 131U
 #define DAGNY_WHEEL_SLIP_FRAME_ROOM 131U
-DAGNY_API enum dagny_result dagny_wheel_slip_frame(const struct dagny_wheel_slip *message,
-                                                   uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_API size_t dagny_wheel_slip_frame(const struct dagny_wheel_slip *message, uint8_t *frame,
+                                        size_t capacity);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_BATTERY_FRAME_MAX 131U
 #define DAGNY_BATTERY_FRAME_ROOM 131U
-DAGNY_API enum dagny_result dagny_battery_frame(const struct dagny_battery *message, uint8_t *frame,
-                                                size_t capacity, size_t *size);
+DAGNY_API size_t dagny_battery_frame(const struct dagny_battery *message, uint8_t *frame,
+                                     size_t capacity);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_REFLEX_SETTINGS_FRAME_MAX 131U
 #define DAGNY_REFLEX_SETTINGS_FRAME_ROOM 131U
-DAGNY_API enum dagny_result dagny_reflex_settings_frame(const struct dagny_reflex_settings *message,
-                                                        uint8_t *frame, size_t capacity,
-                                                        size_t *size);
+DAGNY_API size_t dagny_reflex_settings_frame(const struct dagny_reflex_settings *message,
+                                             uint8_t *frame, size_t capacity);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_HARDWARE_STATUS_FRAME_MAX 131U
 #define DAGNY_HARDWARE_STATUS_FRAME_ROOM 131U
-DAGNY_API enum dagny_result dagny_hardware_status_frame(const struct dagny_hardware_status *message,
-                                                        uint8_t *frame, size_t capacity,
-                                                        size_t *size);
+DAGNY_API size_t dagny_hardware_status_frame(const struct dagny_hardware_status *message,
+                                             uint8_t *frame, size_t capacity);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_MOTOR_FRAME_MAX 4U
 #define DAGNY_MOTOR_FRAME_ROOM 4U
-DAGNY_API enum dagny_result dagny_motor_frame(const struct dagny_motor *message, uint8_t *frame,
-                                              size_t capacity, size_t *size);
+DAGNY_API size_t dagny_motor_frame(const struct dagny_motor *message, uint8_t *frame,
+                                   size_t capacity);
 DAGNY_API enum dagny_result dagny_motor_send(const struct dagny_motor *message, dagny_put put,
                                              void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_STEERING_FRAME_MAX 4U
 #define DAGNY_STEERING_FRAME_ROOM 4U
-DAGNY_API enum dagny_result dagny_steering_frame(const struct dagny_steering *message,
-                                                 uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_API size_t dagny_steering_frame(const struct dagny_steering *message, uint8_t *frame,
+                                      size_t capacity);
 DAGNY_API enum dagny_result dagny_steering_send(const struct dagny_steering *message, dagny_put put,
                                                 void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_REFLEX_FRAME_MAX 4U
 #define DAGNY_REFLEX_FRAME_ROOM 4U
-DAGNY_API enum dagny_result dagny_reflex_frame(const struct dagny_reflex *message, uint8_t *frame,
-                                               size_t capacity, size_t *size);
+DAGNY_API size_t dagny_reflex_frame(const struct dagny_reflex *message, uint8_t *frame,
+                                    size_t capacity);
 DAGNY_API enum dagny_result dagny_reflex_send(const struct dagny_reflex *message, dagny_put put,
                                               void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_POWER_DOWN_FRAME_MAX 4U
 #define DAGNY_POWER_DOWN_FRAME_ROOM 4U
-DAGNY_API enum dagny_result dagny_power_down_frame(uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_API size_t dagny_power_down_frame(uint8_t *frame, size_t capacity);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_POWER_FRAME_MAX 4U
 #define DAGNY_POWER_FRAME_ROOM 4U
-DAGNY_API enum dagny_result dagny_power_frame(const struct dagny_power *message, uint8_t *frame,
-                                              size_t capacity, size_t *size);
+DAGNY_API size_t dagny_power_frame(const struct dagny_power *message, uint8_t *frame,
+                                   size_t capacity);
 DAGNY_API enum dagny_result dagny_power_send(const struct dagny_power *message, dagny_put put,
                                              void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LASER_FRAME_MAX 515U
 #define DAGNY_LASER_FRAME_ROOM 515U
-DAGNY_API enum dagny_result dagny_laser_frame(const struct dagny_laser *message, uint8_t *frame,
-                                              size_t capacity, size_t *size);
+DAGNY_API size_t dagny_laser_frame(const struct dagny_laser *message, uint8_t *frame,
+                                   size_t capacity);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_COMMAND_FRAME_MAX 131U
 #define DAGNY_COMMAND_FRAME_ROOM 131U
-DAGNY_API enum dagny_result dagny_command_frame(const struct dagny_command *message, uint8_t *frame,
-                                                size_t capacity, size_t *size);
+DAGNY_API size_t dagny_command_frame(const struct dagny_command *message, uint8_t *frame,
+                                     size_t capacity);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
 
@@ -1047,10 +1052,10 @@ DAGNY_API const char *dagny_reflex_reflex_command_name(uint8_t value);
 DAGNY_API const char *dagny_power_code_name(uint8_t value);
 
 /*
- * Where a function returned DAGNY_ERROR_RANGE: the first member whose value, or number of
- * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
- * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
- * A message that can always be sent has no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
+ * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
+ * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
+ * no such function.
  */
 DAGNY_API const char *dagny_sonar_refused(const struct dagny_sonar *message);
 DAGNY_API const char *dagny_gps_refused(const struct dagny_gps *message);

@@ -395,10 +395,6 @@ enum dagny_library_result dagny_library_steering_encode(
     return DAGNY_LIBRARY_OK;
 }
 
-void dagny_library_steering_load(struct dagny_library_steering *message, const uint8_t *payload) {
-    message->position = payload[0];
-}
-
 enum dagny_library_result dagny_library_steering_decode(struct dagny_library_steering *message,
                                                         const uint8_t *payload, size_t size) {
     if (size != 1U) {
@@ -424,10 +420,6 @@ enum dagny_library_result dagny_library_power_encode(const struct dagny_library_
     dagny_library_power_store(message, payload);
     *size = 1U;
     return DAGNY_LIBRARY_OK;
-}
-
-void dagny_library_power_load(struct dagny_library_power *message, const uint8_t *payload) {
-    message->code = payload[0];
 }
 
 enum dagny_library_result dagny_library_power_decode(struct dagny_library_power *message,
@@ -694,6 +686,17 @@ static size_t dagny_library_host_wrap(uint8_t *frame, size_t payload, uint8_t id
     return (size_t)written;
 }
 
+/* The frame of a message that is a byte; returns its size, 0 where it has no room. The byte is the
+   first parameter as the message is that of the caller: then nothing has to be moved. */
+DAGNY_LIBRARY_APART size_t dagny_library_host_wrap_byte(const uint8_t *byte, uint8_t *frame,
+                                                        size_t capacity, uint8_t id) {
+    if (capacity < dagny_library_host_room(1U)) {
+        return 0U;
+    }
+    *dagny_library_host_payload(frame, 1U) = *byte;
+    return dagny_library_host_wrap(frame, 1U, id);
+}
+
 /* --- frames, byte by byte --------------------------------------------------------------------- */
 
 struct dagny_library_writer {
@@ -833,15 +836,14 @@ DAGNY_LIBRARY_INLINE void dagny_library_shutdown_put(struct dagny_library_writer
     dagny_library_write(writer, 0x5AU);
 }
 
-enum dagny_library_result dagny_library_sonar_frame(const struct dagny_library_sonar *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size) {
+size_t dagny_library_sonar_frame(const struct dagny_library_sonar *message, uint8_t *frame,
+                                 size_t capacity) {
     const size_t payload = 5U;
     if (capacity < dagny_library_host_room(payload)) {
-        return DAGNY_LIBRARY_ERROR_SPACE;
+        return 0U;
     }
     dagny_library_sonar_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x53U);
-    return DAGNY_LIBRARY_OK;
+    return dagny_library_host_wrap(frame, payload, 0x53U);
 }
 
 enum dagny_library_result dagny_library_sonar_send(const struct dagny_library_sonar *message,
@@ -858,29 +860,26 @@ enum dagny_library_result dagny_library_sonar_send(const struct dagny_library_so
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_gps_frame(const struct dagny_library_gps *message,
-                                                  uint8_t *frame, size_t capacity, size_t *size) {
+size_t dagny_library_gps_frame(const struct dagny_library_gps *message, uint8_t *frame,
+                               size_t capacity) {
     size_t payload;
-    const enum dagny_library_result result = dagny_library_gps_validate(message);
-    if (result != DAGNY_LIBRARY_OK) {
-        return result;
+    if (dagny_library_gps_validate(message) != DAGNY_LIBRARY_OK) {
+        return 0U;
     }
     payload = dagny_library_gps_measure(message);
     if (capacity < dagny_library_host_room(payload)) {
-        return DAGNY_LIBRARY_ERROR_SPACE;
+        return 0U;
     }
     dagny_library_gps_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x47U);
-    return DAGNY_LIBRARY_OK;
+    return dagny_library_host_wrap(frame, payload, 0x47U);
 }
 
 enum dagny_library_result dagny_library_gps_send(const struct dagny_library_gps *message,
                                                  dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
     size_t payload;
-    const enum dagny_library_result result = dagny_library_gps_validate(message);
-    if (result != DAGNY_LIBRARY_OK) {
-        return result;
+    if (dagny_library_gps_validate(message) != DAGNY_LIBRARY_OK) {
+        return DAGNY_LIBRARY_ERROR_RANGE;
     }
     payload = dagny_library_gps_measure(message);
     writer.put = put;
@@ -893,16 +892,14 @@ enum dagny_library_result dagny_library_gps_send(const struct dagny_library_gps 
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_odometry_frame(const struct dagny_library_odometry *message,
-                                                       uint8_t *frame, size_t capacity,
-                                                       size_t *size) {
+size_t dagny_library_odometry_frame(const struct dagny_library_odometry *message, uint8_t *frame,
+                                    size_t capacity) {
     const size_t payload = 13U;
     if (capacity < dagny_library_host_room(payload)) {
-        return DAGNY_LIBRARY_ERROR_SPACE;
+        return 0U;
     }
     dagny_library_odometry_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x4FU);
-    return DAGNY_LIBRARY_OK;
+    return dagny_library_host_wrap(frame, payload, 0x4FU);
 }
 
 enum dagny_library_result dagny_library_odometry_send(const struct dagny_library_odometry *message,
@@ -919,16 +916,14 @@ enum dagny_library_result dagny_library_odometry_send(const struct dagny_library
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_battery_frame(const struct dagny_library_battery *message,
-                                                      uint8_t *frame, size_t capacity,
-                                                      size_t *size) {
+size_t dagny_library_battery_frame(const struct dagny_library_battery *message, uint8_t *frame,
+                                   size_t capacity) {
     const size_t payload = 6U;
     if (capacity < dagny_library_host_room(payload)) {
-        return DAGNY_LIBRARY_ERROR_SPACE;
+        return 0U;
     }
     dagny_library_battery_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x62U);
-    return DAGNY_LIBRARY_OK;
+    return dagny_library_host_wrap(frame, payload, 0x62U);
 }
 
 enum dagny_library_result dagny_library_battery_send(const struct dagny_library_battery *message,
@@ -945,16 +940,14 @@ enum dagny_library_result dagny_library_battery_send(const struct dagny_library_
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_compass_frame(const struct dagny_library_compass *message,
-                                                      uint8_t *frame, size_t capacity,
-                                                      size_t *size) {
+size_t dagny_library_compass_frame(const struct dagny_library_compass *message, uint8_t *frame,
+                                   size_t capacity) {
     const size_t payload = 4U;
     if (capacity < dagny_library_host_room(payload)) {
-        return DAGNY_LIBRARY_ERROR_SPACE;
+        return 0U;
     }
     dagny_library_compass_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x43U);
-    return DAGNY_LIBRARY_OK;
+    return dagny_library_host_wrap(frame, payload, 0x43U);
 }
 
 enum dagny_library_result dagny_library_compass_send(const struct dagny_library_compass *message,
@@ -971,15 +964,14 @@ enum dagny_library_result dagny_library_compass_send(const struct dagny_library_
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_motor_frame(const struct dagny_library_motor *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size) {
+size_t dagny_library_motor_frame(const struct dagny_library_motor *message, uint8_t *frame,
+                                 size_t capacity) {
     const size_t payload = 1U;
     if (capacity < dagny_library_host_room(payload)) {
-        return DAGNY_LIBRARY_ERROR_SPACE;
+        return 0U;
     }
     dagny_library_motor_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x4DU);
-    return DAGNY_LIBRARY_OK;
+    return dagny_library_host_wrap(frame, payload, 0x4DU);
 }
 
 enum dagny_library_result dagny_library_motor_send(const struct dagny_library_motor *message,
@@ -996,15 +988,14 @@ enum dagny_library_result dagny_library_motor_send(const struct dagny_library_mo
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_drive_frame(const struct dagny_library_drive *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size) {
+size_t dagny_library_drive_frame(const struct dagny_library_drive *message, uint8_t *frame,
+                                 size_t capacity) {
     const size_t payload = 2U;
     if (capacity < dagny_library_host_room(payload)) {
-        return DAGNY_LIBRARY_ERROR_SPACE;
+        return 0U;
     }
     dagny_library_drive_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x4DU);
-    return DAGNY_LIBRARY_OK;
+    return dagny_library_host_wrap(frame, payload, 0x4DU);
 }
 
 enum dagny_library_result dagny_library_drive_send(const struct dagny_library_drive *message,
@@ -1021,16 +1012,9 @@ enum dagny_library_result dagny_library_drive_send(const struct dagny_library_dr
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_steering_frame(const struct dagny_library_steering *message,
-                                                       uint8_t *frame, size_t capacity,
-                                                       size_t *size) {
-    const size_t payload = 1U;
-    if (capacity < dagny_library_host_room(payload)) {
-        return DAGNY_LIBRARY_ERROR_SPACE;
-    }
-    dagny_library_steering_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x53U);
-    return DAGNY_LIBRARY_OK;
+size_t dagny_library_steering_frame(const struct dagny_library_steering *message, uint8_t *frame,
+                                    size_t capacity) {
+    return dagny_library_host_wrap_byte(&message->position, frame, capacity, 0x53U);
 }
 
 enum dagny_library_result dagny_library_steering_send(const struct dagny_library_steering *message,
@@ -1047,15 +1031,9 @@ enum dagny_library_result dagny_library_steering_send(const struct dagny_library
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_power_frame(const struct dagny_library_power *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size) {
-    const size_t payload = 1U;
-    if (capacity < dagny_library_host_room(payload)) {
-        return DAGNY_LIBRARY_ERROR_SPACE;
-    }
-    dagny_library_power_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x50U);
-    return DAGNY_LIBRARY_OK;
+size_t dagny_library_power_frame(const struct dagny_library_power *message, uint8_t *frame,
+                                 size_t capacity) {
+    return dagny_library_host_wrap_byte(&message->code, frame, capacity, 0x50U);
 }
 
 enum dagny_library_result dagny_library_power_send(const struct dagny_library_power *message,
@@ -1072,16 +1050,14 @@ enum dagny_library_result dagny_library_power_send(const struct dagny_library_po
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_gps_position_frame(
-    const struct dagny_library_gps_position *message, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t dagny_library_gps_position_frame(const struct dagny_library_gps_position *message,
+                                        uint8_t *frame, size_t capacity) {
     const size_t payload = 8U;
     if (capacity < dagny_library_host_room(payload)) {
-        return DAGNY_LIBRARY_ERROR_SPACE;
+        return 0U;
     }
     dagny_library_gps_position_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x47U);
-    return DAGNY_LIBRARY_OK;
+    return dagny_library_host_wrap(frame, payload, 0x47U);
 }
 
 enum dagny_library_result dagny_library_gps_position_send(
@@ -1098,29 +1074,26 @@ enum dagny_library_result dagny_library_gps_position_send(
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_laser_frame(const struct dagny_library_laser *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size) {
+size_t dagny_library_laser_frame(const struct dagny_library_laser *message, uint8_t *frame,
+                                 size_t capacity) {
     size_t payload;
-    const enum dagny_library_result result = dagny_library_laser_validate(message);
-    if (result != DAGNY_LIBRARY_OK) {
-        return result;
+    if (dagny_library_laser_validate(message) != DAGNY_LIBRARY_OK) {
+        return 0U;
     }
     payload = dagny_library_laser_measure(message);
     if (capacity < dagny_library_host_room(payload)) {
-        return DAGNY_LIBRARY_ERROR_SPACE;
+        return 0U;
     }
     dagny_library_laser_store(message, dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x4CU);
-    return DAGNY_LIBRARY_OK;
+    return dagny_library_host_wrap(frame, payload, 0x4CU);
 }
 
 enum dagny_library_result dagny_library_laser_send(const struct dagny_library_laser *message,
                                                    dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
     size_t payload;
-    const enum dagny_library_result result = dagny_library_laser_validate(message);
-    if (result != DAGNY_LIBRARY_OK) {
-        return result;
+    if (dagny_library_laser_validate(message) != DAGNY_LIBRARY_OK) {
+        return DAGNY_LIBRARY_ERROR_RANGE;
     }
     payload = dagny_library_laser_measure(message);
     writer.put = put;
@@ -1133,15 +1106,13 @@ enum dagny_library_result dagny_library_laser_send(const struct dagny_library_la
     return DAGNY_LIBRARY_OK;
 }
 
-enum dagny_library_result dagny_library_shutdown_frame(uint8_t *frame, size_t capacity,
-                                                       size_t *size) {
+size_t dagny_library_shutdown_frame(uint8_t *frame, size_t capacity) {
     const size_t payload = 7U;
     if (capacity < dagny_library_host_room(payload)) {
-        return DAGNY_LIBRARY_ERROR_SPACE;
+        return 0U;
     }
     dagny_library_shutdown_store(dagny_library_host_payload(frame, payload));
-    *size = dagny_library_host_wrap(frame, payload, 0x5AU);
-    return DAGNY_LIBRARY_OK;
+    return dagny_library_host_wrap(frame, payload, 0x5AU);
 }
 
 enum dagny_library_result dagny_library_shutdown_send(dagny_library_put put, void *user) {
@@ -1274,7 +1245,7 @@ static uint8_t dagny_library_host_surplus(const struct dagny_library_host_decode
 static void dagny_library_host_set_payload(struct dagny_library_host_decoder *decoder,
                                            uint16_t size) {
     decoder->payload = size;
-    decoder->limit = (uint16_t)(1U + size + 0U);
+    decoder->limit = (uint16_t)(1U + size);
     decoder->flags |= DAGNY_LIBRARY_KNOWN;
 }
 
@@ -1660,7 +1631,7 @@ static uint8_t dagny_library_robot_surplus(const struct dagny_library_robot_deco
 static void dagny_library_robot_set_payload(struct dagny_library_robot_decoder *decoder,
                                             uint16_t size) {
     decoder->payload = size;
-    decoder->limit = (uint16_t)(1U + size + 0U);
+    decoder->limit = (uint16_t)(1U + size);
     decoder->flags |= DAGNY_LIBRARY_KNOWN;
 }
 

@@ -400,8 +400,10 @@ DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_encode(
     const struct dagny_library_steering *message, uint8_t *payload, size_t capacity, size_t *size);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_decode(
     struct dagny_library_steering *message, const uint8_t *payload, size_t size);
-DAGNY_LIBRARY_API void dagny_library_steering_load(struct dagny_library_steering *message,
-                                                   const uint8_t *payload);
+static inline void dagny_library_steering_load(struct dagny_library_steering *message,
+                                               const uint8_t *payload) {
+    message->position = payload[0];
+}
 
 /* --- power ------------------------------------------------------------------------------------ */
 
@@ -428,8 +430,10 @@ DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_encode(
     const struct dagny_library_power *message, uint8_t *payload, size_t capacity, size_t *size);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_decode(
     struct dagny_library_power *message, const uint8_t *payload, size_t size);
-DAGNY_LIBRARY_API void dagny_library_power_load(struct dagny_library_power *message,
-                                                const uint8_t *payload);
+static inline void dagny_library_power_load(struct dagny_library_power *message,
+                                            const uint8_t *payload) {
+    message->code = payload[0];
+}
 
 /* --- gps_position ----------------------------------------------------------------------------- */
 
@@ -536,10 +540,10 @@ DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_decode(const 
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
- * most `capacity` bytes and says in `size` how many the frame has. A buffer of ..._FRAME_ROOM bytes
- * always suffices; for a shorter payload less does, but the buffer has to take the most that its
- * bytes can need.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
+ * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
+ * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
+ * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
  */
 
@@ -586,98 +590,95 @@ static inline bool dagny_library_transmitted(struct dagny_library_transmission *
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_SONAR_FRAME_MAX 12U
 #define DAGNY_LIBRARY_SONAR_FRAME_ROOM 13U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_sonar_frame(
-    const struct dagny_library_sonar *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API size_t dagny_library_sonar_frame(const struct dagny_library_sonar *message,
+                                                   uint8_t *frame, size_t capacity);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_sonar_send(
     const struct dagny_library_sonar *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_GPS_FRAME_MAX 254U
 #define DAGNY_LIBRARY_GPS_FRAME_ROOM 255U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_frame(
-    const struct dagny_library_gps *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API size_t dagny_library_gps_frame(const struct dagny_library_gps *message,
+                                                 uint8_t *frame, size_t capacity);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_send(
     const struct dagny_library_gps *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_ODOMETRY_FRAME_MAX 28U
 #define DAGNY_LIBRARY_ODOMETRY_FRAME_ROOM 29U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_odometry_frame(
-    const struct dagny_library_odometry *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API size_t dagny_library_odometry_frame(const struct dagny_library_odometry *message,
+                                                      uint8_t *frame, size_t capacity);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_odometry_send(
     const struct dagny_library_odometry *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_BATTERY_FRAME_MAX 14U
 #define DAGNY_LIBRARY_BATTERY_FRAME_ROOM 15U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_battery_frame(
-    const struct dagny_library_battery *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API size_t dagny_library_battery_frame(const struct dagny_library_battery *message,
+                                                     uint8_t *frame, size_t capacity);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_battery_send(
     const struct dagny_library_battery *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_COMPASS_FRAME_MAX 10U
 #define DAGNY_LIBRARY_COMPASS_FRAME_ROOM 11U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_compass_frame(
-    const struct dagny_library_compass *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API size_t dagny_library_compass_frame(const struct dagny_library_compass *message,
+                                                     uint8_t *frame, size_t capacity);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_compass_send(
     const struct dagny_library_compass *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_MOTOR_FRAME_MAX 4U
 #define DAGNY_LIBRARY_MOTOR_FRAME_ROOM 5U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_motor_frame(
-    const struct dagny_library_motor *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API size_t dagny_library_motor_frame(const struct dagny_library_motor *message,
+                                                   uint8_t *frame, size_t capacity);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_motor_send(
     const struct dagny_library_motor *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_DRIVE_FRAME_MAX 6U
 #define DAGNY_LIBRARY_DRIVE_FRAME_ROOM 7U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_drive_frame(
-    const struct dagny_library_drive *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API size_t dagny_library_drive_frame(const struct dagny_library_drive *message,
+                                                   uint8_t *frame, size_t capacity);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_drive_send(
     const struct dagny_library_drive *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_STEERING_FRAME_MAX 4U
 #define DAGNY_LIBRARY_STEERING_FRAME_ROOM 5U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_frame(
-    const struct dagny_library_steering *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API size_t dagny_library_steering_frame(const struct dagny_library_steering *message,
+                                                      uint8_t *frame, size_t capacity);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_send(
     const struct dagny_library_steering *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_POWER_FRAME_MAX 4U
 #define DAGNY_LIBRARY_POWER_FRAME_ROOM 5U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_frame(
-    const struct dagny_library_power *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API size_t dagny_library_power_frame(const struct dagny_library_power *message,
+                                                   uint8_t *frame, size_t capacity);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_send(
     const struct dagny_library_power *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_GPS_POSITION_FRAME_MAX 18U
 #define DAGNY_LIBRARY_GPS_POSITION_FRAME_ROOM 19U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_position_frame(
-    const struct dagny_library_gps_position *message, uint8_t *frame, size_t capacity,
-    size_t *size);
+DAGNY_LIBRARY_API size_t dagny_library_gps_position_frame(
+    const struct dagny_library_gps_position *message, uint8_t *frame, size_t capacity);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_gps_position_send(
     const struct dagny_library_gps_position *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_LASER_FRAME_MAX 1026U
 #define DAGNY_LIBRARY_LASER_FRAME_ROOM 1027U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_laser_frame(
-    const struct dagny_library_laser *message, uint8_t *frame, size_t capacity, size_t *size);
+DAGNY_LIBRARY_API size_t dagny_library_laser_frame(const struct dagny_library_laser *message,
+                                                   uint8_t *frame, size_t capacity);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_laser_send(
     const struct dagny_library_laser *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_SHUTDOWN_FRAME_MAX 16U
 #define DAGNY_LIBRARY_SHUTDOWN_FRAME_ROOM 17U
-DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_frame(uint8_t *frame,
-                                                                         size_t capacity,
-                                                                         size_t *size);
+DAGNY_LIBRARY_API size_t dagny_library_shutdown_frame(uint8_t *frame, size_t capacity);
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_send(dagny_library_put put,
                                                                         void *user);
 
@@ -1023,10 +1024,10 @@ DAGNY_LIBRARY_API const char *dagny_library_reason_name(enum dagny_library_reaso
 DAGNY_LIBRARY_API const char *dagny_library_power_code_name(uint8_t value);
 
 /*
- * Where a function returned DAGNY_LIBRARY_ERROR_RANGE: the first member whose value, or number of
- * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
- * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
- * A message that can always be sent has no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
+ * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
+ * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
+ * no such function.
  */
 DAGNY_LIBRARY_API const char *dagny_library_gps_refused(const struct dagny_library_gps *message);
 DAGNY_LIBRARY_API const char *dagny_library_laser_refused(

@@ -140,10 +140,6 @@ enum matty_result matty_mode_encode(const struct matty_mode *message, uint8_t *p
     return MATTY_OK;
 }
 
-void matty_mode_load(struct matty_mode *message, const uint8_t *payload) {
-    message->mode = payload[0];
-}
-
 enum matty_result matty_mode_decode(struct matty_mode *message, const uint8_t *payload,
                                     size_t size) {
     if (size != 1U) {
@@ -259,10 +255,6 @@ enum matty_result matty_gps_mode_encode(const struct matty_gps_mode *message, ui
     matty_gps_mode_store(message, payload);
     *size = 1U;
     return MATTY_OK;
-}
-
-void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload) {
-    message->mode = payload[0];
 }
 
 enum matty_result matty_gps_mode_decode(struct matty_gps_mode *message, const uint8_t *payload,
@@ -755,14 +747,13 @@ MATTY_INLINE void matty_gps_put(const struct matty_gps *message, struct matty_wr
     matty_write_bytes(writer, message->nmea, message->nmea_size);
 }
 
-enum matty_result matty_stop_frame(uint8_t counter, uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_stop_frame(uint8_t counter, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < matty_pc_room(payload)) {
-        return MATTY_ERROR_SPACE;
+        return 0U;
     }
     matty_stop_store(matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x53U, counter);
-    return MATTY_OK;
+    return matty_pc_wrap(frame, payload, 0x53U, counter);
 }
 
 enum matty_result matty_stop_send(uint8_t counter, matty_put put, void *user) {
@@ -778,15 +769,13 @@ enum matty_result matty_stop_send(uint8_t counter, matty_put put, void *user) {
     return MATTY_OK;
 }
 
-enum matty_result matty_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity,
-                                    size_t *size) {
+size_t matty_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < matty_pc_room(payload)) {
-        return MATTY_ERROR_SPACE;
+        return 0U;
     }
     matty_reset_store(matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x52U, counter);
-    return MATTY_OK;
+    return matty_pc_wrap(frame, payload, 0x52U, counter);
 }
 
 enum matty_result matty_reset_send(uint8_t counter, matty_put put, void *user) {
@@ -802,15 +791,14 @@ enum matty_result matty_reset_send(uint8_t counter, matty_put put, void *user) {
     return MATTY_OK;
 }
 
-enum matty_result matty_mode_frame(const struct matty_mode *message, uint8_t counter,
-                                   uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_mode_frame(const struct matty_mode *message, uint8_t counter, uint8_t *frame,
+                        size_t capacity) {
     const size_t payload = 1U;
     if (capacity < matty_pc_room(payload)) {
-        return MATTY_ERROR_SPACE;
+        return 0U;
     }
     matty_mode_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x4DU, counter);
-    return MATTY_OK;
+    return matty_pc_wrap(frame, payload, 0x4DU, counter);
 }
 
 enum matty_result matty_mode_send(const struct matty_mode *message, uint8_t counter, matty_put put,
@@ -827,15 +815,14 @@ enum matty_result matty_mode_send(const struct matty_mode *message, uint8_t coun
     return MATTY_OK;
 }
 
-enum matty_result matty_go_frame(const struct matty_go *message, uint8_t counter, uint8_t *frame,
-                                 size_t capacity, size_t *size) {
+size_t matty_go_frame(const struct matty_go *message, uint8_t counter, uint8_t *frame,
+                      size_t capacity) {
     const size_t payload = 4U;
     if (capacity < matty_pc_room(payload)) {
-        return MATTY_ERROR_SPACE;
+        return 0U;
     }
     matty_go_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x47U, counter);
-    return MATTY_OK;
+    return matty_pc_wrap(frame, payload, 0x47U, counter);
 }
 
 enum matty_result matty_go_send(const struct matty_go *message, uint8_t counter, matty_put put,
@@ -852,15 +839,14 @@ enum matty_result matty_go_send(const struct matty_go *message, uint8_t counter,
     return MATTY_OK;
 }
 
-enum matty_result matty_limits_frame(const struct matty_limits *message, uint8_t counter,
-                                     uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_limits_frame(const struct matty_limits *message, uint8_t counter, uint8_t *frame,
+                          size_t capacity) {
     const size_t payload = 4U;
     if (capacity < matty_pc_room(payload)) {
-        return MATTY_ERROR_SPACE;
+        return 0U;
     }
     matty_limits_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x4CU, counter);
-    return MATTY_OK;
+    return matty_pc_wrap(frame, payload, 0x4CU, counter);
 }
 
 enum matty_result matty_limits_send(const struct matty_limits *message, uint8_t counter,
@@ -877,15 +863,14 @@ enum matty_result matty_limits_send(const struct matty_limits *message, uint8_t 
     return MATTY_OK;
 }
 
-enum matty_result matty_timing_frame(const struct matty_timing *message, uint8_t counter,
-                                     uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_timing_frame(const struct matty_timing *message, uint8_t counter, uint8_t *frame,
+                          size_t capacity) {
     const size_t payload = 4U;
     if (capacity < matty_pc_room(payload)) {
-        return MATTY_ERROR_SPACE;
+        return 0U;
     }
     matty_timing_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x54U, counter);
-    return MATTY_OK;
+    return matty_pc_wrap(frame, payload, 0x54U, counter);
 }
 
 enum matty_result matty_timing_send(const struct matty_timing *message, uint8_t counter,
@@ -902,15 +887,14 @@ enum matty_result matty_timing_send(const struct matty_timing *message, uint8_t 
     return MATTY_OK;
 }
 
-enum matty_result matty_gps_mode_frame(const struct matty_gps_mode *message, uint8_t counter,
-                                       uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_gps_mode_frame(const struct matty_gps_mode *message, uint8_t counter, uint8_t *frame,
+                            size_t capacity) {
     const size_t payload = 1U;
     if (capacity < matty_pc_room(payload)) {
-        return MATTY_ERROR_SPACE;
+        return 0U;
     }
     matty_gps_mode_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x50U, counter);
-    return MATTY_OK;
+    return matty_pc_wrap(frame, payload, 0x50U, counter);
 }
 
 enum matty_result matty_gps_mode_send(const struct matty_gps_mode *message, uint8_t counter,
@@ -927,14 +911,13 @@ enum matty_result matty_gps_mode_send(const struct matty_gps_mode *message, uint
     return MATTY_OK;
 }
 
-enum matty_result matty_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < matty_pc_room(payload)) {
-        return MATTY_ERROR_SPACE;
+        return 0U;
     }
     matty_ack_store(matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x41U, counter);
-    return MATTY_OK;
+    return matty_pc_wrap(frame, payload, 0x41U, counter);
 }
 
 enum matty_result matty_ack_send(uint8_t counter, matty_put put, void *user) {
@@ -950,14 +933,13 @@ enum matty_result matty_ack_send(uint8_t counter, matty_put put, void *user) {
     return MATTY_OK;
 }
 
-enum matty_result matty_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < matty_pc_room(payload)) {
-        return MATTY_ERROR_SPACE;
+        return 0U;
     }
     matty_nack_store(matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x4EU, counter);
-    return MATTY_OK;
+    return matty_pc_wrap(frame, payload, 0x4EU, counter);
 }
 
 enum matty_result matty_nack_send(uint8_t counter, matty_put put, void *user) {
@@ -973,15 +955,14 @@ enum matty_result matty_nack_send(uint8_t counter, matty_put put, void *user) {
     return MATTY_OK;
 }
 
-enum matty_result matty_status_frame(const struct matty_status *message, uint8_t counter,
-                                     uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_status_frame(const struct matty_status *message, uint8_t counter, uint8_t *frame,
+                          size_t capacity) {
     const size_t payload = 18U;
     if (capacity < matty_pc_room(payload)) {
-        return MATTY_ERROR_SPACE;
+        return 0U;
     }
     matty_status_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x49U, counter);
-    return MATTY_OK;
+    return matty_pc_wrap(frame, payload, 0x49U, counter);
 }
 
 enum matty_result matty_status_send(const struct matty_status *message, uint8_t counter,
@@ -998,29 +979,26 @@ enum matty_result matty_status_send(const struct matty_status *message, uint8_t 
     return MATTY_OK;
 }
 
-enum matty_result matty_gps_frame(const struct matty_gps *message, uint8_t counter, uint8_t *frame,
-                                  size_t capacity, size_t *size) {
+size_t matty_gps_frame(const struct matty_gps *message, uint8_t counter, uint8_t *frame,
+                       size_t capacity) {
     size_t payload;
-    const enum matty_result result = matty_gps_validate(message);
-    if (result != MATTY_OK) {
-        return result;
+    if (matty_gps_validate(message) != MATTY_OK) {
+        return 0U;
     }
     payload = matty_gps_measure(message);
     if (capacity < matty_pc_room(payload)) {
-        return MATTY_ERROR_SPACE;
+        return 0U;
     }
     matty_gps_store(message, matty_pc_payload(frame, payload));
-    *size = matty_pc_wrap(frame, payload, 0x50U, counter);
-    return MATTY_OK;
+    return matty_pc_wrap(frame, payload, 0x50U, counter);
 }
 
 enum matty_result matty_gps_send(const struct matty_gps *message, uint8_t counter, matty_put put,
                                  void *user) {
     struct matty_writer writer;
     size_t payload;
-    const enum matty_result result = matty_gps_validate(message);
-    if (result != MATTY_OK) {
-        return result;
+    if (matty_gps_validate(message) != MATTY_OK) {
+        return MATTY_ERROR_RANGE;
     }
     payload = matty_gps_measure(message);
     writer.put = put;

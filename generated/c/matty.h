@@ -166,7 +166,9 @@ MATTY_API enum matty_result matty_mode_encode(const struct matty_mode *message, 
                                               size_t capacity, size_t *size);
 MATTY_API enum matty_result matty_mode_decode(struct matty_mode *message, const uint8_t *payload,
                                               size_t size);
-MATTY_API void matty_mode_load(struct matty_mode *message, const uint8_t *payload);
+static inline void matty_mode_load(struct matty_mode *message, const uint8_t *payload) {
+    message->mode = payload[0];
+}
 
 /* --- go --------------------------------------------------------------------------------------- */
 
@@ -270,7 +272,9 @@ MATTY_API enum matty_result matty_gps_mode_encode(const struct matty_gps_mode *m
                                                   uint8_t *payload, size_t capacity, size_t *size);
 MATTY_API enum matty_result matty_gps_mode_decode(struct matty_gps_mode *message,
                                                   const uint8_t *payload, size_t size);
-MATTY_API void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload);
+static inline void matty_gps_mode_load(struct matty_gps_mode *message, const uint8_t *payload) {
+    message->mode = payload[0];
+}
 
 /* --- ack -------------------------------------------------------------------------------------- */
 
@@ -388,10 +392,10 @@ MATTY_API void matty_gps_load(struct matty_gps *message, const uint8_t *payload,
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
- * most `capacity` bytes and says in `size` how many the frame has. A buffer of ..._FRAME_ROOM bytes
- * always suffices; for a shorter payload less does, but the buffer has to take the most that its
- * bytes can need.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
+ * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
+ * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
+ * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
  */
 
@@ -438,85 +442,80 @@ static inline bool matty_transmitted(struct matty_transmission *frame) {
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_STOP_FRAME_MAX 7U
 #define MATTY_STOP_FRAME_ROOM 10U
-MATTY_API enum matty_result matty_stop_frame(uint8_t counter, uint8_t *frame, size_t capacity,
-                                             size_t *size);
+MATTY_API size_t matty_stop_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_stop_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_RESET_FRAME_MAX 7U
 #define MATTY_RESET_FRAME_ROOM 10U
-MATTY_API enum matty_result matty_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity,
-                                              size_t *size);
+MATTY_API size_t matty_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_reset_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_MODE_FRAME_MAX 8U
 #define MATTY_MODE_FRAME_ROOM 12U
-MATTY_API enum matty_result matty_mode_frame(const struct matty_mode *message, uint8_t counter,
-                                             uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API size_t matty_mode_frame(const struct matty_mode *message, uint8_t counter, uint8_t *frame,
+                                  size_t capacity);
 MATTY_API enum matty_result matty_mode_send(const struct matty_mode *message, uint8_t counter,
                                             matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_GO_FRAME_MAX 14U
 #define MATTY_GO_FRAME_ROOM 18U
-MATTY_API enum matty_result matty_go_frame(const struct matty_go *message, uint8_t counter,
-                                           uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API size_t matty_go_frame(const struct matty_go *message, uint8_t counter, uint8_t *frame,
+                                size_t capacity);
 MATTY_API enum matty_result matty_go_send(const struct matty_go *message, uint8_t counter,
                                           matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_LIMITS_FRAME_MAX 14U
 #define MATTY_LIMITS_FRAME_ROOM 18U
-MATTY_API enum matty_result matty_limits_frame(const struct matty_limits *message, uint8_t counter,
-                                               uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API size_t matty_limits_frame(const struct matty_limits *message, uint8_t counter,
+                                    uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_limits_send(const struct matty_limits *message, uint8_t counter,
                                               matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_TIMING_FRAME_MAX 14U
 #define MATTY_TIMING_FRAME_ROOM 18U
-MATTY_API enum matty_result matty_timing_frame(const struct matty_timing *message, uint8_t counter,
-                                               uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API size_t matty_timing_frame(const struct matty_timing *message, uint8_t counter,
+                                    uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_timing_send(const struct matty_timing *message, uint8_t counter,
                                               matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_GPS_MODE_FRAME_MAX 8U
 #define MATTY_GPS_MODE_FRAME_ROOM 12U
-MATTY_API enum matty_result matty_gps_mode_frame(const struct matty_gps_mode *message,
-                                                 uint8_t counter, uint8_t *frame, size_t capacity,
-                                                 size_t *size);
+MATTY_API size_t matty_gps_mode_frame(const struct matty_gps_mode *message, uint8_t counter,
+                                      uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_gps_mode_send(const struct matty_gps_mode *message,
                                                 uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_ACK_FRAME_MAX 6U
 #define MATTY_ACK_FRAME_ROOM 10U
-MATTY_API enum matty_result matty_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity,
-                                            size_t *size);
+MATTY_API size_t matty_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_ack_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_NACK_FRAME_MAX 6U
 #define MATTY_NACK_FRAME_ROOM 10U
-MATTY_API enum matty_result matty_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity,
-                                             size_t *size);
+MATTY_API size_t matty_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_nack_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_STATUS_FRAME_MAX 42U
 #define MATTY_STATUS_FRAME_ROOM 46U
-MATTY_API enum matty_result matty_status_frame(const struct matty_status *message, uint8_t counter,
-                                               uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API size_t matty_status_frame(const struct matty_status *message, uint8_t counter,
+                                    uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_status_send(const struct matty_status *message, uint8_t counter,
                                               matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_GPS_FRAME_MAX 249U
 #define MATTY_GPS_FRAME_ROOM 252U
-MATTY_API enum matty_result matty_gps_frame(const struct matty_gps *message, uint8_t counter,
-                                            uint8_t *frame, size_t capacity, size_t *size);
+MATTY_API size_t matty_gps_frame(const struct matty_gps *message, uint8_t counter, uint8_t *frame,
+                                 size_t capacity);
 MATTY_API enum matty_result matty_gps_send(const struct matty_gps *message, uint8_t counter,
                                            matty_put put, void *user);
 
@@ -827,10 +826,10 @@ MATTY_API const char *matty_robot_mode_name(uint8_t value);
 MATTY_API const char *matty_gps_mode_mode_name(uint8_t value);
 
 /*
- * Where a function returned MATTY_ERROR_RANGE: the first member whose value, or number of
- * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
- * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
- * A message that can always be sent has no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
+ * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
+ * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
+ * no such function.
  */
 MATTY_API const char *matty_gps_refused(const struct matty_gps *message);
 

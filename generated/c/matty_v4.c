@@ -108,10 +108,6 @@ enum matty_v4_result matty_v4_stop_encode(const struct matty_v4_stop *message, u
     return MATTY_V4_OK;
 }
 
-void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload) {
-    message->mode = payload[0];
-}
-
 enum matty_v4_result matty_v4_stop_decode(struct matty_v4_stop *message, const uint8_t *payload,
                                           size_t size) {
     if (size != 1U) {
@@ -156,10 +152,6 @@ enum matty_v4_result matty_v4_mode_encode(const struct matty_v4_mode *message, u
     matty_v4_mode_store(message, payload);
     *size = 1U;
     return MATTY_V4_OK;
-}
-
-void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload) {
-    message->mode = payload[0];
 }
 
 enum matty_v4_result matty_v4_mode_decode(struct matty_v4_mode *message, const uint8_t *payload,
@@ -281,10 +273,6 @@ enum matty_v4_result matty_v4_gps_mode_encode(const struct matty_v4_gps_mode *me
     matty_v4_gps_mode_store(message, payload);
     *size = 1U;
     return MATTY_V4_OK;
-}
-
-void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, const uint8_t *payload) {
-    message->mode = payload[0];
 }
 
 enum matty_v4_result matty_v4_gps_mode_decode(struct matty_v4_gps_mode *message,
@@ -910,15 +898,14 @@ MATTY_V4_INLINE void matty_v4_version_put(const struct matty_v4_version *message
     matty_v4_write(writer, message->version);
 }
 
-enum matty_v4_result matty_v4_stop_frame(const struct matty_v4_stop *message, uint8_t counter,
-                                         uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_v4_stop_frame(const struct matty_v4_stop *message, uint8_t counter, uint8_t *frame,
+                           size_t capacity) {
     const size_t payload = 1U;
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_stop_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x53U, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x53U, counter);
 }
 
 enum matty_v4_result matty_v4_stop_send(const struct matty_v4_stop *message, uint8_t counter,
@@ -935,15 +922,13 @@ enum matty_v4_result matty_v4_stop_send(const struct matty_v4_stop *message, uin
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity,
-                                          size_t *size) {
+size_t matty_v4_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_reset_store(matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x52U, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x52U, counter);
 }
 
 enum matty_v4_result matty_v4_reset_send(uint8_t counter, matty_v4_put put, void *user) {
@@ -959,15 +944,14 @@ enum matty_v4_result matty_v4_reset_send(uint8_t counter, matty_v4_put put, void
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_mode_frame(const struct matty_v4_mode *message, uint8_t counter,
-                                         uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_v4_mode_frame(const struct matty_v4_mode *message, uint8_t counter, uint8_t *frame,
+                           size_t capacity) {
     const size_t payload = 1U;
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_mode_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x4DU, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x4DU, counter);
 }
 
 enum matty_v4_result matty_v4_mode_send(const struct matty_v4_mode *message, uint8_t counter,
@@ -984,15 +968,14 @@ enum matty_v4_result matty_v4_mode_send(const struct matty_v4_mode *message, uin
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_go_frame(const struct matty_v4_go *message, uint8_t counter,
-                                       uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_v4_go_frame(const struct matty_v4_go *message, uint8_t counter, uint8_t *frame,
+                         size_t capacity) {
     const size_t payload = 4U;
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_go_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x47U, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x47U, counter);
 }
 
 enum matty_v4_result matty_v4_go_send(const struct matty_v4_go *message, uint8_t counter,
@@ -1009,15 +992,14 @@ enum matty_v4_result matty_v4_go_send(const struct matty_v4_go *message, uint8_t
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_limits_frame(const struct matty_v4_limits *message, uint8_t counter,
-                                           uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_v4_limits_frame(const struct matty_v4_limits *message, uint8_t counter, uint8_t *frame,
+                             size_t capacity) {
     const size_t payload = 4U;
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_limits_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x4CU, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x4CU, counter);
 }
 
 enum matty_v4_result matty_v4_limits_send(const struct matty_v4_limits *message, uint8_t counter,
@@ -1034,15 +1016,14 @@ enum matty_v4_result matty_v4_limits_send(const struct matty_v4_limits *message,
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_timing_frame(const struct matty_v4_timing *message, uint8_t counter,
-                                           uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_v4_timing_frame(const struct matty_v4_timing *message, uint8_t counter, uint8_t *frame,
+                             size_t capacity) {
     const size_t payload = 4U;
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_timing_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x54U, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x54U, counter);
 }
 
 enum matty_v4_result matty_v4_timing_send(const struct matty_v4_timing *message, uint8_t counter,
@@ -1059,16 +1040,14 @@ enum matty_v4_result matty_v4_timing_send(const struct matty_v4_timing *message,
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_gps_mode_frame(const struct matty_v4_gps_mode *message,
-                                             uint8_t counter, uint8_t *frame, size_t capacity,
-                                             size_t *size) {
+size_t matty_v4_gps_mode_frame(const struct matty_v4_gps_mode *message, uint8_t counter,
+                               uint8_t *frame, size_t capacity) {
     const size_t payload = 1U;
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_gps_mode_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x50U, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x50U, counter);
 }
 
 enum matty_v4_result matty_v4_gps_mode_send(const struct matty_v4_gps_mode *message,
@@ -1085,15 +1064,13 @@ enum matty_v4_result matty_v4_gps_mode_send(const struct matty_v4_gps_mode *mess
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_version_query_frame(uint8_t counter, uint8_t *frame, size_t capacity,
-                                                  size_t *size) {
+size_t matty_v4_version_query_frame(uint8_t counter, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_version_query_store(matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x56U, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x56U, counter);
 }
 
 enum matty_v4_result matty_v4_version_query_send(uint8_t counter, matty_v4_put put, void *user) {
@@ -1109,28 +1086,25 @@ enum matty_v4_result matty_v4_version_query_send(uint8_t counter, matty_v4_put p
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_led_frame(const struct matty_v4_led *message, uint8_t counter,
-                                        uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_v4_led_frame(const struct matty_v4_led *message, uint8_t counter, uint8_t *frame,
+                          size_t capacity) {
     const size_t payload = 4U;
-    const enum matty_v4_result result = matty_v4_led_validate(message);
-    if (result != MATTY_V4_OK) {
-        return result;
+    if (matty_v4_led_validate(message) != MATTY_V4_OK) {
+        return 0U;
     }
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_led_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x44U, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x44U, counter);
 }
 
 enum matty_v4_result matty_v4_led_send(const struct matty_v4_led *message, uint8_t counter,
                                        matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
     const size_t payload = 4U;
-    const enum matty_v4_result result = matty_v4_led_validate(message);
-    if (result != MATTY_V4_OK) {
-        return result;
+    if (matty_v4_led_validate(message) != MATTY_V4_OK) {
+        return MATTY_V4_ERROR_RANGE;
     }
     writer.put = put;
     writer.user = user;
@@ -1142,15 +1116,13 @@ enum matty_v4_result matty_v4_led_send(const struct matty_v4_led *message, uint8
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity,
-                                        size_t *size) {
+size_t matty_v4_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_ack_store(matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x41U, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x41U, counter);
 }
 
 enum matty_v4_result matty_v4_ack_send(uint8_t counter, matty_v4_put put, void *user) {
@@ -1166,15 +1138,13 @@ enum matty_v4_result matty_v4_ack_send(uint8_t counter, matty_v4_put put, void *
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity,
-                                         size_t *size) {
+size_t matty_v4_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_nack_store(matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x4EU, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x4EU, counter);
 }
 
 enum matty_v4_result matty_v4_nack_send(uint8_t counter, matty_v4_put put, void *user) {
@@ -1190,15 +1160,14 @@ enum matty_v4_result matty_v4_nack_send(uint8_t counter, matty_v4_put put, void 
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_status_frame(const struct matty_v4_status *message, uint8_t counter,
-                                           uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_v4_status_frame(const struct matty_v4_status *message, uint8_t counter, uint8_t *frame,
+                             size_t capacity) {
     const size_t payload = 24U;
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_status_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x49U, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x49U, counter);
 }
 
 enum matty_v4_result matty_v4_status_send(const struct matty_v4_status *message, uint8_t counter,
@@ -1215,29 +1184,26 @@ enum matty_v4_result matty_v4_status_send(const struct matty_v4_status *message,
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_gps_frame(const struct matty_v4_gps *message, uint8_t counter,
-                                        uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_v4_gps_frame(const struct matty_v4_gps *message, uint8_t counter, uint8_t *frame,
+                          size_t capacity) {
     size_t payload;
-    const enum matty_v4_result result = matty_v4_gps_validate(message);
-    if (result != MATTY_V4_OK) {
-        return result;
+    if (matty_v4_gps_validate(message) != MATTY_V4_OK) {
+        return 0U;
     }
     payload = matty_v4_gps_measure(message);
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_gps_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x50U, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x50U, counter);
 }
 
 enum matty_v4_result matty_v4_gps_send(const struct matty_v4_gps *message, uint8_t counter,
                                        matty_v4_put put, void *user) {
     struct matty_v4_writer writer;
     size_t payload;
-    const enum matty_v4_result result = matty_v4_gps_validate(message);
-    if (result != MATTY_V4_OK) {
-        return result;
+    if (matty_v4_gps_validate(message) != MATTY_V4_OK) {
+        return MATTY_V4_ERROR_RANGE;
     }
     payload = matty_v4_gps_measure(message);
     writer.put = put;
@@ -1250,15 +1216,14 @@ enum matty_v4_result matty_v4_gps_send(const struct matty_v4_gps *message, uint8
     return MATTY_V4_OK;
 }
 
-enum matty_v4_result matty_v4_version_frame(const struct matty_v4_version *message, uint8_t counter,
-                                            uint8_t *frame, size_t capacity, size_t *size) {
+size_t matty_v4_version_frame(const struct matty_v4_version *message, uint8_t counter,
+                              uint8_t *frame, size_t capacity) {
     const size_t payload = 2U;
     if (capacity < matty_v4_pc_room(payload)) {
-        return MATTY_V4_ERROR_SPACE;
+        return 0U;
     }
     matty_v4_version_store(message, matty_v4_pc_payload(frame, payload));
-    *size = matty_v4_pc_wrap(frame, payload, 0x56U, counter);
-    return MATTY_V4_OK;
+    return matty_v4_pc_wrap(frame, payload, 0x56U, counter);
 }
 
 enum matty_v4_result matty_v4_version_send(const struct matty_v4_version *message, uint8_t counter,

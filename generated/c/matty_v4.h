@@ -155,7 +155,9 @@ MATTY_V4_API enum matty_v4_result matty_v4_stop_encode(const struct matty_v4_sto
                                                        size_t *size);
 MATTY_V4_API enum matty_v4_result matty_v4_stop_decode(struct matty_v4_stop *message,
                                                        const uint8_t *payload, size_t size);
-MATTY_V4_API void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload);
+static inline void matty_v4_stop_load(struct matty_v4_stop *message, const uint8_t *payload) {
+    message->mode = payload[0];
+}
 
 /* --- reset ------------------------------------------------------------------------------------ */
 
@@ -191,7 +193,9 @@ MATTY_V4_API enum matty_v4_result matty_v4_mode_encode(const struct matty_v4_mod
                                                        size_t *size);
 MATTY_V4_API enum matty_v4_result matty_v4_mode_decode(struct matty_v4_mode *message,
                                                        const uint8_t *payload, size_t size);
-MATTY_V4_API void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload);
+static inline void matty_v4_mode_load(struct matty_v4_mode *message, const uint8_t *payload) {
+    message->mode = payload[0];
+}
 
 /* --- go --------------------------------------------------------------------------------------- */
 
@@ -307,7 +311,10 @@ MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_encode(const struct matty_v4
                                                            size_t *size);
 MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_decode(struct matty_v4_gps_mode *message,
                                                            const uint8_t *payload, size_t size);
-MATTY_V4_API void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message, const uint8_t *payload);
+static inline void matty_v4_gps_mode_load(struct matty_v4_gps_mode *message,
+                                          const uint8_t *payload) {
+    message->mode = payload[0];
+}
 
 /* --- version_query ---------------------------------------------------------------------------- */
 
@@ -511,10 +518,10 @@ MATTY_V4_API void matty_v4_version_load(struct matty_v4_version *message, const 
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
- * most `capacity` bytes and says in `size` how many the frame has. A buffer of ..._FRAME_ROOM bytes
- * always suffices; for a shorter payload less does, but the buffer has to take the most that its
- * bytes can need.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
+ * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
+ * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
+ * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
  */
 
@@ -561,44 +568,39 @@ static inline bool matty_v4_transmitted(struct matty_v4_transmission *frame) {
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_STOP_FRAME_MAX 8U
 #define MATTY_V4_STOP_FRAME_ROOM 12U
-MATTY_V4_API enum matty_v4_result matty_v4_stop_frame(const struct matty_v4_stop *message,
-                                                      uint8_t counter, uint8_t *frame,
-                                                      size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_stop_frame(const struct matty_v4_stop *message, uint8_t counter,
+                                        uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_stop_send(const struct matty_v4_stop *message,
                                                      uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_RESET_FRAME_MAX 7U
 #define MATTY_V4_RESET_FRAME_ROOM 10U
-MATTY_V4_API enum matty_v4_result matty_v4_reset_frame(uint8_t counter, uint8_t *frame,
-                                                       size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_reset_send(uint8_t counter, matty_v4_put put,
                                                       void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_MODE_FRAME_MAX 8U
 #define MATTY_V4_MODE_FRAME_ROOM 12U
-MATTY_V4_API enum matty_v4_result matty_v4_mode_frame(const struct matty_v4_mode *message,
-                                                      uint8_t counter, uint8_t *frame,
-                                                      size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_mode_frame(const struct matty_v4_mode *message, uint8_t counter,
+                                        uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_mode_send(const struct matty_v4_mode *message,
                                                      uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_GO_FRAME_MAX 14U
 #define MATTY_V4_GO_FRAME_ROOM 18U
-MATTY_V4_API enum matty_v4_result matty_v4_go_frame(const struct matty_v4_go *message,
-                                                    uint8_t counter, uint8_t *frame,
-                                                    size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_go_frame(const struct matty_v4_go *message, uint8_t counter,
+                                      uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_go_send(const struct matty_v4_go *message,
                                                    uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_LIMITS_FRAME_MAX 14U
 #define MATTY_V4_LIMITS_FRAME_ROOM 18U
-MATTY_V4_API enum matty_v4_result matty_v4_limits_frame(const struct matty_v4_limits *message,
-                                                        uint8_t counter, uint8_t *frame,
-                                                        size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_limits_frame(const struct matty_v4_limits *message, uint8_t counter,
+                                          uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_limits_send(const struct matty_v4_limits *message,
                                                        uint8_t counter, matty_v4_put put,
                                                        void *user);
@@ -606,9 +608,8 @@ MATTY_V4_API enum matty_v4_result matty_v4_limits_send(const struct matty_v4_lim
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_TIMING_FRAME_MAX 14U
 #define MATTY_V4_TIMING_FRAME_ROOM 18U
-MATTY_V4_API enum matty_v4_result matty_v4_timing_frame(const struct matty_v4_timing *message,
-                                                        uint8_t counter, uint8_t *frame,
-                                                        size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_timing_frame(const struct matty_v4_timing *message, uint8_t counter,
+                                          uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_timing_send(const struct matty_v4_timing *message,
                                                        uint8_t counter, matty_v4_put put,
                                                        void *user);
@@ -616,9 +617,8 @@ MATTY_V4_API enum matty_v4_result matty_v4_timing_send(const struct matty_v4_tim
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_GPS_MODE_FRAME_MAX 8U
 #define MATTY_V4_GPS_MODE_FRAME_ROOM 12U
-MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_frame(const struct matty_v4_gps_mode *message,
-                                                          uint8_t counter, uint8_t *frame,
-                                                          size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_gps_mode_frame(const struct matty_v4_gps_mode *message,
+                                            uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_send(const struct matty_v4_gps_mode *message,
                                                          uint8_t counter, matty_v4_put put,
                                                          void *user);
@@ -626,40 +626,35 @@ MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_send(const struct matty_v4_g
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_VERSION_QUERY_FRAME_MAX 7U
 #define MATTY_V4_VERSION_QUERY_FRAME_ROOM 10U
-MATTY_V4_API enum matty_v4_result matty_v4_version_query_frame(uint8_t counter, uint8_t *frame,
-                                                               size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_version_query_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_version_query_send(uint8_t counter, matty_v4_put put,
                                                               void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_LED_FRAME_MAX 14U
 #define MATTY_V4_LED_FRAME_ROOM 18U
-MATTY_V4_API enum matty_v4_result matty_v4_led_frame(const struct matty_v4_led *message,
-                                                     uint8_t counter, uint8_t *frame,
-                                                     size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_led_frame(const struct matty_v4_led *message, uint8_t counter,
+                                       uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_led_send(const struct matty_v4_led *message,
                                                     uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_ACK_FRAME_MAX 6U
 #define MATTY_V4_ACK_FRAME_ROOM 10U
-MATTY_V4_API enum matty_v4_result matty_v4_ack_frame(uint8_t counter, uint8_t *frame,
-                                                     size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_ack_send(uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_NACK_FRAME_MAX 6U
 #define MATTY_V4_NACK_FRAME_ROOM 10U
-MATTY_V4_API enum matty_v4_result matty_v4_nack_frame(uint8_t counter, uint8_t *frame,
-                                                      size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_nack_send(uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_STATUS_FRAME_MAX 54U
 #define MATTY_V4_STATUS_FRAME_ROOM 58U
-MATTY_V4_API enum matty_v4_result matty_v4_status_frame(const struct matty_v4_status *message,
-                                                        uint8_t counter, uint8_t *frame,
-                                                        size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_status_frame(const struct matty_v4_status *message, uint8_t counter,
+                                          uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_status_send(const struct matty_v4_status *message,
                                                        uint8_t counter, matty_v4_put put,
                                                        void *user);
@@ -667,18 +662,16 @@ MATTY_V4_API enum matty_v4_result matty_v4_status_send(const struct matty_v4_sta
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_GPS_FRAME_MAX 249U
 #define MATTY_V4_GPS_FRAME_ROOM 252U
-MATTY_V4_API enum matty_v4_result matty_v4_gps_frame(const struct matty_v4_gps *message,
-                                                     uint8_t counter, uint8_t *frame,
-                                                     size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_gps_frame(const struct matty_v4_gps *message, uint8_t counter,
+                                       uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_gps_send(const struct matty_v4_gps *message,
                                                     uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_VERSION_FRAME_MAX 11U
 #define MATTY_V4_VERSION_FRAME_ROOM 14U
-MATTY_V4_API enum matty_v4_result matty_v4_version_frame(const struct matty_v4_version *message,
-                                                         uint8_t counter, uint8_t *frame,
-                                                         size_t capacity, size_t *size);
+MATTY_V4_API size_t matty_v4_version_frame(const struct matty_v4_version *message, uint8_t counter,
+                                           uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_version_send(const struct matty_v4_version *message,
                                                         uint8_t counter, matty_v4_put put,
                                                         void *user);
@@ -1005,10 +998,10 @@ MATTY_V4_API const char *matty_v4_robot_mode_name(uint8_t value);
 MATTY_V4_API const char *matty_v4_gps_mode_mode_name(uint8_t value);
 
 /*
- * Where a function returned MATTY_V4_ERROR_RANGE: the first member whose value, or number of
- * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
- * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
- * A message that can always be sent has no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
+ * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
+ * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
+ * no such function.
  */
 MATTY_V4_API const char *matty_v4_led_refused(const struct matty_v4_led *message);
 MATTY_V4_API const char *matty_v4_gps_refused(const struct matty_v4_gps *message);

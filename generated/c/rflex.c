@@ -128,10 +128,6 @@ enum rflex_result rflex_motor_00_encode(const struct rflex_motor_00 *message, ui
     return RFLEX_OK;
 }
 
-void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload) {
-    message->unknown = payload[0];
-}
-
 enum rflex_result rflex_motor_00_decode(struct rflex_motor_00 *message, const uint8_t *payload,
                                         size_t size) {
     if (size != 1U) {
@@ -1247,15 +1243,13 @@ RFLEX_INLINE void rflex_changed_byte_put(const struct rflex_changed_byte *messag
     rflex_write_u16be(writer, message->value);
 }
 
-enum rflex_result rflex_request_system_status_frame(uint8_t number, uint8_t *frame, size_t capacity,
-                                                    size_t *size) {
+size_t rflex_request_system_status_frame(uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_request_system_status_store(rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x01U, 0x01U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x01U, 0x01U, number);
 }
 
 enum rflex_result rflex_request_system_status_send(uint8_t number, rflex_put put, void *user) {
@@ -1271,16 +1265,14 @@ enum rflex_result rflex_request_system_status_send(uint8_t number, rflex_put put
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_system_status_frame(const struct rflex_system_status *message,
-                                            uint8_t number, uint8_t *frame, size_t capacity,
-                                            size_t *size) {
+size_t rflex_system_status_frame(const struct rflex_system_status *message, uint8_t number,
+                                 uint8_t *frame, size_t capacity) {
     const size_t payload = 9U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_system_status_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x01U, 0x01U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x01U, 0x01U, number);
 }
 
 enum rflex_result rflex_system_status_send(const struct rflex_system_status *message,
@@ -1297,15 +1289,14 @@ enum rflex_result rflex_system_status_send(const struct rflex_system_status *mes
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_motor_00_frame(const struct rflex_motor_00 *message, uint8_t number,
-                                       uint8_t *frame, size_t capacity, size_t *size) {
+size_t rflex_motor_00_frame(const struct rflex_motor_00 *message, uint8_t number, uint8_t *frame,
+                            size_t capacity) {
     const size_t payload = 1U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_motor_00_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x00U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x02U, 0x00U, number);
 }
 
 enum rflex_result rflex_motor_00_send(const struct rflex_motor_00 *message, uint8_t number,
@@ -1322,16 +1313,14 @@ enum rflex_result rflex_motor_00_send(const struct rflex_motor_00 *message, uint
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_motor_command_frame(const struct rflex_motor_command *message,
-                                            uint8_t number, uint8_t *frame, size_t capacity,
-                                            size_t *size) {
+size_t rflex_motor_command_frame(const struct rflex_motor_command *message, uint8_t number,
+                                 uint8_t *frame, size_t capacity) {
     const size_t payload = 14U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_motor_command_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x07U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x02U, 0x07U, number);
 }
 
 enum rflex_result rflex_motor_command_send(const struct rflex_motor_command *message,
@@ -1348,16 +1337,14 @@ enum rflex_result rflex_motor_command_send(const struct rflex_motor_command *mes
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_confirm_motor_command_frame(
-    const struct rflex_confirm_motor_command *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+size_t rflex_confirm_motor_command_frame(const struct rflex_confirm_motor_command *message,
+                                         uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 9U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_confirm_motor_command_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x07U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x02U, 0x07U, number);
 }
 
 enum rflex_result rflex_confirm_motor_command_send(
@@ -1374,15 +1361,13 @@ enum rflex_result rflex_confirm_motor_command_send(
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_motor_0a_frame(uint8_t number, uint8_t *frame, size_t capacity,
-                                       size_t *size) {
+size_t rflex_motor_0a_frame(uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_motor_0a_store(rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x0AU, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x02U, 0x0AU, number);
 }
 
 enum rflex_result rflex_motor_0a_send(uint8_t number, rflex_put put, void *user) {
@@ -1398,15 +1383,13 @@ enum rflex_result rflex_motor_0a_send(uint8_t number, rflex_put put, void *user)
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_motor_0c_frame(uint8_t number, uint8_t *frame, size_t capacity,
-                                       size_t *size) {
+size_t rflex_motor_0c_frame(uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_motor_0c_store(rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
 }
 
 enum rflex_result rflex_motor_0c_send(uint8_t number, rflex_put put, void *user) {
@@ -1422,16 +1405,14 @@ enum rflex_result rflex_motor_0c_send(uint8_t number, rflex_put put, void *user)
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_motor_0c_answer_frame(const struct rflex_motor_0c_answer *message,
-                                              uint8_t number, uint8_t *frame, size_t capacity,
-                                              size_t *size) {
+size_t rflex_motor_0c_answer_frame(const struct rflex_motor_0c_answer *message, uint8_t number,
+                                   uint8_t *frame, size_t capacity) {
     const size_t payload = 8U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_motor_0c_answer_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
 }
 
 enum rflex_result rflex_motor_0c_answer_send(const struct rflex_motor_0c_answer *message,
@@ -1448,15 +1429,14 @@ enum rflex_result rflex_motor_0c_answer_send(const struct rflex_motor_0c_answer 
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_read_motor_frame(const struct rflex_read_motor *message, uint8_t number,
-                                         uint8_t *frame, size_t capacity, size_t *size) {
+size_t rflex_read_motor_frame(const struct rflex_read_motor *message, uint8_t number,
+                              uint8_t *frame, size_t capacity) {
     const size_t payload = 25U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_read_motor_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x21U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x02U, 0x21U, number);
 }
 
 enum rflex_result rflex_read_motor_send(const struct rflex_read_motor *message, uint8_t number,
@@ -1473,16 +1453,14 @@ enum rflex_result rflex_read_motor_send(const struct rflex_read_motor *message, 
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_start_stop_motor_packets_frame(
-    const struct rflex_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+size_t rflex_start_stop_motor_packets_frame(const struct rflex_start_stop_motor_packets *message,
+                                            uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 8U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_start_stop_motor_packets_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x22U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x02U, 0x22U, number);
 }
 
 enum rflex_result rflex_start_stop_motor_packets_send(
@@ -1500,16 +1478,15 @@ enum rflex_result rflex_start_stop_motor_packets_send(
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_confirm_start_stop_motor_packets_frame(
+size_t rflex_confirm_start_stop_motor_packets_frame(
     const struct rflex_confirm_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+    size_t capacity) {
     const size_t payload = 8U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_confirm_start_stop_motor_packets_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x02U, 0x22U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x02U, 0x22U, number);
 }
 
 enum rflex_result rflex_confirm_start_stop_motor_packets_send(
@@ -1527,15 +1504,13 @@ enum rflex_result rflex_confirm_start_stop_motor_packets_send(
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_request_joystick_data_frame(uint8_t number, uint8_t *frame, size_t capacity,
-                                                    size_t *size) {
+size_t rflex_request_joystick_data_frame(uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_request_joystick_data_store(rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x03U, 0x00U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x03U, 0x00U, number);
 }
 
 enum rflex_result rflex_request_joystick_data_send(uint8_t number, rflex_put put, void *user) {
@@ -1551,16 +1526,14 @@ enum rflex_result rflex_request_joystick_data_send(uint8_t number, rflex_put put
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_joystick_data_frame(const struct rflex_joystick_data *message,
-                                            uint8_t number, uint8_t *frame, size_t capacity,
-                                            size_t *size) {
+size_t rflex_joystick_data_frame(const struct rflex_joystick_data *message, uint8_t number,
+                                 uint8_t *frame, size_t capacity) {
     const size_t payload = 13U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_joystick_data_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x03U, 0x00U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x03U, 0x00U, number);
 }
 
 enum rflex_result rflex_joystick_data_send(const struct rflex_joystick_data *message,
@@ -1577,16 +1550,14 @@ enum rflex_result rflex_joystick_data_send(const struct rflex_joystick_data *mes
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_start_stop_sonar_packets_frame(
-    const struct rflex_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+size_t rflex_start_stop_sonar_packets_frame(const struct rflex_start_stop_sonar_packets *message,
+                                            uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 13U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_start_stop_sonar_packets_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x04U, 0x00U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x04U, 0x00U, number);
 }
 
 enum rflex_result rflex_start_stop_sonar_packets_send(
@@ -1604,16 +1575,15 @@ enum rflex_result rflex_start_stop_sonar_packets_send(
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_confirm_start_stop_sonar_packets_frame(
+size_t rflex_confirm_start_stop_sonar_packets_frame(
     const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+    size_t capacity) {
     const size_t payload = 8U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_confirm_start_stop_sonar_packets_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x04U, 0x00U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x04U, 0x00U, number);
 }
 
 enum rflex_result rflex_confirm_start_stop_sonar_packets_send(
@@ -1631,29 +1601,26 @@ enum rflex_result rflex_confirm_start_stop_sonar_packets_send(
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_sonar_data_frame(const struct rflex_sonar_data *message, uint8_t number,
-                                         uint8_t *frame, size_t capacity, size_t *size) {
+size_t rflex_sonar_data_frame(const struct rflex_sonar_data *message, uint8_t number,
+                              uint8_t *frame, size_t capacity) {
     size_t payload;
-    const enum rflex_result result = rflex_sonar_data_validate(message);
-    if (result != RFLEX_OK) {
-        return result;
+    if (rflex_sonar_data_validate(message) != RFLEX_OK) {
+        return 0U;
     }
     payload = rflex_sonar_data_measure(message);
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_sonar_data_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x04U, 0x02U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x04U, 0x02U, number);
 }
 
 enum rflex_result rflex_sonar_data_send(const struct rflex_sonar_data *message, uint8_t number,
                                         rflex_put put, void *user) {
     struct rflex_writer writer;
     size_t payload;
-    const enum rflex_result result = rflex_sonar_data_validate(message);
-    if (result != RFLEX_OK) {
-        return result;
+    if (rflex_sonar_data_validate(message) != RFLEX_OK) {
+        return RFLEX_ERROR_RANGE;
     }
     payload = rflex_sonar_data_measure(message);
     writer.put = put;
@@ -1666,16 +1633,14 @@ enum rflex_result rflex_sonar_data_send(const struct rflex_sonar_data *message, 
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_initialize_digital_io_frame(
-    const struct rflex_initialize_digital_io *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+size_t rflex_initialize_digital_io_frame(const struct rflex_initialize_digital_io *message,
+                                         uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 4U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_initialize_digital_io_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x05U, 0x00U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x05U, 0x00U, number);
 }
 
 enum rflex_result rflex_initialize_digital_io_send(
@@ -1692,16 +1657,15 @@ enum rflex_result rflex_initialize_digital_io_send(
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_confirm_initialize_digital_io_frame(
+size_t rflex_confirm_initialize_digital_io_frame(
     const struct rflex_confirm_initialize_digital_io *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+    size_t capacity) {
     const size_t payload = 8U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_confirm_initialize_digital_io_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x05U, 0x00U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x05U, 0x00U, number);
 }
 
 enum rflex_result rflex_confirm_initialize_digital_io_send(
@@ -1719,16 +1683,14 @@ enum rflex_result rflex_confirm_initialize_digital_io_send(
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_changed_bumpers_frame(const struct rflex_changed_bumpers *message,
-                                              uint8_t number, uint8_t *frame, size_t capacity,
-                                              size_t *size) {
+size_t rflex_changed_bumpers_frame(const struct rflex_changed_bumpers *message, uint8_t number,
+                                   uint8_t *frame, size_t capacity) {
     const size_t payload = 7U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_changed_bumpers_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x05U, 0x01U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x05U, 0x01U, number);
 }
 
 enum rflex_result rflex_changed_bumpers_send(const struct rflex_changed_bumpers *message,
@@ -1745,16 +1707,14 @@ enum rflex_result rflex_changed_bumpers_send(const struct rflex_changed_bumpers 
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_check_io_changed_frame(const struct rflex_check_io_changed *message,
-                                               uint8_t number, uint8_t *frame, size_t capacity,
-                                               size_t *size) {
+size_t rflex_check_io_changed_frame(const struct rflex_check_io_changed *message, uint8_t number,
+                                    uint8_t *frame, size_t capacity) {
     const size_t payload = 4U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_check_io_changed_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x05U, 0x02U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x05U, 0x02U, number);
 }
 
 enum rflex_result rflex_check_io_changed_send(const struct rflex_check_io_changed *message,
@@ -1771,16 +1731,14 @@ enum rflex_result rflex_check_io_changed_send(const struct rflex_check_io_change
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_check_io_changed_answer_frame(
-    const struct rflex_check_io_changed_answer *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+size_t rflex_check_io_changed_answer_frame(const struct rflex_check_io_changed_answer *message,
+                                           uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 12U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_check_io_changed_answer_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x05U, 0x02U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x05U, 0x02U, number);
 }
 
 enum rflex_result rflex_check_io_changed_answer_send(
@@ -1798,15 +1756,14 @@ enum rflex_result rflex_check_io_changed_answer_send(
     return RFLEX_OK;
 }
 
-enum rflex_result rflex_changed_byte_frame(const struct rflex_changed_byte *message, uint8_t number,
-                                           uint8_t *frame, size_t capacity, size_t *size) {
+size_t rflex_changed_byte_frame(const struct rflex_changed_byte *message, uint8_t number,
+                                uint8_t *frame, size_t capacity) {
     const size_t payload = 7U;
     if (capacity < rflex_linux_room(payload)) {
-        return RFLEX_ERROR_SPACE;
+        return 0U;
     }
     rflex_changed_byte_store(message, rflex_linux_payload(frame, payload));
-    *size = rflex_linux_wrap(frame, payload, 0x05U, 0x03U, number);
-    return RFLEX_OK;
+    return rflex_linux_wrap(frame, payload, 0x05U, 0x03U, number);
 }
 
 enum rflex_result rflex_changed_byte_send(const struct rflex_changed_byte *message, uint8_t number,
@@ -2003,10 +1960,7 @@ static void rflex_linux_set_payload(struct rflex_linux_decoder *decoder, uint16_
 
 static uint8_t rflex_linux_read_length(struct rflex_linux_decoder *decoder, uint16_t length) {
     uint16_t size = length;
-    if (size - 0U > 255U) {
-        return RFLEX_LENGTH;
-    }
-    rflex_linux_set_payload(decoder, (uint16_t)(size - 0U));
+    rflex_linux_set_payload(decoder, (uint16_t)size);
     return RFLEX_FINE;
 }
 
@@ -2714,10 +2668,7 @@ static void rflex_flex_set_payload(struct rflex_flex_decoder *decoder, uint16_t 
 
 static uint8_t rflex_flex_read_length(struct rflex_flex_decoder *decoder, uint16_t length) {
     uint16_t size = length;
-    if (size - 0U > 255U) {
-        return RFLEX_LENGTH;
-    }
-    rflex_flex_set_payload(decoder, (uint16_t)(size - 0U));
+    rflex_flex_set_payload(decoder, (uint16_t)size);
     return RFLEX_FINE;
 }
 

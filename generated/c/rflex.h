@@ -234,7 +234,9 @@ RFLEX_API enum rflex_result rflex_motor_00_encode(const struct rflex_motor_00 *m
                                                   uint8_t *payload, size_t capacity, size_t *size);
 RFLEX_API enum rflex_result rflex_motor_00_decode(struct rflex_motor_00 *message,
                                                   const uint8_t *payload, size_t size);
-RFLEX_API void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload);
+static inline void rflex_motor_00_load(struct rflex_motor_00 *message, const uint8_t *payload) {
+    message->unknown = payload[0];
+}
 
 /* --- motor_command ---------------------------------------------------------------------------- */
 
@@ -780,10 +782,10 @@ RFLEX_API void rflex_changed_byte_load(struct rflex_changed_byte *message, const
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
- * most `capacity` bytes and says in `size` how many the frame has. A buffer of ..._FRAME_ROOM bytes
- * always suffices; for a shorter payload less does, but the buffer has to take the most that its
- * bytes can need.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
+ * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
+ * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
+ * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
  */
 
@@ -830,85 +832,77 @@ static inline bool rflex_transmitted(struct rflex_transmission *frame) {
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_MAX 11U
 #define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23U
-RFLEX_API enum rflex_result rflex_request_system_status_frame(uint8_t number, uint8_t *frame,
-                                                              size_t capacity, size_t *size);
+RFLEX_API size_t rflex_request_system_status_frame(uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_request_system_status_send(uint8_t number, rflex_put put,
                                                              void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_SYSTEM_STATUS_FRAME_MAX 40U
 #define RFLEX_SYSTEM_STATUS_FRAME_ROOM 50U
-RFLEX_API enum rflex_result rflex_system_status_frame(const struct rflex_system_status *message,
-                                                      uint8_t number, uint8_t *frame,
-                                                      size_t capacity, size_t *size);
+RFLEX_API size_t rflex_system_status_frame(const struct rflex_system_status *message,
+                                           uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_system_status_send(const struct rflex_system_status *message,
                                                      uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_00_FRAME_MAX 16U
 #define RFLEX_MOTOR_00_FRAME_ROOM 26U
-RFLEX_API enum rflex_result rflex_motor_00_frame(const struct rflex_motor_00 *message,
-                                                 uint8_t number, uint8_t *frame, size_t capacity,
-                                                 size_t *size);
+RFLEX_API size_t rflex_motor_00_frame(const struct rflex_motor_00 *message, uint8_t number,
+                                      uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_motor_00_send(const struct rflex_motor_00 *message,
                                                 uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_COMMAND_FRAME_MAX 53U
 #define RFLEX_MOTOR_COMMAND_FRAME_ROOM 65U
-RFLEX_API enum rflex_result rflex_motor_command_frame(const struct rflex_motor_command *message,
-                                                      uint8_t number, uint8_t *frame,
-                                                      size_t capacity, size_t *size);
+RFLEX_API size_t rflex_motor_command_frame(const struct rflex_motor_command *message,
+                                           uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_motor_command_send(const struct rflex_motor_command *message,
                                                      uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CONFIRM_MOTOR_COMMAND_FRAME_MAX 40U
 #define RFLEX_CONFIRM_MOTOR_COMMAND_FRAME_ROOM 50U
-RFLEX_API enum rflex_result rflex_confirm_motor_command_frame(
+RFLEX_API size_t rflex_confirm_motor_command_frame(
     const struct rflex_confirm_motor_command *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_API enum rflex_result rflex_confirm_motor_command_send(
     const struct rflex_confirm_motor_command *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_0A_FRAME_MAX 11U
 #define RFLEX_MOTOR_0A_FRAME_ROOM 23U
-RFLEX_API enum rflex_result rflex_motor_0a_frame(uint8_t number, uint8_t *frame, size_t capacity,
-                                                 size_t *size);
+RFLEX_API size_t rflex_motor_0a_frame(uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_motor_0a_send(uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_0C_FRAME_MAX 11U
 #define RFLEX_MOTOR_0C_FRAME_ROOM 23U
-RFLEX_API enum rflex_result rflex_motor_0c_frame(uint8_t number, uint8_t *frame, size_t capacity,
-                                                 size_t *size);
+RFLEX_API size_t rflex_motor_0c_frame(uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_motor_0c_send(uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_0C_ANSWER_FRAME_MAX 35U
 #define RFLEX_MOTOR_0C_ANSWER_FRAME_ROOM 47U
-RFLEX_API enum rflex_result rflex_motor_0c_answer_frame(const struct rflex_motor_0c_answer *message,
-                                                        uint8_t number, uint8_t *frame,
-                                                        size_t capacity, size_t *size);
+RFLEX_API size_t rflex_motor_0c_answer_frame(const struct rflex_motor_0c_answer *message,
+                                             uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_motor_0c_answer_send(const struct rflex_motor_0c_answer *message,
                                                        uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_READ_MOTOR_FRAME_MAX 88U
 #define RFLEX_READ_MOTOR_FRAME_ROOM 98U
-RFLEX_API enum rflex_result rflex_read_motor_frame(const struct rflex_read_motor *message,
-                                                   uint8_t number, uint8_t *frame, size_t capacity,
-                                                   size_t *size);
+RFLEX_API size_t rflex_read_motor_frame(const struct rflex_read_motor *message, uint8_t number,
+                                        uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_read_motor_send(const struct rflex_read_motor *message,
                                                   uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
 #define RFLEX_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
-RFLEX_API enum rflex_result rflex_start_stop_motor_packets_frame(
+RFLEX_API size_t rflex_start_stop_motor_packets_frame(
     const struct rflex_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_API enum rflex_result rflex_start_stop_motor_packets_send(
     const struct rflex_start_stop_motor_packets *message, uint8_t number, rflex_put put,
     void *user);
@@ -916,9 +910,9 @@ RFLEX_API enum rflex_result rflex_start_stop_motor_packets_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
 #define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
-RFLEX_API enum rflex_result rflex_confirm_start_stop_motor_packets_frame(
+RFLEX_API size_t rflex_confirm_start_stop_motor_packets_frame(
     const struct rflex_confirm_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_API enum rflex_result rflex_confirm_start_stop_motor_packets_send(
     const struct rflex_confirm_start_stop_motor_packets *message, uint8_t number, rflex_put put,
     void *user);
@@ -926,26 +920,24 @@ RFLEX_API enum rflex_result rflex_confirm_start_stop_motor_packets_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_MAX 11U
 #define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_ROOM 23U
-RFLEX_API enum rflex_result rflex_request_joystick_data_frame(uint8_t number, uint8_t *frame,
-                                                              size_t capacity, size_t *size);
+RFLEX_API size_t rflex_request_joystick_data_frame(uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_request_joystick_data_send(uint8_t number, rflex_put put,
                                                              void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_JOYSTICK_DATA_FRAME_MAX 52U
 #define RFLEX_JOYSTICK_DATA_FRAME_ROOM 62U
-RFLEX_API enum rflex_result rflex_joystick_data_frame(const struct rflex_joystick_data *message,
-                                                      uint8_t number, uint8_t *frame,
-                                                      size_t capacity, size_t *size);
+RFLEX_API size_t rflex_joystick_data_frame(const struct rflex_joystick_data *message,
+                                           uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_joystick_data_send(const struct rflex_joystick_data *message,
                                                      uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_START_STOP_SONAR_PACKETS_FRAME_MAX 52U
 #define RFLEX_START_STOP_SONAR_PACKETS_FRAME_ROOM 62U
-RFLEX_API enum rflex_result rflex_start_stop_sonar_packets_frame(
+RFLEX_API size_t rflex_start_stop_sonar_packets_frame(
     const struct rflex_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_API enum rflex_result rflex_start_stop_sonar_packets_send(
     const struct rflex_start_stop_sonar_packets *message, uint8_t number, rflex_put put,
     void *user);
@@ -953,9 +945,9 @@ RFLEX_API enum rflex_result rflex_start_stop_sonar_packets_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_MAX 35U
 #define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_ROOM 47U
-RFLEX_API enum rflex_result rflex_confirm_start_stop_sonar_packets_frame(
+RFLEX_API size_t rflex_confirm_start_stop_sonar_packets_frame(
     const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_API enum rflex_result rflex_confirm_start_stop_sonar_packets_send(
     const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t number, rflex_put put,
     void *user);
@@ -963,27 +955,26 @@ RFLEX_API enum rflex_result rflex_confirm_start_stop_sonar_packets_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_SONAR_DATA_FRAME_MAX 773U
 #define RFLEX_SONAR_DATA_FRAME_ROOM 785U
-RFLEX_API enum rflex_result rflex_sonar_data_frame(const struct rflex_sonar_data *message,
-                                                   uint8_t number, uint8_t *frame, size_t capacity,
-                                                   size_t *size);
+RFLEX_API size_t rflex_sonar_data_frame(const struct rflex_sonar_data *message, uint8_t number,
+                                        uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_sonar_data_send(const struct rflex_sonar_data *message,
                                                   uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_INITIALIZE_DIGITAL_IO_FRAME_MAX 23U
 #define RFLEX_INITIALIZE_DIGITAL_IO_FRAME_ROOM 35U
-RFLEX_API enum rflex_result rflex_initialize_digital_io_frame(
+RFLEX_API size_t rflex_initialize_digital_io_frame(
     const struct rflex_initialize_digital_io *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_API enum rflex_result rflex_initialize_digital_io_send(
     const struct rflex_initialize_digital_io *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_MAX 35U
 #define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_ROOM 47U
-RFLEX_API enum rflex_result rflex_confirm_initialize_digital_io_frame(
+RFLEX_API size_t rflex_confirm_initialize_digital_io_frame(
     const struct rflex_confirm_initialize_digital_io *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_API enum rflex_result rflex_confirm_initialize_digital_io_send(
     const struct rflex_confirm_initialize_digital_io *message, uint8_t number, rflex_put put,
     void *user);
@@ -991,36 +982,33 @@ RFLEX_API enum rflex_result rflex_confirm_initialize_digital_io_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CHANGED_BUMPERS_FRAME_MAX 34U
 #define RFLEX_CHANGED_BUMPERS_FRAME_ROOM 44U
-RFLEX_API enum rflex_result rflex_changed_bumpers_frame(const struct rflex_changed_bumpers *message,
-                                                        uint8_t number, uint8_t *frame,
-                                                        size_t capacity, size_t *size);
+RFLEX_API size_t rflex_changed_bumpers_frame(const struct rflex_changed_bumpers *message,
+                                             uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_changed_bumpers_send(const struct rflex_changed_bumpers *message,
                                                        uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CHECK_IO_CHANGED_FRAME_MAX 23U
 #define RFLEX_CHECK_IO_CHANGED_FRAME_ROOM 35U
-RFLEX_API enum rflex_result rflex_check_io_changed_frame(
-    const struct rflex_check_io_changed *message, uint8_t number, uint8_t *frame, size_t capacity,
-    size_t *size);
+RFLEX_API size_t rflex_check_io_changed_frame(const struct rflex_check_io_changed *message,
+                                              uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_check_io_changed_send(
     const struct rflex_check_io_changed *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CHECK_IO_CHANGED_ANSWER_FRAME_MAX 47U
 #define RFLEX_CHECK_IO_CHANGED_ANSWER_FRAME_ROOM 59U
-RFLEX_API enum rflex_result rflex_check_io_changed_answer_frame(
+RFLEX_API size_t rflex_check_io_changed_answer_frame(
     const struct rflex_check_io_changed_answer *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_API enum rflex_result rflex_check_io_changed_answer_send(
     const struct rflex_check_io_changed_answer *message, uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CHANGED_BYTE_FRAME_MAX 34U
 #define RFLEX_CHANGED_BYTE_FRAME_ROOM 44U
-RFLEX_API enum rflex_result rflex_changed_byte_frame(const struct rflex_changed_byte *message,
-                                                     uint8_t number, uint8_t *frame,
-                                                     size_t capacity, size_t *size);
+RFLEX_API size_t rflex_changed_byte_frame(const struct rflex_changed_byte *message, uint8_t number,
+                                          uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_changed_byte_send(const struct rflex_changed_byte *message,
                                                     uint8_t number, rflex_put put, void *user);
 
@@ -1408,10 +1396,10 @@ RFLEX_API const char *rflex_start_stop_motor_packets_start_stop_name(uint8_t val
 RFLEX_API const char *rflex_start_stop_sonar_packets_start_stop_name(uint8_t value);
 
 /*
- * Where a function returned RFLEX_ERROR_RANGE: the first member whose value, or number of
- * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
- * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
- * A message that can always be sent has no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
+ * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
+ * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
+ * no such function.
  */
 RFLEX_API const char *rflex_sonar_data_refused(const struct rflex_sonar_data *message);
 

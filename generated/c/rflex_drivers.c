@@ -222,11 +222,6 @@ enum rflex_drivers_result rflex_drivers_axis_get_system_encode(
     return RFLEX_DRIVERS_OK;
 }
 
-void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_get_system *message,
-                                        const uint8_t *payload) {
-    message->axis = payload[0];
-}
-
 enum rflex_drivers_result rflex_drivers_axis_get_system_decode(
     struct rflex_drivers_axis_get_system *message, const uint8_t *payload, size_t size) {
     if (size != 1U) {
@@ -1540,15 +1535,13 @@ RFLEX_DRIVERS_INLINE void rflex_drivers_ir_report_put(const struct rflex_drivers
     rflex_drivers_write_bytes(writer, message->data, message->data_size);
 }
 
-enum rflex_drivers_result rflex_drivers_request_system_status_frame(uint8_t number, uint8_t *frame,
-                                                                    size_t capacity, size_t *size) {
+size_t rflex_drivers_request_system_status_frame(uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_request_system_status_store(rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x01U, 0x01U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x01U, 0x01U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_request_system_status_send(uint8_t number,
@@ -1566,16 +1559,14 @@ enum rflex_drivers_result rflex_drivers_request_system_status_send(uint8_t numbe
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_system_status_frame(
-    const struct rflex_drivers_system_status *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+size_t rflex_drivers_system_status_frame(const struct rflex_drivers_system_status *message,
+                                         uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 9U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_system_status_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x01U, 0x01U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x01U, 0x01U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_system_status_send(
@@ -1593,21 +1584,18 @@ enum rflex_drivers_result rflex_drivers_system_status_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_lcd_dump_frame(const struct rflex_drivers_lcd_dump *message,
-                                                       uint8_t number, uint8_t *frame,
-                                                       size_t capacity, size_t *size) {
+size_t rflex_drivers_lcd_dump_frame(const struct rflex_drivers_lcd_dump *message, uint8_t number,
+                                    uint8_t *frame, size_t capacity) {
     size_t payload;
-    const enum rflex_drivers_result result = rflex_drivers_lcd_dump_validate(message);
-    if (result != RFLEX_DRIVERS_OK) {
-        return result;
+    if (rflex_drivers_lcd_dump_validate(message) != RFLEX_DRIVERS_OK) {
+        return 0U;
     }
     payload = rflex_drivers_lcd_dump_measure(message);
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_lcd_dump_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x01U, 0x00U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x01U, 0x00U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_lcd_dump_send(const struct rflex_drivers_lcd_dump *message,
@@ -1615,9 +1603,8 @@ enum rflex_drivers_result rflex_drivers_lcd_dump_send(const struct rflex_drivers
                                                       void *user) {
     struct rflex_drivers_writer writer;
     size_t payload;
-    const enum rflex_drivers_result result = rflex_drivers_lcd_dump_validate(message);
-    if (result != RFLEX_DRIVERS_OK) {
-        return result;
+    if (rflex_drivers_lcd_dump_validate(message) != RFLEX_DRIVERS_OK) {
+        return RFLEX_DRIVERS_ERROR_RANGE;
     }
     payload = rflex_drivers_lcd_dump_measure(message);
     writer.put = put;
@@ -1630,16 +1617,14 @@ enum rflex_drivers_result rflex_drivers_lcd_dump_send(const struct rflex_drivers
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_axis_get_system_frame(
-    const struct rflex_drivers_axis_get_system *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+size_t rflex_drivers_axis_get_system_frame(const struct rflex_drivers_axis_get_system *message,
+                                           uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 1U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_axis_get_system_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x00U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x00U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_axis_get_system_send(
@@ -1657,16 +1642,14 @@ enum rflex_drivers_result rflex_drivers_axis_get_system_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_motor_command_frame(
-    const struct rflex_drivers_motor_command *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+size_t rflex_drivers_motor_command_frame(const struct rflex_drivers_motor_command *message,
+                                         uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 14U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_motor_command_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x07U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x07U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_motor_command_send(
@@ -1684,16 +1667,15 @@ enum rflex_drivers_result rflex_drivers_motor_command_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_motor_command_frame(
+size_t rflex_drivers_confirm_motor_command_frame(
     const struct rflex_drivers_confirm_motor_command *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+    size_t capacity) {
     const size_t payload = 9U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_confirm_motor_command_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x07U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x07U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_confirm_motor_command_send(
@@ -1711,15 +1693,13 @@ enum rflex_drivers_result rflex_drivers_confirm_motor_command_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_set_defaults_frame(uint8_t number, uint8_t *frame,
-                                                           size_t capacity, size_t *size) {
+size_t rflex_drivers_set_defaults_frame(uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_set_defaults_store(rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0AU, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0AU, number);
 }
 
 enum rflex_drivers_result rflex_drivers_set_defaults_send(uint8_t number, rflex_drivers_put put,
@@ -1736,15 +1716,13 @@ enum rflex_drivers_result rflex_drivers_set_defaults_send(uint8_t number, rflex_
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_set_frame(uint8_t number, uint8_t *frame,
-                                                        size_t capacity, size_t *size) {
+size_t rflex_drivers_brake_set_frame(uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_brake_set_store(rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0BU, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0BU, number);
 }
 
 enum rflex_drivers_result rflex_drivers_brake_set_send(uint8_t number, rflex_drivers_put put,
@@ -1761,15 +1739,13 @@ enum rflex_drivers_result rflex_drivers_brake_set_send(uint8_t number, rflex_dri
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_frame(uint8_t number, uint8_t *frame,
-                                                            size_t capacity, size_t *size) {
+size_t rflex_drivers_brake_release_frame(uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_brake_release_store(rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
 }
 
 enum rflex_drivers_result rflex_drivers_brake_release_send(uint8_t number, rflex_drivers_put put,
@@ -1786,16 +1762,15 @@ enum rflex_drivers_result rflex_drivers_brake_release_send(uint8_t number, rflex
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_brake_release_answer_frame(
+size_t rflex_drivers_brake_release_answer_frame(
     const struct rflex_drivers_brake_release_answer *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+    size_t capacity) {
     const size_t payload = 8U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_brake_release_answer_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x0CU, number);
 }
 
 enum rflex_drivers_result rflex_drivers_brake_release_answer_send(
@@ -1813,16 +1788,14 @@ enum rflex_drivers_result rflex_drivers_brake_release_answer_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_read_motor_frame(
-    const struct rflex_drivers_read_motor *message, uint8_t number, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t rflex_drivers_read_motor_frame(const struct rflex_drivers_read_motor *message,
+                                      uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 25U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_read_motor_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x21U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x21U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_read_motor_send(
@@ -1840,17 +1813,16 @@ enum rflex_drivers_result rflex_drivers_read_motor_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_frame(
+size_t rflex_drivers_start_stop_motor_packets_frame(
     const struct rflex_drivers_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+    size_t capacity) {
     const size_t payload = 8U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_start_stop_motor_packets_store(message,
                                                  rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x22U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x22U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_send(
@@ -1868,18 +1840,17 @@ enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_frame(
+size_t rflex_drivers_confirm_start_stop_motor_packets_frame(
     const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t number,
-    uint8_t *frame, size_t capacity, size_t *size) {
+    uint8_t *frame, size_t capacity) {
     const size_t payload = 8U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_confirm_start_stop_motor_packets_store(message,
                                                          rflex_drivers_linux_payload(frame,
                                                                                      payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x22U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x02U, 0x22U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_send(
@@ -1897,15 +1868,13 @@ enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_request_joystick_data_frame(uint8_t number, uint8_t *frame,
-                                                                    size_t capacity, size_t *size) {
+size_t rflex_drivers_request_joystick_data_frame(uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 0U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_request_joystick_data_store(rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x03U, 0x00U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x03U, 0x00U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_request_joystick_data_send(uint8_t number,
@@ -1923,16 +1892,14 @@ enum rflex_drivers_result rflex_drivers_request_joystick_data_send(uint8_t numbe
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_joystick_data_frame(
-    const struct rflex_drivers_joystick_data *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+size_t rflex_drivers_joystick_data_frame(const struct rflex_drivers_joystick_data *message,
+                                         uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 13U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_joystick_data_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x03U, 0x00U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x03U, 0x00U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_joystick_data_send(
@@ -1950,17 +1917,16 @@ enum rflex_drivers_result rflex_drivers_joystick_data_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_frame(
+size_t rflex_drivers_start_stop_sonar_packets_frame(
     const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+    size_t capacity) {
     const size_t payload = 13U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_start_stop_sonar_packets_store(message,
                                                  rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x04U, 0x00U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x04U, 0x00U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_send(
@@ -1978,18 +1944,17 @@ enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_frame(
+size_t rflex_drivers_confirm_start_stop_sonar_packets_frame(
     const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t number,
-    uint8_t *frame, size_t capacity, size_t *size) {
+    uint8_t *frame, size_t capacity) {
     const size_t payload = 8U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_confirm_start_stop_sonar_packets_store(message,
                                                          rflex_drivers_linux_payload(frame,
                                                                                      payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x04U, 0x00U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x04U, 0x00U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_send(
@@ -2007,21 +1972,18 @@ enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_sonar_data_frame(
-    const struct rflex_drivers_sonar_data *message, uint8_t number, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t rflex_drivers_sonar_data_frame(const struct rflex_drivers_sonar_data *message,
+                                      uint8_t number, uint8_t *frame, size_t capacity) {
     size_t payload;
-    const enum rflex_drivers_result result = rflex_drivers_sonar_data_validate(message);
-    if (result != RFLEX_DRIVERS_OK) {
-        return result;
+    if (rflex_drivers_sonar_data_validate(message) != RFLEX_DRIVERS_OK) {
+        return 0U;
     }
     payload = rflex_drivers_sonar_data_measure(message);
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_sonar_data_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x04U, 0x02U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x04U, 0x02U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_sonar_data_send(
@@ -2029,9 +1991,8 @@ enum rflex_drivers_result rflex_drivers_sonar_data_send(
     void *user) {
     struct rflex_drivers_writer writer;
     size_t payload;
-    const enum rflex_drivers_result result = rflex_drivers_sonar_data_validate(message);
-    if (result != RFLEX_DRIVERS_OK) {
-        return result;
+    if (rflex_drivers_sonar_data_validate(message) != RFLEX_DRIVERS_OK) {
+        return RFLEX_DRIVERS_ERROR_RANGE;
     }
     payload = rflex_drivers_sonar_data_measure(message);
     writer.put = put;
@@ -2044,16 +2005,15 @@ enum rflex_drivers_result rflex_drivers_sonar_data_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_initialize_digital_io_frame(
+size_t rflex_drivers_initialize_digital_io_frame(
     const struct rflex_drivers_initialize_digital_io *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+    size_t capacity) {
     const size_t payload = 4U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_initialize_digital_io_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x00U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x00U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_initialize_digital_io_send(
@@ -2071,17 +2031,16 @@ enum rflex_drivers_result rflex_drivers_initialize_digital_io_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_frame(
+size_t rflex_drivers_confirm_initialize_digital_io_frame(
     const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t number,
-    uint8_t *frame, size_t capacity, size_t *size) {
+    uint8_t *frame, size_t capacity) {
     const size_t payload = 8U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_confirm_initialize_digital_io_store(message,
                                                       rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x00U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x00U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_send(
@@ -2099,16 +2058,14 @@ enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_changed_bumpers_frame(
-    const struct rflex_drivers_changed_bumpers *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+size_t rflex_drivers_changed_bumpers_frame(const struct rflex_drivers_changed_bumpers *message,
+                                           uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 7U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_changed_bumpers_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x01U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x01U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_changed_bumpers_send(
@@ -2126,16 +2083,14 @@ enum rflex_drivers_result rflex_drivers_changed_bumpers_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_frame(
-    const struct rflex_drivers_check_io_changed *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+size_t rflex_drivers_check_io_changed_frame(const struct rflex_drivers_check_io_changed *message,
+                                            uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 4U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_check_io_changed_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x02U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x02U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_check_io_changed_send(
@@ -2153,17 +2108,16 @@ enum rflex_drivers_result rflex_drivers_check_io_changed_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_check_io_changed_answer_frame(
+size_t rflex_drivers_check_io_changed_answer_frame(
     const struct rflex_drivers_check_io_changed_answer *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+    size_t capacity) {
     const size_t payload = 12U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_check_io_changed_answer_store(message,
                                                 rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x02U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x02U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_check_io_changed_answer_send(
@@ -2181,16 +2135,14 @@ enum rflex_drivers_result rflex_drivers_check_io_changed_answer_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_changed_byte_frame(
-    const struct rflex_drivers_changed_byte *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size) {
+size_t rflex_drivers_changed_byte_frame(const struct rflex_drivers_changed_byte *message,
+                                        uint8_t number, uint8_t *frame, size_t capacity) {
     const size_t payload = 7U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_changed_byte_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x03U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x05U, 0x03U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_changed_byte_send(
@@ -2208,16 +2160,14 @@ enum rflex_drivers_result rflex_drivers_changed_byte_send(
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_ir_run_frame(const struct rflex_drivers_ir_run *message,
-                                                     uint8_t number, uint8_t *frame,
-                                                     size_t capacity, size_t *size) {
+size_t rflex_drivers_ir_run_frame(const struct rflex_drivers_ir_run *message, uint8_t number,
+                                  uint8_t *frame, size_t capacity) {
     const size_t payload = 21U;
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_ir_run_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x06U, 0x00U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x06U, 0x00U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_ir_run_send(const struct rflex_drivers_ir_run *message,
@@ -2235,21 +2185,18 @@ enum rflex_drivers_result rflex_drivers_ir_run_send(const struct rflex_drivers_i
     return RFLEX_DRIVERS_OK;
 }
 
-enum rflex_drivers_result rflex_drivers_ir_report_frame(
-    const struct rflex_drivers_ir_report *message, uint8_t number, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t rflex_drivers_ir_report_frame(const struct rflex_drivers_ir_report *message, uint8_t number,
+                                     uint8_t *frame, size_t capacity) {
     size_t payload;
-    const enum rflex_drivers_result result = rflex_drivers_ir_report_validate(message);
-    if (result != RFLEX_DRIVERS_OK) {
-        return result;
+    if (rflex_drivers_ir_report_validate(message) != RFLEX_DRIVERS_OK) {
+        return 0U;
     }
     payload = rflex_drivers_ir_report_measure(message);
     if (capacity < rflex_drivers_linux_room(payload)) {
-        return RFLEX_DRIVERS_ERROR_SPACE;
+        return 0U;
     }
     rflex_drivers_ir_report_store(message, rflex_drivers_linux_payload(frame, payload));
-    *size = rflex_drivers_linux_wrap(frame, payload, 0x06U, 0x01U, number);
-    return RFLEX_DRIVERS_OK;
+    return rflex_drivers_linux_wrap(frame, payload, 0x06U, 0x01U, number);
 }
 
 enum rflex_drivers_result rflex_drivers_ir_report_send(
@@ -2257,9 +2204,8 @@ enum rflex_drivers_result rflex_drivers_ir_report_send(
     void *user) {
     struct rflex_drivers_writer writer;
     size_t payload;
-    const enum rflex_drivers_result result = rflex_drivers_ir_report_validate(message);
-    if (result != RFLEX_DRIVERS_OK) {
-        return result;
+    if (rflex_drivers_ir_report_validate(message) != RFLEX_DRIVERS_OK) {
+        return RFLEX_DRIVERS_ERROR_RANGE;
     }
     payload = rflex_drivers_ir_report_measure(message);
     writer.put = put;
@@ -2463,10 +2409,7 @@ static void rflex_drivers_linux_set_payload(struct rflex_drivers_linux_decoder *
 static uint8_t rflex_drivers_linux_read_length(struct rflex_drivers_linux_decoder *decoder,
                                                uint16_t length) {
     uint16_t size = length;
-    if (size - 0U > 255U) {
-        return RFLEX_DRIVERS_LENGTH;
-    }
-    rflex_drivers_linux_set_payload(decoder, (uint16_t)(size - 0U));
+    rflex_drivers_linux_set_payload(decoder, (uint16_t)size);
     return RFLEX_DRIVERS_FINE;
 }
 
@@ -3200,10 +3143,7 @@ static void rflex_drivers_flex_set_payload(struct rflex_drivers_flex_decoder *de
 static uint8_t rflex_drivers_flex_read_length(struct rflex_drivers_flex_decoder *decoder,
                                               uint16_t length) {
     uint16_t size = length;
-    if (size - 0U > 255U) {
-        return RFLEX_DRIVERS_LENGTH;
-    }
-    rflex_drivers_flex_set_payload(decoder, (uint16_t)(size - 0U));
+    rflex_drivers_flex_set_payload(decoder, (uint16_t)size);
     return RFLEX_DRIVERS_FINE;
 }
 

@@ -279,8 +279,10 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_encode
     size_t *size);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_decode(
     struct rflex_drivers_axis_get_system *message, const uint8_t *payload, size_t size);
-RFLEX_DRIVERS_API void rflex_drivers_axis_get_system_load(
-    struct rflex_drivers_axis_get_system *message, const uint8_t *payload);
+static inline void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_get_system *message,
+                                                      const uint8_t *payload) {
+    message->axis = payload[0];
+}
 
 /* --- motor_command ---------------------------------------------------------------------------- */
 
@@ -959,10 +961,10 @@ RFLEX_DRIVERS_API void rflex_drivers_ir_report_load(struct rflex_drivers_ir_repo
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
- * most `capacity` bytes and says in `size` how many the frame has. A buffer of ..._FRAME_ROOM bytes
- * always suffices; for a shorter payload less does, but the buffer has to take the most that its
- * bytes can need.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
+ * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
+ * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
+ * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
  */
 
@@ -1009,17 +1011,17 @@ static inline bool rflex_drivers_transmitted(struct rflex_drivers_transmission *
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_MAX 13U
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_frame(
-    uint8_t number, uint8_t *frame, size_t capacity, size_t *size);
+RFLEX_DRIVERS_API size_t rflex_drivers_request_system_status_frame(uint8_t number, uint8_t *frame,
+                                                                   size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_send(
     uint8_t number, rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_SYSTEM_STATUS_FRAME_MAX 38U
 #define RFLEX_DRIVERS_SYSTEM_STATUS_FRAME_ROOM 50U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_system_status_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_system_status_frame(
     const struct rflex_drivers_system_status *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_system_status_send(
     const struct rflex_drivers_system_status *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1027,9 +1029,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_system_status_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_LCD_DUMP_FRAME_MAX 776U
 #define RFLEX_DRIVERS_LCD_DUMP_FRAME_ROOM 788U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_lcd_dump_frame(
-    const struct rflex_drivers_lcd_dump *message, uint8_t number, uint8_t *frame, size_t capacity,
-    size_t *size);
+RFLEX_DRIVERS_API size_t rflex_drivers_lcd_dump_frame(const struct rflex_drivers_lcd_dump *message,
+                                                      uint8_t number, uint8_t *frame,
+                                                      size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_lcd_dump_send(
     const struct rflex_drivers_lcd_dump *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1037,9 +1039,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_lcd_dump_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_AXIS_GET_SYSTEM_FRAME_MAX 14U
 #define RFLEX_DRIVERS_AXIS_GET_SYSTEM_FRAME_ROOM 26U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_axis_get_system_frame(
     const struct rflex_drivers_axis_get_system *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_send(
     const struct rflex_drivers_axis_get_system *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1047,9 +1049,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_MOTOR_COMMAND_FRAME_MAX 53U
 #define RFLEX_DRIVERS_MOTOR_COMMAND_FRAME_ROOM 65U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_motor_command_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_motor_command_frame(
     const struct rflex_drivers_motor_command *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_motor_command_send(
     const struct rflex_drivers_motor_command *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1057,9 +1059,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_motor_command_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_FRAME_MAX 38U
 #define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_FRAME_ROOM 50U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_motor_command_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_confirm_motor_command_frame(
     const struct rflex_drivers_confirm_motor_command *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_motor_command_send(
     const struct rflex_drivers_confirm_motor_command *message, uint8_t number,
     rflex_drivers_put put, void *user);
@@ -1067,10 +1069,8 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_motor_command_
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_MAX 11U
 #define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_ROOM 23U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_frame(uint8_t number,
-                                                                             uint8_t *frame,
-                                                                             size_t capacity,
-                                                                             size_t *size);
+RFLEX_DRIVERS_API size_t rflex_drivers_set_defaults_frame(uint8_t number, uint8_t *frame,
+                                                          size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_send(uint8_t number,
                                                                             rflex_drivers_put put,
                                                                             void *user);
@@ -1078,10 +1078,8 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_send(uint
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_BRAKE_SET_FRAME_MAX 11U
 #define RFLEX_DRIVERS_BRAKE_SET_FRAME_ROOM 23U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_frame(uint8_t number,
-                                                                          uint8_t *frame,
-                                                                          size_t capacity,
-                                                                          size_t *size);
+RFLEX_DRIVERS_API size_t rflex_drivers_brake_set_frame(uint8_t number, uint8_t *frame,
+                                                       size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_send(uint8_t number,
                                                                          rflex_drivers_put put,
                                                                          void *user);
@@ -1089,10 +1087,8 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_send(uint8_t
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_MAX 11U
 #define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_ROOM 23U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_frame(uint8_t number,
-                                                                              uint8_t *frame,
-                                                                              size_t capacity,
-                                                                              size_t *size);
+RFLEX_DRIVERS_API size_t rflex_drivers_brake_release_frame(uint8_t number, uint8_t *frame,
+                                                           size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_send(uint8_t number,
                                                                              rflex_drivers_put put,
                                                                              void *user);
@@ -1100,9 +1096,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_send(uin
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_FRAME_MAX 35U
 #define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_FRAME_ROOM 47U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_answer_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_brake_release_answer_frame(
     const struct rflex_drivers_brake_release_answer *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_answer_send(
     const struct rflex_drivers_brake_release_answer *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1110,9 +1106,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_answer_s
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_READ_MOTOR_FRAME_MAX 86U
 #define RFLEX_DRIVERS_READ_MOTOR_FRAME_ROOM 98U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_read_motor_frame(
-    const struct rflex_drivers_read_motor *message, uint8_t number, uint8_t *frame, size_t capacity,
-    size_t *size);
+RFLEX_DRIVERS_API size_t rflex_drivers_read_motor_frame(
+    const struct rflex_drivers_read_motor *message, uint8_t number, uint8_t *frame,
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_read_motor_send(
     const struct rflex_drivers_read_motor *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1120,9 +1116,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_read_motor_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
 #define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_start_stop_motor_packets_frame(
     const struct rflex_drivers_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_motor_packets_send(
     const struct rflex_drivers_start_stop_motor_packets *message, uint8_t number,
     rflex_drivers_put put, void *user);
@@ -1130,9 +1126,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_motor_packe
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_confirm_start_stop_motor_packets_frame(
     const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t number,
-    uint8_t *frame, size_t capacity, size_t *size);
+    uint8_t *frame, size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_motor_packets_send(
     const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t number,
     rflex_drivers_put put, void *user);
@@ -1140,17 +1136,17 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_mot
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_MAX 11U
 #define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_ROOM 23U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_frame(
-    uint8_t number, uint8_t *frame, size_t capacity, size_t *size);
+RFLEX_DRIVERS_API size_t rflex_drivers_request_joystick_data_frame(uint8_t number, uint8_t *frame,
+                                                                   size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_send(
     uint8_t number, rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_JOYSTICK_DATA_FRAME_MAX 50U
 #define RFLEX_DRIVERS_JOYSTICK_DATA_FRAME_ROOM 62U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_joystick_data_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_joystick_data_frame(
     const struct rflex_drivers_joystick_data *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_joystick_data_send(
     const struct rflex_drivers_joystick_data *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1158,9 +1154,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_joystick_data_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_FRAME_MAX 50U
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_FRAME_ROOM 62U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_start_stop_sonar_packets_frame(
     const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_sonar_packets_send(
     const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t number,
     rflex_drivers_put put, void *user);
@@ -1168,9 +1164,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_sonar_packe
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_MAX 35U
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_ROOM 47U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_confirm_start_stop_sonar_packets_frame(
     const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t number,
-    uint8_t *frame, size_t capacity, size_t *size);
+    uint8_t *frame, size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_sonar_packets_send(
     const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t number,
     rflex_drivers_put put, void *user);
@@ -1178,9 +1174,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_son
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_SONAR_DATA_FRAME_MAX 773U
 #define RFLEX_DRIVERS_SONAR_DATA_FRAME_ROOM 785U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_sonar_data_frame(
-    const struct rflex_drivers_sonar_data *message, uint8_t number, uint8_t *frame, size_t capacity,
-    size_t *size);
+RFLEX_DRIVERS_API size_t rflex_drivers_sonar_data_frame(
+    const struct rflex_drivers_sonar_data *message, uint8_t number, uint8_t *frame,
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_sonar_data_send(
     const struct rflex_drivers_sonar_data *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1188,9 +1184,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_sonar_data_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_FRAME_MAX 23U
 #define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_FRAME_ROOM 35U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_initialize_digital_io_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_initialize_digital_io_frame(
     const struct rflex_drivers_initialize_digital_io *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_initialize_digital_io_send(
     const struct rflex_drivers_initialize_digital_io *message, uint8_t number,
     rflex_drivers_put put, void *user);
@@ -1198,9 +1194,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_initialize_digital_io_
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_MAX 35U
 #define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_ROOM 47U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_confirm_initialize_digital_io_frame(
     const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t number,
-    uint8_t *frame, size_t capacity, size_t *size);
+    uint8_t *frame, size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_initialize_digital_io_send(
     const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t number,
     rflex_drivers_put put, void *user);
@@ -1208,9 +1204,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_initialize_dig
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CHANGED_BUMPERS_FRAME_MAX 32U
 #define RFLEX_DRIVERS_CHANGED_BUMPERS_FRAME_ROOM 44U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_bumpers_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_changed_bumpers_frame(
     const struct rflex_drivers_changed_bumpers *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_bumpers_send(
     const struct rflex_drivers_changed_bumpers *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1218,9 +1214,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_bumpers_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_FRAME_MAX 23U
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_FRAME_ROOM 35U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_check_io_changed_frame(
     const struct rflex_drivers_check_io_changed *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_send(
     const struct rflex_drivers_check_io_changed *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1228,9 +1224,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_FRAME_MAX 47U
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_FRAME_ROOM 59U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_answer_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_check_io_changed_answer_frame(
     const struct rflex_drivers_check_io_changed_answer *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_answer_send(
     const struct rflex_drivers_check_io_changed_answer *message, uint8_t number,
     rflex_drivers_put put, void *user);
@@ -1238,9 +1234,9 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_answe
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CHANGED_BYTE_FRAME_MAX 32U
 #define RFLEX_DRIVERS_CHANGED_BYTE_FRAME_ROOM 44U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_byte_frame(
+RFLEX_DRIVERS_API size_t rflex_drivers_changed_byte_frame(
     const struct rflex_drivers_changed_byte *message, uint8_t number, uint8_t *frame,
-    size_t capacity, size_t *size);
+    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_byte_send(
     const struct rflex_drivers_changed_byte *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1248,18 +1244,17 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_byte_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_IR_RUN_FRAME_MAX 74U
 #define RFLEX_DRIVERS_IR_RUN_FRAME_ROOM 86U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_run_frame(
-    const struct rflex_drivers_ir_run *message, uint8_t number, uint8_t *frame, size_t capacity,
-    size_t *size);
+RFLEX_DRIVERS_API size_t rflex_drivers_ir_run_frame(const struct rflex_drivers_ir_run *message,
+                                                    uint8_t number, uint8_t *frame,
+                                                    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_run_send(
     const struct rflex_drivers_ir_run *message, uint8_t number, rflex_drivers_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_IR_REPORT_FRAME_MAX 776U
 #define RFLEX_DRIVERS_IR_REPORT_FRAME_ROOM 788U
-RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_report_frame(
-    const struct rflex_drivers_ir_report *message, uint8_t number, uint8_t *frame, size_t capacity,
-    size_t *size);
+RFLEX_DRIVERS_API size_t rflex_drivers_ir_report_frame(
+    const struct rflex_drivers_ir_report *message, uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_report_send(
     const struct rflex_drivers_ir_report *message, uint8_t number, rflex_drivers_put put,
     void *user);
@@ -1680,10 +1675,10 @@ RFLEX_DRIVERS_API const char *rflex_drivers_start_stop_sonar_packets_mode_name(u
 RFLEX_DRIVERS_API const char *rflex_drivers_ir_run_mode_name(uint8_t value);
 
 /*
- * Where a function returned RFLEX_DRIVERS_ERROR_RANGE: the first member whose value, or number of
- * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
- * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
- * A message that can always be sent has no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
+ * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
+ * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
+ * no such function.
  */
 RFLEX_DRIVERS_API const char *rflex_drivers_lcd_dump_refused(
     const struct rflex_drivers_lcd_dump *message);

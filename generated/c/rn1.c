@@ -1175,27 +1175,24 @@ RN1_INLINE void rn1_facing_put(const struct rn1_facing *message, rn1_put put, vo
     rn1_write_u14le(put, user, (uint16_t)message->speed);
 }
 
-enum rn1_result rn1_move_manual_frame(const struct rn1_move_manual *message, uint8_t *frame,
-                                      size_t capacity, size_t *size) {
+size_t rn1_move_manual_frame(const struct rn1_move_manual *message, uint8_t *frame,
+                             size_t capacity) {
     const size_t payload = 2U;
-    const enum rn1_result result = rn1_move_manual_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_move_manual_validate(message) != RN1_OK) {
+        return 0U;
     }
     if (capacity < rn1_host_room(payload)) {
-        return RN1_ERROR_SPACE;
+        return 0U;
     }
     rn1_move_manual_store(message, rn1_host_payload(frame, payload));
-    *size = rn1_host_wrap(frame, payload, 0x80U);
-    return RN1_OK;
+    return rn1_host_wrap(frame, payload, 0x80U);
 }
 
 enum rn1_result rn1_move_manual_send(const struct rn1_move_manual *message, rn1_put put,
                                      void *user) {
     const size_t payload = 2U;
-    const enum rn1_result result = rn1_move_manual_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_move_manual_validate(message) != RN1_OK) {
+        return RN1_ERROR_RANGE;
     }
     rn1_host_send_head(put, user, payload, 0x80U);
     rn1_move_manual_put(message, put, user);
@@ -1203,27 +1200,24 @@ enum rn1_result rn1_move_manual_send(const struct rn1_move_manual *message, rn1_
     return RN1_OK;
 }
 
-enum rn1_result rn1_move_relative_twostep_frame(const struct rn1_move_relative_twostep *message,
-                                                uint8_t *frame, size_t capacity, size_t *size) {
+size_t rn1_move_relative_twostep_frame(const struct rn1_move_relative_twostep *message,
+                                       uint8_t *frame, size_t capacity) {
     const size_t payload = 4U;
-    const enum rn1_result result = rn1_move_relative_twostep_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_move_relative_twostep_validate(message) != RN1_OK) {
+        return 0U;
     }
     if (capacity < rn1_host_room(payload)) {
-        return RN1_ERROR_SPACE;
+        return 0U;
     }
     rn1_move_relative_twostep_store(message, rn1_host_payload(frame, payload));
-    *size = rn1_host_wrap(frame, payload, 0x81U);
-    return RN1_OK;
+    return rn1_host_wrap(frame, payload, 0x81U);
 }
 
 enum rn1_result rn1_move_relative_twostep_send(const struct rn1_move_relative_twostep *message,
                                                rn1_put put, void *user) {
     const size_t payload = 4U;
-    const enum rn1_result result = rn1_move_relative_twostep_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_move_relative_twostep_validate(message) != RN1_OK) {
+        return RN1_ERROR_RANGE;
     }
     rn1_host_send_head(put, user, payload, 0x81U);
     rn1_move_relative_twostep_put(message, put, user);
@@ -1231,27 +1225,24 @@ enum rn1_result rn1_move_relative_twostep_send(const struct rn1_move_relative_tw
     return RN1_OK;
 }
 
-enum rn1_result rn1_move_relative_arc_frame(const struct rn1_move_relative_arc *message,
-                                            uint8_t *frame, size_t capacity, size_t *size) {
+size_t rn1_move_relative_arc_frame(const struct rn1_move_relative_arc *message, uint8_t *frame,
+                                   size_t capacity) {
     const size_t payload = 4U;
-    const enum rn1_result result = rn1_move_relative_arc_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_move_relative_arc_validate(message) != RN1_OK) {
+        return 0U;
     }
     if (capacity < rn1_host_room(payload)) {
-        return RN1_ERROR_SPACE;
+        return 0U;
     }
     rn1_move_relative_arc_store(message, rn1_host_payload(frame, payload));
-    *size = rn1_host_wrap(frame, payload, 0x82U);
-    return RN1_OK;
+    return rn1_host_wrap(frame, payload, 0x82U);
 }
 
 enum rn1_result rn1_move_relative_arc_send(const struct rn1_move_relative_arc *message, rn1_put put,
                                            void *user) {
     const size_t payload = 4U;
-    const enum rn1_result result = rn1_move_relative_arc_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_move_relative_arc_validate(message) != RN1_OK) {
+        return RN1_ERROR_RANGE;
     }
     rn1_host_send_head(put, user, payload, 0x82U);
     rn1_move_relative_arc_put(message, put, user);
@@ -1259,28 +1250,25 @@ enum rn1_result rn1_move_relative_arc_send(const struct rn1_move_relative_arc *m
     return RN1_OK;
 }
 
-enum rn1_result rn1_maintenance_frame(const struct rn1_maintenance *message, uint8_t *frame,
-                                      size_t capacity, size_t *size) {
+size_t rn1_maintenance_frame(const struct rn1_maintenance *message, uint8_t *frame,
+                             size_t capacity) {
     size_t payload;
-    const enum rn1_result result = rn1_maintenance_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_maintenance_validate(message) != RN1_OK) {
+        return 0U;
     }
     payload = rn1_maintenance_measure(message);
     if (capacity < rn1_host_room(payload)) {
-        return RN1_ERROR_SPACE;
+        return 0U;
     }
     rn1_maintenance_store(message, rn1_host_payload(frame, payload));
-    *size = rn1_host_wrap(frame, payload, 0xFEU);
-    return RN1_OK;
+    return rn1_host_wrap(frame, payload, 0xFEU);
 }
 
 enum rn1_result rn1_maintenance_send(const struct rn1_maintenance *message, rn1_put put,
                                      void *user) {
     size_t payload;
-    const enum rn1_result result = rn1_maintenance_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_maintenance_validate(message) != RN1_OK) {
+        return RN1_ERROR_RANGE;
     }
     payload = rn1_maintenance_measure(message);
     rn1_host_send_head(put, user, payload, 0xFEU);
@@ -1289,123 +1277,104 @@ enum rn1_result rn1_maintenance_send(const struct rn1_maintenance *message, rn1_
     return RN1_OK;
 }
 
-enum rn1_result rn1_gyro_frame(const struct rn1_gyro *message, uint8_t *frame, size_t capacity,
-                               size_t *size) {
+size_t rn1_gyro_frame(const struct rn1_gyro *message, uint8_t *frame, size_t capacity) {
     const size_t payload = 7U;
-    const enum rn1_result result = rn1_gyro_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_gyro_validate(message) != RN1_OK) {
+        return 0U;
     }
     if (capacity < rn1_brain_room(payload)) {
-        return RN1_ERROR_SPACE;
+        return 0U;
     }
     rn1_gyro_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0x80U);
-    return RN1_OK;
+    return rn1_brain_wrap(frame, payload, 0x80U);
 }
 
 enum rn1_result rn1_gyro_send(const struct rn1_gyro *message, rn1_put put, void *user) {
     const size_t payload = 7U;
-    const enum rn1_result result = rn1_gyro_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_gyro_validate(message) != RN1_OK) {
+        return RN1_ERROR_RANGE;
     }
     rn1_brain_send_head(put, user, payload, 0x80U);
     rn1_gyro_put(message, put, user);
     return RN1_OK;
 }
 
-enum rn1_result rn1_xcel_frame(const struct rn1_xcel *message, uint8_t *frame, size_t capacity,
-                               size_t *size) {
+size_t rn1_xcel_frame(const struct rn1_xcel *message, uint8_t *frame, size_t capacity) {
     const size_t payload = 7U;
-    const enum rn1_result result = rn1_xcel_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_xcel_validate(message) != RN1_OK) {
+        return 0U;
     }
     if (capacity < rn1_brain_room(payload)) {
-        return RN1_ERROR_SPACE;
+        return 0U;
     }
     rn1_xcel_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0x81U);
-    return RN1_OK;
+    return rn1_brain_wrap(frame, payload, 0x81U);
 }
 
 enum rn1_result rn1_xcel_send(const struct rn1_xcel *message, rn1_put put, void *user) {
     const size_t payload = 7U;
-    const enum rn1_result result = rn1_xcel_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_xcel_validate(message) != RN1_OK) {
+        return RN1_ERROR_RANGE;
     }
     rn1_brain_send_head(put, user, payload, 0x81U);
     rn1_xcel_put(message, put, user);
     return RN1_OK;
 }
 
-enum rn1_result rn1_compass_frame(const struct rn1_compass *message, uint8_t *frame,
-                                  size_t capacity, size_t *size) {
+size_t rn1_compass_frame(const struct rn1_compass *message, uint8_t *frame, size_t capacity) {
     const size_t payload = 7U;
-    const enum rn1_result result = rn1_compass_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_compass_validate(message) != RN1_OK) {
+        return 0U;
     }
     if (capacity < rn1_brain_room(payload)) {
-        return RN1_ERROR_SPACE;
+        return 0U;
     }
     rn1_compass_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0x82U);
-    return RN1_OK;
+    return rn1_brain_wrap(frame, payload, 0x82U);
 }
 
 enum rn1_result rn1_compass_send(const struct rn1_compass *message, rn1_put put, void *user) {
     const size_t payload = 7U;
-    const enum rn1_result result = rn1_compass_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_compass_validate(message) != RN1_OK) {
+        return RN1_ERROR_RANGE;
     }
     rn1_brain_send_head(put, user, payload, 0x82U);
     rn1_compass_put(message, put, user);
     return RN1_OK;
 }
 
-enum rn1_result rn1_optflow_frame(const struct rn1_optflow *message, uint8_t *frame,
-                                  size_t capacity, size_t *size) {
+size_t rn1_optflow_frame(const struct rn1_optflow *message, uint8_t *frame, size_t capacity) {
     const size_t payload = 6U;
-    const enum rn1_result result = rn1_optflow_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_optflow_validate(message) != RN1_OK) {
+        return 0U;
     }
     if (capacity < rn1_brain_room(payload)) {
-        return RN1_ERROR_SPACE;
+        return 0U;
     }
     rn1_optflow_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0x83U);
-    return RN1_OK;
+    return rn1_brain_wrap(frame, payload, 0x83U);
 }
 
 enum rn1_result rn1_optflow_send(const struct rn1_optflow *message, rn1_put put, void *user) {
     const size_t payload = 6U;
-    const enum rn1_result result = rn1_optflow_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_optflow_validate(message) != RN1_OK) {
+        return RN1_ERROR_RANGE;
     }
     rn1_brain_send_head(put, user, payload, 0x83U);
     rn1_optflow_put(message, put, user);
     return RN1_OK;
 }
 
-enum rn1_result rn1_lidar_frame(const struct rn1_lidar *message, uint8_t *frame, size_t capacity,
-                                size_t *size) {
+size_t rn1_lidar_frame(const struct rn1_lidar *message, uint8_t *frame, size_t capacity) {
     const size_t payload = 721U;
-    const enum rn1_result result = rn1_lidar_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_lidar_validate(message) != RN1_OK) {
+        return 0U;
     }
     if (capacity < rn1_brain_room(payload)) {
-        return RN1_ERROR_SPACE;
+        return 0U;
     }
     rn1_lidar_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0x84U);
-    return RN1_OK;
+    return rn1_brain_wrap(frame, payload, 0x84U);
 }
 
 uint8_t *rn1_lidar_begin(uint8_t *frame, size_t capacity) {
@@ -1421,69 +1390,59 @@ uint8_t *rn1_lidar_begin(uint8_t *frame, size_t capacity) {
     return at;
 }
 
-enum rn1_result rn1_lidar_end(uint8_t *frame, size_t *size) {
+size_t rn1_lidar_end(uint8_t *frame) {
     const size_t payload = 721U;
-    *size = rn1_brain_wrap(frame, payload, 0x84U);
-    return RN1_OK;
+    return rn1_brain_wrap(frame, payload, 0x84U);
 }
 
 enum rn1_result rn1_lidar_send(const struct rn1_lidar *message, rn1_put put, void *user) {
     const size_t payload = 721U;
-    const enum rn1_result result = rn1_lidar_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_lidar_validate(message) != RN1_OK) {
+        return RN1_ERROR_RANGE;
     }
     rn1_brain_send_head(put, user, payload, 0x84U);
     rn1_lidar_put(message, put, user);
     return RN1_OK;
 }
 
-enum rn1_result rn1_sonar_frame(const struct rn1_sonar *message, uint8_t *frame, size_t capacity,
-                                size_t *size) {
+size_t rn1_sonar_frame(const struct rn1_sonar *message, uint8_t *frame, size_t capacity) {
     const size_t payload = 15U;
-    const enum rn1_result result = rn1_sonar_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_sonar_validate(message) != RN1_OK) {
+        return 0U;
     }
     if (capacity < rn1_brain_room(payload)) {
-        return RN1_ERROR_SPACE;
+        return 0U;
     }
     rn1_sonar_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0x85U);
-    return RN1_OK;
+    return rn1_brain_wrap(frame, payload, 0x85U);
 }
 
 enum rn1_result rn1_sonar_send(const struct rn1_sonar *message, rn1_put put, void *user) {
     const size_t payload = 15U;
-    const enum rn1_result result = rn1_sonar_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_sonar_validate(message) != RN1_OK) {
+        return RN1_ERROR_RANGE;
     }
     rn1_brain_send_head(put, user, payload, 0x85U);
     rn1_sonar_put(message, put, user);
     return RN1_OK;
 }
 
-enum rn1_result rn1_facing_frame(const struct rn1_facing *message, uint8_t *frame, size_t capacity,
-                                 size_t *size) {
+size_t rn1_facing_frame(const struct rn1_facing *message, uint8_t *frame, size_t capacity) {
     const size_t payload = 5U;
-    const enum rn1_result result = rn1_facing_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_facing_validate(message) != RN1_OK) {
+        return 0U;
     }
     if (capacity < rn1_brain_room(payload)) {
-        return RN1_ERROR_SPACE;
+        return 0U;
     }
     rn1_facing_store(message, rn1_brain_payload(frame, payload));
-    *size = rn1_brain_wrap(frame, payload, 0xA0U);
-    return RN1_OK;
+    return rn1_brain_wrap(frame, payload, 0xA0U);
 }
 
 enum rn1_result rn1_facing_send(const struct rn1_facing *message, rn1_put put, void *user) {
     const size_t payload = 5U;
-    const enum rn1_result result = rn1_facing_validate(message);
-    if (result != RN1_OK) {
-        return result;
+    if (rn1_facing_validate(message) != RN1_OK) {
+        return RN1_ERROR_RANGE;
     }
     rn1_brain_send_head(put, user, payload, 0xA0U);
     rn1_facing_put(message, put, user);
@@ -1589,7 +1548,7 @@ static uint8_t rn1_host_surplus(const struct rn1_host_decoder *decoder) {
 /* From now on the payload's size is known. */
 static void rn1_host_set_payload(struct rn1_host_decoder *decoder, uint8_t size) {
     decoder->payload = size;
-    decoder->limit = (uint8_t)(1U + size + 0U);
+    decoder->limit = (uint8_t)(1U + size);
     decoder->flags |= RN1_KNOWN;
 }
 
@@ -1915,7 +1874,7 @@ static uint8_t rn1_brain_surplus(const struct rn1_brain_decoder *decoder) {
 /* From now on the payload's size is known. */
 static void rn1_brain_set_payload(struct rn1_brain_decoder *decoder, uint16_t size) {
     decoder->payload = size;
-    decoder->limit = (uint16_t)(1U + size + 0U);
+    decoder->limit = (uint16_t)(1U + size);
     decoder->flags |= RN1_KNOWN;
 }
 

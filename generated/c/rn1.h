@@ -527,16 +527,16 @@ RN1_API void rn1_facing_load(struct rn1_facing *message, const uint8_t *payload)
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
- * most `capacity` bytes and says in `size` how many the frame has. A buffer of ..._FRAME_ROOM bytes
- * always suffices; for a shorter payload less does, but the buffer has to take the most that its
- * bytes can need.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
+ * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
+ * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
+ * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
  *
  * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
  * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
- * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns
- * RN1_ERROR_RANGE where a field has no default that is allowed, and was not set.
+ * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
+ * frame's size; 0 where a field has no default that is allowed, and was not set.
  */
 
 /** Takes the next byte of a frame. */
@@ -582,86 +582,81 @@ static inline bool rn1_transmitted(struct rn1_transmission *frame) {
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_MOVE_MANUAL_FRAME_MAX 4U
 #define RN1_MOVE_MANUAL_FRAME_ROOM 4U
-RN1_API enum rn1_result rn1_move_manual_frame(const struct rn1_move_manual *message, uint8_t *frame,
-                                              size_t capacity, size_t *size);
+RN1_API size_t rn1_move_manual_frame(const struct rn1_move_manual *message, uint8_t *frame,
+                                     size_t capacity);
 RN1_API enum rn1_result rn1_move_manual_send(const struct rn1_move_manual *message, rn1_put put,
                                              void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_MOVE_RELATIVE_TWOSTEP_FRAME_MAX 6U
 #define RN1_MOVE_RELATIVE_TWOSTEP_FRAME_ROOM 6U
-RN1_API enum rn1_result rn1_move_relative_twostep_frame(
-    const struct rn1_move_relative_twostep *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_API size_t rn1_move_relative_twostep_frame(const struct rn1_move_relative_twostep *message,
+                                               uint8_t *frame, size_t capacity);
 RN1_API enum rn1_result rn1_move_relative_twostep_send(
     const struct rn1_move_relative_twostep *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_MOVE_RELATIVE_ARC_FRAME_MAX 6U
 #define RN1_MOVE_RELATIVE_ARC_FRAME_ROOM 6U
-RN1_API enum rn1_result rn1_move_relative_arc_frame(const struct rn1_move_relative_arc *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size);
+RN1_API size_t rn1_move_relative_arc_frame(const struct rn1_move_relative_arc *message,
+                                           uint8_t *frame, size_t capacity);
 RN1_API enum rn1_result rn1_move_relative_arc_send(const struct rn1_move_relative_arc *message,
                                                    rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_MAINTENANCE_FRAME_MAX 9U
 #define RN1_MAINTENANCE_FRAME_ROOM 9U
-RN1_API enum rn1_result rn1_maintenance_frame(const struct rn1_maintenance *message, uint8_t *frame,
-                                              size_t capacity, size_t *size);
+RN1_API size_t rn1_maintenance_frame(const struct rn1_maintenance *message, uint8_t *frame,
+                                     size_t capacity);
 RN1_API enum rn1_result rn1_maintenance_send(const struct rn1_maintenance *message, rn1_put put,
                                              void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_GYRO_FRAME_MAX 8U
 #define RN1_GYRO_FRAME_ROOM 8U
-RN1_API enum rn1_result rn1_gyro_frame(const struct rn1_gyro *message, uint8_t *frame,
-                                       size_t capacity, size_t *size);
+RN1_API size_t rn1_gyro_frame(const struct rn1_gyro *message, uint8_t *frame, size_t capacity);
 RN1_API enum rn1_result rn1_gyro_send(const struct rn1_gyro *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_XCEL_FRAME_MAX 8U
 #define RN1_XCEL_FRAME_ROOM 8U
-RN1_API enum rn1_result rn1_xcel_frame(const struct rn1_xcel *message, uint8_t *frame,
-                                       size_t capacity, size_t *size);
+RN1_API size_t rn1_xcel_frame(const struct rn1_xcel *message, uint8_t *frame, size_t capacity);
 RN1_API enum rn1_result rn1_xcel_send(const struct rn1_xcel *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_COMPASS_FRAME_MAX 8U
 #define RN1_COMPASS_FRAME_ROOM 8U
-RN1_API enum rn1_result rn1_compass_frame(const struct rn1_compass *message, uint8_t *frame,
-                                          size_t capacity, size_t *size);
+RN1_API size_t rn1_compass_frame(const struct rn1_compass *message, uint8_t *frame,
+                                 size_t capacity);
 RN1_API enum rn1_result rn1_compass_send(const struct rn1_compass *message, rn1_put put,
                                          void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_OPTFLOW_FRAME_MAX 7U
 #define RN1_OPTFLOW_FRAME_ROOM 7U
-RN1_API enum rn1_result rn1_optflow_frame(const struct rn1_optflow *message, uint8_t *frame,
-                                          size_t capacity, size_t *size);
+RN1_API size_t rn1_optflow_frame(const struct rn1_optflow *message, uint8_t *frame,
+                                 size_t capacity);
 RN1_API enum rn1_result rn1_optflow_send(const struct rn1_optflow *message, rn1_put put,
                                          void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_LIDAR_FRAME_MAX 722U
 #define RN1_LIDAR_FRAME_ROOM 722U
-RN1_API enum rn1_result rn1_lidar_frame(const struct rn1_lidar *message, uint8_t *frame,
-                                        size_t capacity, size_t *size);
+RN1_API size_t rn1_lidar_frame(const struct rn1_lidar *message, uint8_t *frame, size_t capacity);
 RN1_API uint8_t *rn1_lidar_begin(uint8_t *frame, size_t capacity);
-RN1_API enum rn1_result rn1_lidar_end(uint8_t *frame, size_t *size);
+RN1_API size_t rn1_lidar_end(uint8_t *frame);
 RN1_API enum rn1_result rn1_lidar_send(const struct rn1_lidar *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_SONAR_FRAME_MAX 16U
 #define RN1_SONAR_FRAME_ROOM 16U
-RN1_API enum rn1_result rn1_sonar_frame(const struct rn1_sonar *message, uint8_t *frame,
-                                        size_t capacity, size_t *size);
+RN1_API size_t rn1_sonar_frame(const struct rn1_sonar *message, uint8_t *frame, size_t capacity);
 RN1_API enum rn1_result rn1_sonar_send(const struct rn1_sonar *message, rn1_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FACING_FRAME_MAX 6U
 #define RN1_FACING_FRAME_ROOM 6U
-RN1_API enum rn1_result rn1_facing_frame(const struct rn1_facing *message, uint8_t *frame,
-                                         size_t capacity, size_t *size);
+RN1_API size_t rn1_facing_frame(const struct rn1_facing *message, uint8_t *frame, size_t capacity);
 RN1_API enum rn1_result rn1_facing_send(const struct rn1_facing *message, rn1_put put, void *user);
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
@@ -979,10 +974,10 @@ RN1_API const char *rn1_xcel_status_name(uint8_t value);
 RN1_API const char *rn1_compass_status_name(uint8_t value);
 
 /*
- * Where a function returned RN1_ERROR_RANGE: the first member whose value, or number of
- * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
- * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
- * A message that can always be sent has no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
+ * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
+ * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
+ * no such function.
  */
 RN1_API const char *rn1_move_manual_refused(const struct rn1_move_manual *message);
 RN1_API const char *rn1_move_relative_twostep_refused(

@@ -305,11 +305,6 @@ static enum rn1_firmware_result rn1_firmware_decrease_phase_angle_check(const ui
     return RN1_FIRMWARE_OK;
 }
 
-void rn1_firmware_decrease_phase_angle_load(struct rn1_firmware_decrease_phase_angle *message,
-                                            const uint8_t *payload) {
-    message->ignored = payload[0];
-}
-
 enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(
     struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload, size_t size) {
     const enum rn1_firmware_result result = rn1_firmware_decrease_phase_angle_check(payload, size,
@@ -361,11 +356,6 @@ static enum rn1_firmware_result rn1_firmware_increase_phase_angle_check(const ui
         return RN1_FIRMWARE_ERROR_ENCODING;
     }
     return RN1_FIRMWARE_OK;
-}
-
-void rn1_firmware_increase_phase_angle_load(struct rn1_firmware_increase_phase_angle *message,
-                                            const uint8_t *payload) {
-    message->ignored = payload[0];
 }
 
 enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(
@@ -1436,27 +1426,24 @@ RN1_FIRMWARE_INLINE void rn1_firmware_debug_numbers_put(
     rn1_firmware_write_u35be(put, user, (uint64_t)message->dbg4);
 }
 
-enum rn1_firmware_result rn1_firmware_move_manual_frame(
-    const struct rn1_firmware_move_manual *message, uint8_t *frame, size_t capacity, size_t *size) {
+size_t rn1_firmware_move_manual_frame(const struct rn1_firmware_move_manual *message,
+                                      uint8_t *frame, size_t capacity) {
     const size_t payload = 2U;
-    const enum rn1_firmware_result result = rn1_firmware_move_manual_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_move_manual_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_host_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_move_manual_store(message, rn1_firmware_host_payload(frame, payload));
-    *size = rn1_firmware_host_wrap(frame, payload, 0x80U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_host_wrap(frame, payload, 0x80U);
 }
 
 enum rn1_firmware_result rn1_firmware_move_manual_send(
     const struct rn1_firmware_move_manual *message, rn1_firmware_put put, void *user) {
     const size_t payload = 2U;
-    const enum rn1_firmware_result result = rn1_firmware_move_manual_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_move_manual_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_host_send_head(put, user, payload, 0x80U);
     rn1_firmware_move_manual_put(message, put, user);
@@ -1464,28 +1451,24 @@ enum rn1_firmware_result rn1_firmware_move_manual_send(
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_move_relative_twostep_frame(
-    const struct rn1_firmware_move_relative_twostep *message, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t rn1_firmware_move_relative_twostep_frame(
+    const struct rn1_firmware_move_relative_twostep *message, uint8_t *frame, size_t capacity) {
     const size_t payload = 4U;
-    const enum rn1_firmware_result result = rn1_firmware_move_relative_twostep_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_move_relative_twostep_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_host_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_move_relative_twostep_store(message, rn1_firmware_host_payload(frame, payload));
-    *size = rn1_firmware_host_wrap(frame, payload, 0x81U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_host_wrap(frame, payload, 0x81U);
 }
 
 enum rn1_firmware_result rn1_firmware_move_relative_twostep_send(
     const struct rn1_firmware_move_relative_twostep *message, rn1_firmware_put put, void *user) {
     const size_t payload = 4U;
-    const enum rn1_firmware_result result = rn1_firmware_move_relative_twostep_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_move_relative_twostep_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_host_send_head(put, user, payload, 0x81U);
     rn1_firmware_move_relative_twostep_put(message, put, user);
@@ -1493,28 +1476,24 @@ enum rn1_firmware_result rn1_firmware_move_relative_twostep_send(
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_decrease_phase_angle_frame(
-    const struct rn1_firmware_decrease_phase_angle *message, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t rn1_firmware_decrease_phase_angle_frame(
+    const struct rn1_firmware_decrease_phase_angle *message, uint8_t *frame, size_t capacity) {
     const size_t payload = 1U;
-    const enum rn1_firmware_result result = rn1_firmware_decrease_phase_angle_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_decrease_phase_angle_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_host_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_decrease_phase_angle_store(message, rn1_firmware_host_payload(frame, payload));
-    *size = rn1_firmware_host_wrap(frame, payload, 0xD1U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_host_wrap(frame, payload, 0xD1U);
 }
 
 enum rn1_firmware_result rn1_firmware_decrease_phase_angle_send(
     const struct rn1_firmware_decrease_phase_angle *message, rn1_firmware_put put, void *user) {
     const size_t payload = 1U;
-    const enum rn1_firmware_result result = rn1_firmware_decrease_phase_angle_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_decrease_phase_angle_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_host_send_head(put, user, payload, 0xD1U);
     rn1_firmware_decrease_phase_angle_put(message, put, user);
@@ -1522,28 +1501,24 @@ enum rn1_firmware_result rn1_firmware_decrease_phase_angle_send(
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_increase_phase_angle_frame(
-    const struct rn1_firmware_increase_phase_angle *message, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t rn1_firmware_increase_phase_angle_frame(
+    const struct rn1_firmware_increase_phase_angle *message, uint8_t *frame, size_t capacity) {
     const size_t payload = 1U;
-    const enum rn1_firmware_result result = rn1_firmware_increase_phase_angle_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_increase_phase_angle_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_host_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_increase_phase_angle_store(message, rn1_firmware_host_payload(frame, payload));
-    *size = rn1_firmware_host_wrap(frame, payload, 0xD2U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_host_wrap(frame, payload, 0xD2U);
 }
 
 enum rn1_firmware_result rn1_firmware_increase_phase_angle_send(
     const struct rn1_firmware_increase_phase_angle *message, rn1_firmware_put put, void *user) {
     const size_t payload = 1U;
-    const enum rn1_firmware_result result = rn1_firmware_increase_phase_angle_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_increase_phase_angle_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_host_send_head(put, user, payload, 0xD2U);
     rn1_firmware_increase_phase_angle_put(message, put, user);
@@ -1551,28 +1526,25 @@ enum rn1_firmware_result rn1_firmware_increase_phase_angle_send(
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_maintenance_frame(
-    const struct rn1_firmware_maintenance *message, uint8_t *frame, size_t capacity, size_t *size) {
+size_t rn1_firmware_maintenance_frame(const struct rn1_firmware_maintenance *message,
+                                      uint8_t *frame, size_t capacity) {
     size_t payload;
-    const enum rn1_firmware_result result = rn1_firmware_maintenance_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_maintenance_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     payload = rn1_firmware_maintenance_measure(message);
     if (capacity < rn1_firmware_host_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_maintenance_store(message, rn1_firmware_host_payload(frame, payload));
-    *size = rn1_firmware_host_wrap(frame, payload, 0xFEU);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_host_wrap(frame, payload, 0xFEU);
 }
 
 enum rn1_firmware_result rn1_firmware_maintenance_send(
     const struct rn1_firmware_maintenance *message, rn1_firmware_put put, void *user) {
     size_t payload;
-    const enum rn1_firmware_result result = rn1_firmware_maintenance_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_maintenance_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     payload = rn1_firmware_maintenance_measure(message);
     rn1_firmware_host_send_head(put, user, payload, 0xFEU);
@@ -1581,100 +1553,89 @@ enum rn1_firmware_result rn1_firmware_maintenance_send(
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_gyro_frame(const struct rn1_firmware_gyro *message,
-                                                 uint8_t *frame, size_t capacity, size_t *size) {
+size_t rn1_firmware_gyro_frame(const struct rn1_firmware_gyro *message, uint8_t *frame,
+                               size_t capacity) {
     const size_t payload = 7U;
-    const enum rn1_firmware_result result = rn1_firmware_gyro_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_gyro_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_brain_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_gyro_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0x80U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_brain_wrap(frame, payload, 0x80U);
 }
 
 enum rn1_firmware_result rn1_firmware_gyro_send(const struct rn1_firmware_gyro *message,
                                                 rn1_firmware_put put, void *user) {
     const size_t payload = 7U;
-    const enum rn1_firmware_result result = rn1_firmware_gyro_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_gyro_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_brain_send_head(put, user, payload, 0x80U);
     rn1_firmware_gyro_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_xcel_frame(const struct rn1_firmware_xcel *message,
-                                                 uint8_t *frame, size_t capacity, size_t *size) {
+size_t rn1_firmware_xcel_frame(const struct rn1_firmware_xcel *message, uint8_t *frame,
+                               size_t capacity) {
     const size_t payload = 7U;
-    const enum rn1_firmware_result result = rn1_firmware_xcel_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_xcel_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_brain_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_xcel_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0x81U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_brain_wrap(frame, payload, 0x81U);
 }
 
 enum rn1_firmware_result rn1_firmware_xcel_send(const struct rn1_firmware_xcel *message,
                                                 rn1_firmware_put put, void *user) {
     const size_t payload = 7U;
-    const enum rn1_firmware_result result = rn1_firmware_xcel_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_xcel_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_brain_send_head(put, user, payload, 0x81U);
     rn1_firmware_xcel_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_compass_frame(const struct rn1_firmware_compass *message,
-                                                    uint8_t *frame, size_t capacity, size_t *size) {
+size_t rn1_firmware_compass_frame(const struct rn1_firmware_compass *message, uint8_t *frame,
+                                  size_t capacity) {
     const size_t payload = 7U;
-    const enum rn1_firmware_result result = rn1_firmware_compass_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_compass_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_brain_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_compass_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0x82U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_brain_wrap(frame, payload, 0x82U);
 }
 
 enum rn1_firmware_result rn1_firmware_compass_send(const struct rn1_firmware_compass *message,
                                                    rn1_firmware_put put, void *user) {
     const size_t payload = 7U;
-    const enum rn1_firmware_result result = rn1_firmware_compass_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_compass_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_brain_send_head(put, user, payload, 0x82U);
     rn1_firmware_compass_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_lidar_frame(const struct rn1_firmware_lidar *message,
-                                                  uint8_t *frame, size_t capacity, size_t *size) {
+size_t rn1_firmware_lidar_frame(const struct rn1_firmware_lidar *message, uint8_t *frame,
+                                size_t capacity) {
     const size_t payload = 721U;
-    const enum rn1_firmware_result result = rn1_firmware_lidar_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_lidar_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_brain_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_lidar_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0x84U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_brain_wrap(frame, payload, 0x84U);
 }
 
 uint8_t *rn1_firmware_lidar_begin(uint8_t *frame, size_t capacity) {
@@ -1690,157 +1651,137 @@ uint8_t *rn1_firmware_lidar_begin(uint8_t *frame, size_t capacity) {
     return at;
 }
 
-enum rn1_firmware_result rn1_firmware_lidar_end(uint8_t *frame, size_t *size) {
+size_t rn1_firmware_lidar_end(uint8_t *frame) {
     const size_t payload = 721U;
-    *size = rn1_firmware_brain_wrap(frame, payload, 0x84U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_brain_wrap(frame, payload, 0x84U);
 }
 
 enum rn1_firmware_result rn1_firmware_lidar_send(const struct rn1_firmware_lidar *message,
                                                  rn1_firmware_put put, void *user) {
     const size_t payload = 721U;
-    const enum rn1_firmware_result result = rn1_firmware_lidar_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_lidar_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_brain_send_head(put, user, payload, 0x84U);
     rn1_firmware_lidar_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_sonar_frame(const struct rn1_firmware_sonar *message,
-                                                  uint8_t *frame, size_t capacity, size_t *size) {
+size_t rn1_firmware_sonar_frame(const struct rn1_firmware_sonar *message, uint8_t *frame,
+                                size_t capacity) {
     const size_t payload = 7U;
-    const enum rn1_firmware_result result = rn1_firmware_sonar_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_sonar_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_brain_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_sonar_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0x85U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_brain_wrap(frame, payload, 0x85U);
 }
 
 enum rn1_firmware_result rn1_firmware_sonar_send(const struct rn1_firmware_sonar *message,
                                                  rn1_firmware_put put, void *user) {
     const size_t payload = 7U;
-    const enum rn1_firmware_result result = rn1_firmware_sonar_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_sonar_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_brain_send_head(put, user, payload, 0x85U);
     rn1_firmware_sonar_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_facing_frame(const struct rn1_firmware_facing *message,
-                                                   uint8_t *frame, size_t capacity, size_t *size) {
+size_t rn1_firmware_facing_frame(const struct rn1_firmware_facing *message, uint8_t *frame,
+                                 size_t capacity) {
     const size_t payload = 5U;
-    const enum rn1_firmware_result result = rn1_firmware_facing_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_facing_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_brain_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_facing_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0xA0U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_brain_wrap(frame, payload, 0xA0U);
 }
 
 enum rn1_firmware_result rn1_firmware_facing_send(const struct rn1_firmware_facing *message,
                                                   rn1_firmware_put put, void *user) {
     const size_t payload = 5U;
-    const enum rn1_firmware_result result = rn1_firmware_facing_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_facing_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_brain_send_head(put, user, payload, 0xA0U);
     rn1_firmware_facing_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_optflow_integral_frame(
-    const struct rn1_firmware_optflow_integral *message, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t rn1_firmware_optflow_integral_frame(const struct rn1_firmware_optflow_integral *message,
+                                           uint8_t *frame, size_t capacity) {
     const size_t payload = 5U;
-    const enum rn1_firmware_result result = rn1_firmware_optflow_integral_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_optflow_integral_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_brain_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_optflow_integral_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0xA1U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_brain_wrap(frame, payload, 0xA1U);
 }
 
 enum rn1_firmware_result rn1_firmware_optflow_integral_send(
     const struct rn1_firmware_optflow_integral *message, rn1_firmware_put put, void *user) {
     const size_t payload = 5U;
-    const enum rn1_firmware_result result = rn1_firmware_optflow_integral_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_optflow_integral_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_brain_send_head(put, user, payload, 0xA1U);
     rn1_firmware_optflow_integral_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_motor_controller_message_frame(
-    const struct rn1_firmware_motor_controller_message *message, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t rn1_firmware_motor_controller_message_frame(
+    const struct rn1_firmware_motor_controller_message *message, uint8_t *frame, size_t capacity) {
     const size_t payload = 2U;
-    const enum rn1_firmware_result result = rn1_firmware_motor_controller_message_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_motor_controller_message_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_brain_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_motor_controller_message_store(message,
                                                 rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0xD1U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_brain_wrap(frame, payload, 0xD1U);
 }
 
 enum rn1_firmware_result rn1_firmware_motor_controller_message_send(
     const struct rn1_firmware_motor_controller_message *message, rn1_firmware_put put, void *user) {
     const size_t payload = 2U;
-    const enum rn1_firmware_result result = rn1_firmware_motor_controller_message_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_motor_controller_message_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_brain_send_head(put, user, payload, 0xD1U);
     rn1_firmware_motor_controller_message_put(message, put, user);
     return RN1_FIRMWARE_OK;
 }
 
-enum rn1_firmware_result rn1_firmware_debug_numbers_frame(
-    const struct rn1_firmware_debug_numbers *message, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t rn1_firmware_debug_numbers_frame(const struct rn1_firmware_debug_numbers *message,
+                                        uint8_t *frame, size_t capacity) {
     const size_t payload = 20U;
-    const enum rn1_firmware_result result = rn1_firmware_debug_numbers_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_debug_numbers_validate(message) != RN1_FIRMWARE_OK) {
+        return 0U;
     }
     if (capacity < rn1_firmware_brain_room(payload)) {
-        return RN1_FIRMWARE_ERROR_SPACE;
+        return 0U;
     }
     rn1_firmware_debug_numbers_store(message, rn1_firmware_brain_payload(frame, payload));
-    *size = rn1_firmware_brain_wrap(frame, payload, 0xD2U);
-    return RN1_FIRMWARE_OK;
+    return rn1_firmware_brain_wrap(frame, payload, 0xD2U);
 }
 
 enum rn1_firmware_result rn1_firmware_debug_numbers_send(
     const struct rn1_firmware_debug_numbers *message, rn1_firmware_put put, void *user) {
     const size_t payload = 20U;
-    const enum rn1_firmware_result result = rn1_firmware_debug_numbers_validate(message);
-    if (result != RN1_FIRMWARE_OK) {
-        return result;
+    if (rn1_firmware_debug_numbers_validate(message) != RN1_FIRMWARE_OK) {
+        return RN1_FIRMWARE_ERROR_RANGE;
     }
     rn1_firmware_brain_send_head(put, user, payload, 0xD2U);
     rn1_firmware_debug_numbers_put(message, put, user);
@@ -1951,7 +1892,7 @@ static uint8_t rn1_firmware_host_surplus(const struct rn1_firmware_host_decoder 
 /* From now on the payload's size is known. */
 static void rn1_firmware_host_set_payload(struct rn1_firmware_host_decoder *decoder, uint8_t size) {
     decoder->payload = size;
-    decoder->limit = (uint8_t)(1U + size + 0U);
+    decoder->limit = (uint8_t)(1U + size);
     decoder->flags |= RN1_FIRMWARE_KNOWN;
 }
 
@@ -2295,7 +2236,7 @@ static uint8_t rn1_firmware_brain_surplus(const struct rn1_firmware_brain_decode
 static void rn1_firmware_brain_set_payload(struct rn1_firmware_brain_decoder *decoder,
                                            uint16_t size) {
     decoder->payload = size;
-    decoder->limit = (uint16_t)(1U + size + 0U);
+    decoder->limit = (uint16_t)(1U + size);
     decoder->flags |= RN1_FIRMWARE_KNOWN;
 }
 

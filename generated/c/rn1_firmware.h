@@ -232,8 +232,10 @@ RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_decrease_phase_angle_enco
     size_t *size);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_decrease_phase_angle_decode(
     struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload, size_t size);
-RN1_FIRMWARE_API void rn1_firmware_decrease_phase_angle_load(
-    struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload);
+static inline void rn1_firmware_decrease_phase_angle_load(
+    struct rn1_firmware_decrease_phase_angle *message, const uint8_t *payload) {
+    message->ignored = payload[0];
+}
 
 /* --- increase_phase_angle --------------------------------------------------------------------- */
 
@@ -264,8 +266,10 @@ RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_increase_phase_angle_enco
     size_t *size);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_increase_phase_angle_decode(
     struct rn1_firmware_increase_phase_angle *message, const uint8_t *payload, size_t size);
-RN1_FIRMWARE_API void rn1_firmware_increase_phase_angle_load(
-    struct rn1_firmware_increase_phase_angle *message, const uint8_t *payload);
+static inline void rn1_firmware_increase_phase_angle_load(
+    struct rn1_firmware_increase_phase_angle *message, const uint8_t *payload) {
+    message->ignored = payload[0];
+}
 
 /* --- maintenance ------------------------------------------------------------------------------ */
 
@@ -684,16 +688,16 @@ RN1_FIRMWARE_API void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
- * most `capacity` bytes and says in `size` how many the frame has. A buffer of ..._FRAME_ROOM bytes
- * always suffices; for a shorter payload less does, but the buffer has to take the most that its
- * bytes can need.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
+ * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
+ * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
+ * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
  *
  * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
  * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
- * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns
- * RN1_FIRMWARE_ERROR_RANGE where a field has no default that is allowed, and was not set.
+ * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
+ * frame's size; 0 where a field has no default that is allowed, and was not set.
  */
 
 /** Takes the next byte of a frame. */
@@ -739,120 +743,114 @@ static inline bool rn1_firmware_transmitted(struct rn1_firmware_transmission *fr
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_MOVE_MANUAL_FRAME_MAX 4U
 #define RN1_FIRMWARE_MOVE_MANUAL_FRAME_ROOM 4U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_manual_frame(
-    const struct rn1_firmware_move_manual *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_move_manual_frame(
+    const struct rn1_firmware_move_manual *message, uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_manual_send(
     const struct rn1_firmware_move_manual *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_FRAME_MAX 6U
 #define RN1_FIRMWARE_MOVE_RELATIVE_TWOSTEP_FRAME_ROOM 6U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_relative_twostep_frame(
-    const struct rn1_firmware_move_relative_twostep *message, uint8_t *frame, size_t capacity,
-    size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_move_relative_twostep_frame(
+    const struct rn1_firmware_move_relative_twostep *message, uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_move_relative_twostep_send(
     const struct rn1_firmware_move_relative_twostep *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_FRAME_MAX 3U
 #define RN1_FIRMWARE_DECREASE_PHASE_ANGLE_FRAME_ROOM 3U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_decrease_phase_angle_frame(
-    const struct rn1_firmware_decrease_phase_angle *message, uint8_t *frame, size_t capacity,
-    size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_decrease_phase_angle_frame(
+    const struct rn1_firmware_decrease_phase_angle *message, uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_decrease_phase_angle_send(
     const struct rn1_firmware_decrease_phase_angle *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_FRAME_MAX 3U
 #define RN1_FIRMWARE_INCREASE_PHASE_ANGLE_FRAME_ROOM 3U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_increase_phase_angle_frame(
-    const struct rn1_firmware_increase_phase_angle *message, uint8_t *frame, size_t capacity,
-    size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_increase_phase_angle_frame(
+    const struct rn1_firmware_increase_phase_angle *message, uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_increase_phase_angle_send(
     const struct rn1_firmware_increase_phase_angle *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_MAINTENANCE_FRAME_MAX 7U
 #define RN1_FIRMWARE_MAINTENANCE_FRAME_ROOM 7U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_maintenance_frame(
-    const struct rn1_firmware_maintenance *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_maintenance_frame(
+    const struct rn1_firmware_maintenance *message, uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_maintenance_send(
     const struct rn1_firmware_maintenance *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_GYRO_FRAME_MAX 8U
 #define RN1_FIRMWARE_GYRO_FRAME_ROOM 8U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_gyro_frame(
-    const struct rn1_firmware_gyro *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_gyro_frame(const struct rn1_firmware_gyro *message,
+                                                uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_gyro_send(
     const struct rn1_firmware_gyro *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_XCEL_FRAME_MAX 8U
 #define RN1_FIRMWARE_XCEL_FRAME_ROOM 8U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_xcel_frame(
-    const struct rn1_firmware_xcel *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_xcel_frame(const struct rn1_firmware_xcel *message,
+                                                uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_xcel_send(
     const struct rn1_firmware_xcel *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_COMPASS_FRAME_MAX 8U
 #define RN1_FIRMWARE_COMPASS_FRAME_ROOM 8U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_compass_frame(
-    const struct rn1_firmware_compass *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_compass_frame(const struct rn1_firmware_compass *message,
+                                                   uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_compass_send(
     const struct rn1_firmware_compass *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_LIDAR_FRAME_MAX 722U
 #define RN1_FIRMWARE_LIDAR_FRAME_ROOM 722U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_lidar_frame(
-    const struct rn1_firmware_lidar *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_lidar_frame(const struct rn1_firmware_lidar *message,
+                                                 uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API uint8_t *rn1_firmware_lidar_begin(uint8_t *frame, size_t capacity);
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_lidar_end(uint8_t *frame, size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_lidar_end(uint8_t *frame);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_lidar_send(
     const struct rn1_firmware_lidar *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_SONAR_FRAME_MAX 8U
 #define RN1_FIRMWARE_SONAR_FRAME_ROOM 8U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_sonar_frame(
-    const struct rn1_firmware_sonar *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_sonar_frame(const struct rn1_firmware_sonar *message,
+                                                 uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_sonar_send(
     const struct rn1_firmware_sonar *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_FACING_FRAME_MAX 6U
 #define RN1_FIRMWARE_FACING_FRAME_ROOM 6U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_facing_frame(
-    const struct rn1_firmware_facing *message, uint8_t *frame, size_t capacity, size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_facing_frame(const struct rn1_firmware_facing *message,
+                                                  uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_facing_send(
     const struct rn1_firmware_facing *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_OPTFLOW_INTEGRAL_FRAME_MAX 6U
 #define RN1_FIRMWARE_OPTFLOW_INTEGRAL_FRAME_ROOM 6U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_optflow_integral_frame(
-    const struct rn1_firmware_optflow_integral *message, uint8_t *frame, size_t capacity,
-    size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_optflow_integral_frame(
+    const struct rn1_firmware_optflow_integral *message, uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_optflow_integral_send(
     const struct rn1_firmware_optflow_integral *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_FRAME_MAX 3U
 #define RN1_FIRMWARE_MOTOR_CONTROLLER_MESSAGE_FRAME_ROOM 3U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_motor_controller_message_frame(
-    const struct rn1_firmware_motor_controller_message *message, uint8_t *frame, size_t capacity,
-    size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_motor_controller_message_frame(
+    const struct rn1_firmware_motor_controller_message *message, uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_motor_controller_message_send(
     const struct rn1_firmware_motor_controller_message *message, rn1_firmware_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RN1_FIRMWARE_DEBUG_NUMBERS_FRAME_MAX 21U
 #define RN1_FIRMWARE_DEBUG_NUMBERS_FRAME_ROOM 21U
-RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_debug_numbers_frame(
-    const struct rn1_firmware_debug_numbers *message, uint8_t *frame, size_t capacity,
-    size_t *size);
+RN1_FIRMWARE_API size_t rn1_firmware_debug_numbers_frame(
+    const struct rn1_firmware_debug_numbers *message, uint8_t *frame, size_t capacity);
 RN1_FIRMWARE_API enum rn1_firmware_result rn1_firmware_debug_numbers_send(
     const struct rn1_firmware_debug_numbers *message, rn1_firmware_put put, void *user);
 
@@ -1198,10 +1196,10 @@ RN1_FIRMWARE_API const char *rn1_firmware_xcel_status_name(uint8_t value);
 RN1_FIRMWARE_API const char *rn1_firmware_compass_status_name(uint8_t value);
 
 /*
- * Where a function returned RN1_FIRMWARE_ERROR_RANGE: the first member whose value, or number of
- * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
- * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
- * A message that can always be sent has no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
+ * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
+ * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
+ * no such function.
  */
 RN1_FIRMWARE_API const char *rn1_firmware_move_manual_refused(
     const struct rn1_firmware_move_manual *message);

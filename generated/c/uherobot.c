@@ -349,16 +349,14 @@ UHEROBOT_INLINE void uherobot_status_put(const struct uherobot_status *message,
     uherobot_write_u16be(writer, (uint16_t)message->temperature);
 }
 
-enum uherobot_result uherobot_motors_servos_leds_frame(
-    const struct uherobot_motors_servos_leds *message, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t uherobot_motors_servos_leds_frame(const struct uherobot_motors_servos_leds *message,
+                                         uint8_t *frame, size_t capacity) {
     const size_t payload = 21U;
     if (capacity < uherobot_daemon_room(payload)) {
-        return UHEROBOT_ERROR_SPACE;
+        return 0U;
     }
     uherobot_motors_servos_leds_store(message, uherobot_daemon_payload(frame, payload));
-    *size = uherobot_daemon_wrap(frame, payload, 0x00U);
-    return UHEROBOT_OK;
+    return uherobot_daemon_wrap(frame, payload, 0x00U);
 }
 
 enum uherobot_result uherobot_motors_servos_leds_send(
@@ -375,16 +373,14 @@ enum uherobot_result uherobot_motors_servos_leds_send(
     return UHEROBOT_OK;
 }
 
-enum uherobot_result uherobot_motors_two_servos_frame(
-    const struct uherobot_motors_two_servos *message, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t uherobot_motors_two_servos_frame(const struct uherobot_motors_two_servos *message,
+                                        uint8_t *frame, size_t capacity) {
     const size_t payload = 8U;
     if (capacity < uherobot_daemon_room(payload)) {
-        return UHEROBOT_ERROR_SPACE;
+        return 0U;
     }
     uherobot_motors_two_servos_store(message, uherobot_daemon_payload(frame, payload));
-    *size = uherobot_daemon_wrap(frame, payload, 0x01U);
-    return UHEROBOT_OK;
+    return uherobot_daemon_wrap(frame, payload, 0x01U);
 }
 
 enum uherobot_result uherobot_motors_two_servos_send(
@@ -401,15 +397,14 @@ enum uherobot_result uherobot_motors_two_servos_send(
     return UHEROBOT_OK;
 }
 
-enum uherobot_result uherobot_motor_test_frame(const struct uherobot_motor_test *message,
-                                               uint8_t *frame, size_t capacity, size_t *size) {
+size_t uherobot_motor_test_frame(const struct uherobot_motor_test *message, uint8_t *frame,
+                                 size_t capacity) {
     const size_t payload = 4U;
     if (capacity < uherobot_daemon_room(payload)) {
-        return UHEROBOT_ERROR_SPACE;
+        return 0U;
     }
     uherobot_motor_test_store(message, uherobot_daemon_payload(frame, payload));
-    *size = uherobot_daemon_wrap(frame, payload, 0x03U);
-    return UHEROBOT_OK;
+    return uherobot_daemon_wrap(frame, payload, 0x03U);
 }
 
 enum uherobot_result uherobot_motor_test_send(const struct uherobot_motor_test *message,
@@ -426,15 +421,14 @@ enum uherobot_result uherobot_motor_test_send(const struct uherobot_motor_test *
     return UHEROBOT_OK;
 }
 
-enum uherobot_result uherobot_status_frame(const struct uherobot_status *message, uint8_t *frame,
-                                           size_t capacity, size_t *size) {
+size_t uherobot_status_frame(const struct uherobot_status *message, uint8_t *frame,
+                             size_t capacity) {
     const size_t payload = 6U;
     if (capacity < uherobot_daemon_room(payload)) {
-        return UHEROBOT_ERROR_SPACE;
+        return 0U;
     }
     uherobot_status_store(message, uherobot_daemon_payload(frame, payload));
-    *size = uherobot_daemon_wrap(frame, payload, 0x01U);
-    return UHEROBOT_OK;
+    return uherobot_daemon_wrap(frame, payload, 0x01U);
 }
 
 enum uherobot_result uherobot_status_send(const struct uherobot_status *message, uherobot_put put,

@@ -229,10 +229,10 @@ UHEROBOT_API void uherobot_status_load(struct uherobot_status *message, const ui
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
- * most `capacity` bytes and says in `size` how many the frame has. A buffer of ..._FRAME_ROOM bytes
- * always suffices; for a shorter payload less does, but the buffer has to take the most that its
- * bytes can need.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
+ * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
+ * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
+ * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
  */
 
@@ -279,35 +279,32 @@ static inline bool uherobot_transmitted(struct uherobot_transmission *frame) {
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_MOTORS_SERVOS_LEDS_FRAME_MAX 48U
 #define UHEROBOT_MOTORS_SERVOS_LEDS_FRAME_ROOM 49U
-UHEROBOT_API enum uherobot_result uherobot_motors_servos_leds_frame(
-    const struct uherobot_motors_servos_leds *message, uint8_t *frame, size_t capacity,
-    size_t *size);
+UHEROBOT_API size_t uherobot_motors_servos_leds_frame(
+    const struct uherobot_motors_servos_leds *message, uint8_t *frame, size_t capacity);
 UHEROBOT_API enum uherobot_result uherobot_motors_servos_leds_send(
     const struct uherobot_motors_servos_leds *message, uherobot_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_MOTORS_TWO_SERVOS_FRAME_MAX 22U
 #define UHEROBOT_MOTORS_TWO_SERVOS_FRAME_ROOM 23U
-UHEROBOT_API enum uherobot_result uherobot_motors_two_servos_frame(
-    const struct uherobot_motors_two_servos *message, uint8_t *frame, size_t capacity,
-    size_t *size);
+UHEROBOT_API size_t uherobot_motors_two_servos_frame(
+    const struct uherobot_motors_two_servos *message, uint8_t *frame, size_t capacity);
 UHEROBOT_API enum uherobot_result uherobot_motors_two_servos_send(
     const struct uherobot_motors_two_servos *message, uherobot_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_MOTOR_TEST_FRAME_MAX 14U
 #define UHEROBOT_MOTOR_TEST_FRAME_ROOM 15U
-UHEROBOT_API enum uherobot_result uherobot_motor_test_frame(
-    const struct uherobot_motor_test *message, uint8_t *frame, size_t capacity, size_t *size);
+UHEROBOT_API size_t uherobot_motor_test_frame(const struct uherobot_motor_test *message,
+                                              uint8_t *frame, size_t capacity);
 UHEROBOT_API enum uherobot_result uherobot_motor_test_send(
     const struct uherobot_motor_test *message, uherobot_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_STATUS_FRAME_MAX 18U
 #define UHEROBOT_STATUS_FRAME_ROOM 19U
-UHEROBOT_API enum uherobot_result uherobot_status_frame(const struct uherobot_status *message,
-                                                        uint8_t *frame, size_t capacity,
-                                                        size_t *size);
+UHEROBOT_API size_t uherobot_status_frame(const struct uherobot_status *message, uint8_t *frame,
+                                          size_t capacity);
 UHEROBOT_API enum uherobot_result uherobot_status_send(const struct uherobot_status *message,
                                                        uherobot_put put, void *user);
 

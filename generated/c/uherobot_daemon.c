@@ -392,30 +392,26 @@ UHEROBOT_DAEMON_INLINE void uherobot_daemon_status_put(const struct uherobot_dae
     uherobot_daemon_write_u16be(writer, message->motor_voltage);
 }
 
-enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_frame(
-    const struct uherobot_daemon_motors_servos_leds *message, uint8_t *frame, size_t capacity,
-    size_t *size) {
+size_t uherobot_daemon_motors_servos_leds_frame(
+    const struct uherobot_daemon_motors_servos_leds *message, uint8_t *frame, size_t capacity) {
     const size_t payload = 21U;
-    const enum uherobot_daemon_result result = uherobot_daemon_motors_servos_leds_validate(message);
-    if (result != UHEROBOT_DAEMON_OK) {
-        return result;
+    if (uherobot_daemon_motors_servos_leds_validate(message) != UHEROBOT_DAEMON_OK) {
+        return 0U;
     }
     if (capacity < uherobot_daemon_daemon_room(payload)) {
-        return UHEROBOT_DAEMON_ERROR_SPACE;
+        return 0U;
     }
     uherobot_daemon_motors_servos_leds_store(message,
                                              uherobot_daemon_daemon_payload(frame, payload));
-    *size = uherobot_daemon_daemon_wrap(frame, payload, 0x00U);
-    return UHEROBOT_DAEMON_OK;
+    return uherobot_daemon_daemon_wrap(frame, payload, 0x00U);
 }
 
 enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_send(
     const struct uherobot_daemon_motors_servos_leds *message, uherobot_daemon_put put, void *user) {
     struct uherobot_daemon_writer writer;
     const size_t payload = 21U;
-    const enum uherobot_daemon_result result = uherobot_daemon_motors_servos_leds_validate(message);
-    if (result != UHEROBOT_DAEMON_OK) {
-        return result;
+    if (uherobot_daemon_motors_servos_leds_validate(message) != UHEROBOT_DAEMON_OK) {
+        return UHEROBOT_DAEMON_ERROR_RANGE;
     }
     writer.put = put;
     writer.user = user;
@@ -427,15 +423,14 @@ enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_send(
     return UHEROBOT_DAEMON_OK;
 }
 
-enum uherobot_daemon_result uherobot_daemon_status_frame(
-    const struct uherobot_daemon_status *message, uint8_t *frame, size_t capacity, size_t *size) {
+size_t uherobot_daemon_status_frame(const struct uherobot_daemon_status *message, uint8_t *frame,
+                                    size_t capacity) {
     const size_t payload = 12U;
     if (capacity < uherobot_daemon_board_room(payload)) {
-        return UHEROBOT_DAEMON_ERROR_SPACE;
+        return 0U;
     }
     uherobot_daemon_status_store(message, uherobot_daemon_board_payload(frame, payload));
-    *size = uherobot_daemon_board_wrap(frame, payload, 0x01U);
-    return UHEROBOT_DAEMON_OK;
+    return uherobot_daemon_board_wrap(frame, payload, 0x01U);
 }
 
 enum uherobot_daemon_result uherobot_daemon_status_send(
@@ -899,10 +894,7 @@ static void uherobot_daemon_board_set_payload(struct uherobot_daemon_board_decod
 static uint8_t uherobot_daemon_board_read_length(struct uherobot_daemon_board_decoder *decoder,
                                                  uint16_t length) {
     uint16_t size = length;
-    if (size - 0U > 255U) {
-        return UHEROBOT_DAEMON_LENGTH;
-    }
-    uherobot_daemon_board_set_payload(decoder, (uint16_t)(size - 0U));
+    uherobot_daemon_board_set_payload(decoder, (uint16_t)size);
     return UHEROBOT_DAEMON_FINE;
 }
 

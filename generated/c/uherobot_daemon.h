@@ -207,10 +207,10 @@ UHEROBOT_DAEMON_API void uherobot_daemon_status_load(struct uherobot_daemon_stat
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It writes at
- * most `capacity` bytes and says in `size` how many the frame has. A buffer of ..._FRAME_ROOM bytes
- * always suffices; for a shorter payload less does, but the buffer has to take the most that its
- * bytes can need.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
+ * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
+ * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
+ * payload less does, but the buffer has to take the most that its bytes can need.
  * `send` hands the same bytes to a function, one after another, and needs no buffer.
  */
 
@@ -257,17 +257,16 @@ static inline bool uherobot_daemon_transmitted(struct uherobot_daemon_transmissi
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_MAX 48U
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_ROOM 49U
-UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_frame(
-    const struct uherobot_daemon_motors_servos_leds *message, uint8_t *frame, size_t capacity,
-    size_t *size);
+UHEROBOT_DAEMON_API size_t uherobot_daemon_motors_servos_leds_frame(
+    const struct uherobot_daemon_motors_servos_leds *message, uint8_t *frame, size_t capacity);
 UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_send(
     const struct uherobot_daemon_motors_servos_leds *message, uherobot_daemon_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_DAEMON_STATUS_FRAME_MAX 31U
 #define UHEROBOT_DAEMON_STATUS_FRAME_ROOM 32U
-UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_status_frame(
-    const struct uherobot_daemon_status *message, uint8_t *frame, size_t capacity, size_t *size);
+UHEROBOT_DAEMON_API size_t uherobot_daemon_status_frame(
+    const struct uherobot_daemon_status *message, uint8_t *frame, size_t capacity);
 UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_status_send(
     const struct uherobot_daemon_status *message, uherobot_daemon_put put, void *user);
 
@@ -561,10 +560,10 @@ UHEROBOT_DAEMON_API const char *uherobot_daemon_result_name(enum uherobot_daemon
 UHEROBOT_DAEMON_API const char *uherobot_daemon_reason_name(enum uherobot_daemon_reason reason);
 
 /*
- * Where a function returned UHEROBOT_DAEMON_ERROR_RANGE: the first member whose value, or number of
- * elements, can't be sent, as "points[].x". "?" says that the payload as a whole has too few or too
- * many bytes, and NULL that the message is right: then it is a part of the frame that is out of range.
- * A message that can always be sent has no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
+ * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
+ * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
+ * no such function.
  */
 UHEROBOT_DAEMON_API const char *uherobot_daemon_motors_servos_leds_refused(
     const struct uherobot_daemon_motors_servos_leds *message);

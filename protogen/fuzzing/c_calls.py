@@ -17,6 +17,8 @@ from protogen.fuzzing.samples import NOTHING_HELD, Held, Values
 
 OK, SIZE, VALUE, ENCODING, RANGE, SPACE = range(6)
 """The results of generated functions."""
+REFUSED = 6
+"""There is no frame: a function that makes one does not say why."""
 RESULTS = {"size": SIZE, "value": VALUE, "encoding": ENCODING}
 """Reasons of the Python runtime as results."""
 KINDS = ("message", "unknown", "invalid")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from protogen.fuzzing.c_calls import OK, RANGE, CEvent, Encoded, Step
+from protogen.fuzzing.c_calls import OK, RANGE, REFUSED, CEvent, Encoded, Step
 from protogen.fuzzing.c_driver import Driver
 from protogen.fuzzing.c_library import CLibrary
 from protogen.fuzzing.c_values import Unfit
 from protogen.fuzzing.engine import NOTHING_TOLD, Refused, Seen, Told
 from protogen.fuzzing.samples import NOTHING_HELD, Held, Values
 
-_WHY = ("", "size", "value", "encoding", "out of range", "no space")
+_WHY = ("", "size", "value", "encoding", "out of range", "no space", "no frame can have it")
 
 
 class CEngine:
@@ -40,7 +40,10 @@ class CEngine:
     def frame(self, sender: str, message: str, values: Values, parts: Values) -> bytes:
         """Encode a whole frame. Raises Refused."""
         try:
-            frame = _data(self._library.do(self._calls.frame(sender, message, values, parts)))
+            made = self._library.do(self._calls.frame(sender, message, values, parts))
+            if made.result == REFUSED:
+                self.payload(message, values)  # Says so of a field.
+            frame = _data(made)
             if self._calls.sends(sender, message):
                 sent = self._library.do(self._calls.send(sender, message, values, parts))
                 if sent.data != frame:

@@ -13,23 +13,22 @@ from protogen.copying import replace
 from protogen.model.protocol import Protocol
 
 _BEGIN = re.compile(r"uint8_t \*((\w+)_begin)\( ?uint8_t \*frame, size_t capacity\);")
-_END = re.compile(r"enum \w+ (\w+)_end\( ?((?:\w+ \w+, )*)uint8_t \*frame, size_t \*size\);")
+_END = re.compile(r"size_t (\w+)_end\( ?((?:\w+ \w+, )*)uint8_t \*frame\);")
 _SET = re.compile(r"static inline bool (\w+_set(?:_at)?)\( ?uint8_t \*payload, ([^)]*)\) \{")
 _GET = re.compile(r"static inline (?!void)\w+ (\w+_get)\( ?const uint8_t \*payload\) \{")
 _ROOM = re.compile(r"#define (\w+_FRAME_ROOM) (\d+)[uU]")
 _WRITE = """
 static void prove_{begin}(void) {{
     uint8_t frame[{room}];
-    size_t size = 0;
+    size_t size;
     uint8_t *payload = {begin}(&frame[{room} - 1], Frama_C_unsigned_int_interval(0, {room} - 1));
     //@ assert payload == \\null;
     Frama_C_make_unknown((char *)frame, sizeof frame); /* EVA does not follow how it is filled. */
     payload = {begin}(frame, {room});
     while (any != 0) {{
 {sets}    }}
-    if ({prefix}_end({parts}frame, &size) == 0) {{
-        //@ assert size <= {room};
-    }}
+    size = {prefix}_end({parts}frame);
+    //@ assert size <= {room};
 }}
 """
 _CALL = """        if (any != 0) {{

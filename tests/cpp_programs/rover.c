@@ -11,14 +11,14 @@ static void on_event(void *user, const struct rover_host_event *event) {
         struct rover_drive drive;
         struct rover_state state;
         uint8_t frame[ROVER_STATE_FRAME_ROOM];
-        size_t size;
         rover_drive_load(&drive, event->payload);
         left = drive.left;
         right = drive.right;
         state.mode = ROVER_STATE_MODE_DRIVING;
         state.battery = 3;
         state.heading = 4;
-        if (rover_state_frame(&state, frame, sizeof frame, &size) == ROVER_OK) {
+        const size_t size = rover_state_frame(&state, frame, sizeof frame);
+        if (size != 0) {
             for (size_t index = 0; index < size; index++) {
                 out = frame[index];
             }

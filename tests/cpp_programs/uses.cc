@@ -56,7 +56,7 @@ static bool takes_whatever_holds_bytes() {
     decoder.feed(rover::frame(drive, plain), on_drive);
     decoder.feed(rover::frame(drive, {plain + 2, 18}), on_drive);
 #if __cplusplus >= 202002L
-    const rover::encoded made = rover::frame(drive, std::span(plain));
+    const rover::framed made = rover::frame(drive, std::span(plain));
     const std::span<const uint8_t> bytes = made;
     decoder.feed(bytes, on_drive);
     const rover::state state{.mode = 1, .battery = 12, .heading = 3};
@@ -70,7 +70,7 @@ static bool the_first_handler_that_takes_an_event_gets_it() {
     rover::drive drive{};
     drive.left = 7;
     uint8_t buffer[rover::frame_room<rover::drive>()];
-    const rover::encoded made = rover::frame(drive, buffer);
+    const rover::framed made = rover::frame(drive, buffer);
     const uint8_t noise[] = {1, 2, 3, 0};
     rover::host_decoder decoder;
     board left = {0};
@@ -98,7 +98,7 @@ static bool a_copy_goes_on_where_the_first_one_is() {
     rover::drive drive{};
     drive.left = 3;
     uint8_t buffer[rover::frame_room<rover::drive>()];
-    const rover::encoded made = rover::frame(drive, buffer);
+    const rover::framed made = rover::frame(drive, buffer);
     rover::host_decoder decoder;
     turns = 0;
     decoder.feed({made.data(), 4}, answer);
@@ -112,13 +112,16 @@ static bool refuses_what_c_refuses() {
     rover::drive drive{};
     drive.left = 2001;
     uint8_t buffer[rover::frame_room<rover::drive>()];
-    const rover::encoded far = rover::frame(drive, buffer);
+    const rover::framed far = rover::frame(drive, buffer);
+    const rover::encoded why = rover::encode(drive, buffer);
     drive.left = 2000;
-    const rover::encoded small = rover::frame(drive, {buffer, 3});
+    const rover::framed small = rover::frame(drive, {buffer, 3});
+    const rover::encoded short_of = rover::encode(drive, {buffer, 3});
     rover::drive read{};
     const uint8_t payload[] = {0xD0, 0x07, 0x18, 0xFC};
-    return !far && far.why() == rover::result::error_range && far.size() == 0 && !small &&
-           small.why() == rover::result::error_space &&
+    return !far && far.size() == 0 && !small && small.begin() == small.end() && !why &&
+           why.why() == rover::result::error_range && why.size() == 0 && !short_of &&
+           short_of.why() == rover::result::error_space &&
            rover::decode(read, payload) == rover::result::ok && read.left == 2000 &&
            read.right == -1000 &&
            rover::decode(read, {payload, 3}) == rover::result::error_size;

@@ -18,14 +18,11 @@ static void take(void *user, const struct atrv_flex_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size;
-    enum atrv_result result;
     if (which == 0) {
-        result = atrv_read_motor_frame(BENCH_MESSAGE, 0xFF, frame, capacity, &size);
+        return atrv_read_motor_frame(BENCH_MESSAGE, 0xFF, frame, capacity);
     } else {
-        result = atrv_sonar_data_frame(BENCH_MESSAGE, 0xFF, frame, capacity, &size);
+        return atrv_sonar_data_frame(BENCH_MESSAGE, 0xFF, frame, capacity);
     }
-    return result == ATRV_OK ? size : 0;
 }
 
 #if defined(BENCH_FILL)

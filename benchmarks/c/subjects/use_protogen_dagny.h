@@ -3,22 +3,23 @@
 static struct dagny_host_decoder decoder;
 
 static void take(void *user, const struct dagny_host_event *event) {
+    void *const message = BENCH_MESSAGE;
     (void)user;
     switch (event->message) {
     case DAGNY_MESSAGE_MOTOR:
-        dagny_motor_load(BENCH_MESSAGE, event->payload);
+        dagny_motor_load(message, event->payload);
         bench_seen(0);
         break;
     case DAGNY_MESSAGE_STEERING:
-        dagny_steering_load(BENCH_MESSAGE, event->payload);
+        dagny_steering_load(message, event->payload);
         bench_seen(1);
         break;
     case DAGNY_MESSAGE_REFLEX:
-        dagny_reflex_load(BENCH_MESSAGE, event->payload);
+        dagny_reflex_load(message, event->payload);
         bench_seen(2);
         break;
     case DAGNY_MESSAGE_POWER:
-        dagny_power_load(BENCH_MESSAGE, event->payload);
+        dagny_power_load(message, event->payload);
         bench_seen(3);
         break;
     default:
@@ -31,23 +32,17 @@ static void take(void *user, const struct dagny_host_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size;
-    enum dagny_result result;
+    const void *const message = BENCH_MESSAGE;
     switch (which) {
     case 0:
-        result = dagny_motor_frame(BENCH_MESSAGE, frame, capacity, &size);
-        break;
+        return dagny_motor_frame(message, frame, capacity);
     case 1:
-        result = dagny_steering_frame(BENCH_MESSAGE, frame, capacity, &size);
-        break;
+        return dagny_steering_frame(message, frame, capacity);
     case 2:
-        result = dagny_reflex_frame(BENCH_MESSAGE, frame, capacity, &size);
-        break;
+        return dagny_reflex_frame(message, frame, capacity);
     default:
-        result = dagny_power_frame(BENCH_MESSAGE, frame, capacity, &size);
-        break;
+        return dagny_power_frame(message, frame, capacity);
     }
-    return result == DAGNY_OK ? size : 0;
 }
 
 #include "fill_dagny.h"

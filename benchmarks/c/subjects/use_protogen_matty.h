@@ -15,9 +15,8 @@ static void take(void *user, const struct matty_esp_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size;
     (void)which;
-    return matty_status_frame(BENCH_MESSAGE, 7, frame, capacity, &size) == MATTY_OK ? size : 0;
+    return matty_status_frame(BENCH_MESSAGE, 7, frame, capacity);
 }
 
 #if defined(BENCH_FILL)

@@ -18,14 +18,11 @@ static void take(void *user, const struct probe_sensor_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size;
-    enum probe_result result;
     if (which == 0) {
-        result = probe_attitude_frame(BENCH_MESSAGE, frame, capacity, &size);
+        return probe_attitude_frame(BENCH_MESSAGE, frame, capacity);
     } else {
-        result = probe_power_frame(BENCH_MESSAGE, frame, capacity, &size);
+        return probe_power_frame(BENCH_MESSAGE, frame, capacity);
     }
-    return result == PROBE_OK ? size : 0;
 }
 
 #define FILLED(message) probe_##message

@@ -18,14 +18,13 @@ static void take(void *user, const struct rn1_brain_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size;
     if (which == 0) {
-        return rn1_gyro_frame(BENCH_MESSAGE, frame, capacity, &size) == RN1_OK ? size : 0;
+        return rn1_gyro_frame(BENCH_MESSAGE, frame, capacity);
     }
 #if defined(BENCH_SINK)
     return rn1_lidar_send(BENCH_MESSAGE, bench_put, NULL) == RN1_OK ? RN1_LIDAR_FRAME_MAX : 0;
 #else
-    return rn1_lidar_frame(BENCH_MESSAGE, frame, capacity, &size) == RN1_OK ? size : 0;
+    return rn1_lidar_frame(BENCH_MESSAGE, frame, capacity);
 #endif
 }
 

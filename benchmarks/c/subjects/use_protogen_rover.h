@@ -15,9 +15,8 @@ static void take(void *user, const struct rover_board_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size;
     (void)which;
-    return rover_state_frame(BENCH_MESSAGE, frame, capacity, &size) == ROVER_OK ? size : 0;
+    return rover_state_frame(BENCH_MESSAGE, frame, capacity);
 }
 
 #define FILLED(message) rover_##message

@@ -18,14 +18,11 @@ static void take(void *user, const struct tether_winch_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size;
-    enum tether_result result;
     if (which == 0) {
-        result = tether_report_frame(BENCH_MESSAGE, frame, capacity, &size);
+        return tether_report_frame(BENCH_MESSAGE, frame, capacity);
     } else {
-        result = tether_alarm_frame(BENCH_MESSAGE, frame, capacity, &size);
+        return tether_alarm_frame(BENCH_MESSAGE, frame, capacity);
     }
-    return result == TETHER_OK ? size : 0;
 }
 
 #define FILLED(message) tether_##message

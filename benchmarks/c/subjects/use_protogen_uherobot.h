@@ -15,9 +15,8 @@ static void take(void *user, const struct uherobot_board_event *event) {
 #include "use_protogen_link.h"
 
 static inline size_t subject_encode(uint8_t which, uint8_t *frame, size_t capacity) {
-    size_t size;
     (void)which;
-    return uherobot_status_frame(BENCH_MESSAGE, frame, capacity, &size) == UHEROBOT_OK ? size : 0;
+    return uherobot_status_frame(BENCH_MESSAGE, frame, capacity);
 }
 
 #define FILLED(message) uherobot_##message

@@ -150,7 +150,7 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
     own = inside(record, "field", field.name)
 
     def macro(word: str, value: str, doc: tuple[str, ...] = (), thing: Thing = own) -> Macro:
-        return Macro(names.claim_macro(thing, record, field.name, word), value, doc)
+        return Macro(names.claim_macro(thing, record, field.name, word), _operand(value), doc)
 
     if field.scaled and field.scale != 1:
         yield from _fraction(macro, "scale", field.scale)
@@ -161,7 +161,7 @@ def _meaning(record: str, field: Field, names: Names) -> Iterable[Macro]:
     integer = field.integer
     if integer is not None:
         for word, bound in _bounds(field, f"{names.prefix}_{record}_{field.name}_"):
-            yield macro(word, _operand(constant(bound, integer)))
+            yield macro(word, constant(bound, integer))
         for item in field.special:
             thing = inside(record, "special value", field.name, "special", item.name)
             value = constant(item.value, integer)

@@ -14,8 +14,8 @@ from protogen.targets.kept import Kept
 from protogen.targets.naming import OWN, PROTOCOL, NameTable, Thing, endpoint, named_type
 
 _OWN = """
-buffer bytes count counters decode detail dispatch encode encoded event_kind frame frame_room has
-load message message_of name raw reason result send
+buffer bytes count counters decode detail dispatch encode encoded event_kind frame frame_room
+framed has load message message_of name raw reason result send
 """
 """What each namespace has."""
 _OF_A_SENDER = "decoder event parts"

@@ -68,7 +68,7 @@ class CppFrame(msgspec.Struct, frozen=True):
     @property
     def frame_call(self) -> str:
         """The call of C's function for a buffer."""
-        known = {"frame": "frame.data()", "capacity": "frame.size()", "size": "&size"}
+        known = {"frame": "frame.data()", "capacity": "frame.size()"}
         return self._call(self.item.called.function, self.item.frame_arguments, known)
 
     @property

@@ -21,7 +21,7 @@ from protogen.targets.c.decoders.groups import (
 )
 from protogen.targets.c.decoders.named import NamedDecoder
 from protogen.targets.c.frame.checksums import ChecksumView, checksums_of
-from protogen.targets.c.frame.expressions import among, bits_of, byte
+from protogen.targets.c.frame.expressions import among, bits_of, byte, plus
 from protogen.targets.c.frame.numbers import (
     LengthView,
     LiteralView,
@@ -98,13 +98,12 @@ class ReceivedFrame(NamedDecoder, frozen=True, dict=True):
         """Bytes around an empty payload."""
         return self.around - self.optional_size
 
-    def tail_for(self, size: str) -> str:
-        """Bytes behind a payload of that size."""
+    def tail_behind(self, size: str) -> str:
+        """Bytes behind a payload of that size, added to what stands in front."""
         if not self.optional_size:
-            return f"{self.plan.tail_size}U"
-        return (
-            f"({size} == 0U ? {self.plan.tail_size - self.optional_size}U : {self.plan.tail_size}U)"
-        )
+            return plus(self.plan.tail_size)
+        least = self.plan.tail_size - self.optional_size
+        return f" + ({size} == 0U ? {least}U : {self.plan.tail_size}U)"
 
     @property
     def start_size(self) -> int:

@@ -30,8 +30,9 @@ class CoveredRun(msgspec.Struct, frozen=True):
         wide = payload if payload == "payload" else f"(size_t){payload}"  # That is a size_t.
         first, last = self.first.of(wide), self.last.of(wide)
         if self.last.place.side is Side.HEAD:
-            return f"&content[{first}], (size_t)({last}) - (size_t)({first})"
-        return f"&content[{first}], {last} - {f'({first})' if ' ' in first else first}"
+            return f"&content[{first}], {self.last.place.offset - self.first.place.offset}U"
+        before = "" if first == "0U" else f" - ({first})" if " " in first else f" - {first}"
+        return f"&content[{first}], {last}{before}"
 
 
 class CoveredLiteral(msgspec.Struct, frozen=True):

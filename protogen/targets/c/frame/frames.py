@@ -155,6 +155,11 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
         return "".join(f", {item.type} {item.name}" for item in self._parameters)
 
     @property
+    def passed_on(self) -> str:
+        """The same as arguments behind others."""
+        return "".join(f", {item.name}" for item in self._parameters)
+
+    @property
     def names(self) -> list[str]:
         """Names of these parameters."""
         return [item.name for item in self._parameters]
@@ -173,8 +178,8 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
 
     def _size(self, ahead: int) -> str:
         """Bytes of payload and tail, and so many in front of them."""
-        sizes = (f"{ahead}U", "payload", self.decoder.tail_for("payload"))
-        return " + ".join(size for size in sizes if size != "0U")
+        start = f"{ahead}U + payload" if ahead else "payload"
+        return start + self.decoder.tail_behind("payload")
 
     @property
     def length(self) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator
 
 import msgspec
 
@@ -54,6 +55,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """The frames, by their sender, some of which a decoder might end too early."""
     in_place: frozenset[str]
     """Those in which no group of COBS is ever full, so that no byte moves when they are stuffed."""
+    around_bytes: frozenset[str]
+    """Those in which the payloads of several messages are a byte, so that they share a function."""
     trims: frozenset[str]
     """Those in which zeros at the end of some payload may be left out."""
     cuts_sent: bool
@@ -181,6 +184,7 @@ def framing_view(
         ),
         in_place=frozenset(frame.decoder.name for frame in distinct if frame.is_one_region)
         - {item.frame.decoder.name for item in message_frames if item.may_fill_group},
+        around_bytes=_several(item.frame.decoder.name for item in message_frames if item.byte),
         trims=frozenset(item.frame.decoder.name for item in message_frames if item.is_trimmed),
         cuts_sent=any(item.sends and item.is_trimmed for item in message_frames),
         idle_checks=frozenset(
@@ -191,6 +195,11 @@ def framing_view(
         texts=texts_of(protocol),
         helpers=helpers.texts[shared:],
     )
+
+
+def _several(names: Iterable[str]) -> frozenset[str]:
+    """Those that come more than once."""
+    return frozenset(name for name, count in Counter(names).items() if count > 1)
 
 
 def _used(functions: tuple[str, ...], users: list[str]) -> tuple[str, ...]:

@@ -21,6 +21,7 @@ from protogen.targets.c.frame.frames import Argument, FrameView, argument_of, on
 from protogen.targets.c.frame.virtual import value_of
 from protogen.targets.c.payload.message_names import FrameNames
 from protogen.targets.c.payload.messages import MessageView
+from protogen.targets.c.payload.one_byte import only_byte
 
 
 class MessageFrame(msgspec.Struct, frozen=True, dict=True):
@@ -60,6 +61,13 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     def is_trimmed(self) -> bool:
         """True if zeros at the end of its payload may be left out."""
         return self.frame.plan.frame.payload.sent(self.message.sizes) != self.message.sizes
+
+    @cached_property
+    def byte(self) -> str:
+        """The member that is all of the payload, and one byte as it is; empty if there is none."""
+        if self.validate or self.values or self.is_trimmed or self.is_refused:
+            return ""
+        return only_byte(self.message.plan)
 
     # --- the frame --------------------------------------------------------------------------------
 
@@ -169,30 +177,31 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
         plan = self.decoder.plan
         return plan.cut_ambiguous and plan.may_look_idle(self.message)
 
-    @cached_property
-    def refusals(self) -> str:
-        """The condition that a decoder would cut the frame elsewhere; empty if it never does."""
-        prefix = self.frame.decoder.prefix
-        found = [f"{prefix}_ends_early(frame, wire)"] if self.needs_cut_check else []
-        found += [f"{prefix}_looks_idle(frame, wire)"] if self.needs_idle_check else []
-        return " || ".join(found)
-
     @property
-    def too_long(self) -> str:
-        """The condition that no decoder takes so many bytes; empty if there are never as many."""
-        return f"wire > {self.decoder.plan.greatest}U" if self.is_cut_off else ""
+    def _cut_elsewhere(self) -> list[str]:
+        """Conditions that a decoder would cut the frame elsewhere."""
+        prefix = self.frame.decoder.prefix
+        found = [f"{prefix}_ends_early(frame, size)"] if self.needs_cut_check else []
+        found += [f"{prefix}_looks_idle(frame, size)"] if self.needs_idle_check else []
+        return found
+
+    @cached_property
+    def is_refused(self) -> str:
+        """The condition that no decoder would take the frame; empty if one always does."""
+        too_long = [f"size > {self.decoder.plan.greatest}U"] if self.is_cut_off else []
+        return " || ".join(too_long + self._cut_elsewhere)
 
     @cached_property
     def sends(self) -> bool:
         """True if the frame can be handed over byte by byte."""
-        return self.frame.plan.streams and not (self.refusals or self.too_long)
+        return self.frame.plan.streams and not self.is_refused
 
     # --- parameters -------------------------------------------------------------------------------
 
     @property
     def frame_arguments(self) -> tuple[str, ...]:
         """Parameters of the function that fills a buffer."""
-        return (*self._given(), "uint8_t *frame", "size_t capacity", "size_t *size")
+        return (*self._given(), "uint8_t *frame", "size_t capacity")
 
     def send_arguments(self, put: str) -> tuple[str, ...]:
         """Parameters of the function that sends."""
@@ -201,7 +210,7 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def end_arguments(self) -> tuple[str, ...]:
         """Parameters of the function that ends a frame that was begun in its buffer."""
-        return (*self._parts(), "uint8_t *frame", "size_t *size")
+        return (*self._parts(), "uint8_t *frame")
 
     def _given(self) -> tuple[str, ...]:
         return (*self.view.parameter, *self._parts())

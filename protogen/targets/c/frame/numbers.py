@@ -19,7 +19,7 @@ from protogen.model.parts import (
     ToldLength,
     ToldPart,
 )
-from protogen.targets.c.frame.expressions import byte, less_absent
+from protogen.targets.c.frame.expressions import byte, less_absent, minus
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of
 from protogen.targets.c.spelling import Names
@@ -385,7 +385,10 @@ class LengthView(msgspec.Struct, frozen=True):
 
     @property
     def impossible(self) -> str:
-        """The condition of the same where nothing wraps: `size` still counts the other parts."""
+        """The condition of the same where nothing wraps: `size` still counts the other parts.
+
+        Empty where no length is impossible.
+        """
         found = []
         if self.least > 0:
             found.append(f"length < {self.least}U")
@@ -393,7 +396,9 @@ class LengthView(msgspec.Struct, frozen=True):
             found.append(f"length > {self.greatest}U")
         if self.base:
             found.append(f"size < {self.base}U")
-        return " || ".join([*found, f"size - {self.base}U > {self.payload}U"])
+        if self.base or self.payload < (1 << self.bits) - 1:
+            found.append(f"size{minus(self.base)} > {self.payload}U")
+        return " || ".join(found)
 
 
 def length_of(plan: FramePlan) -> LengthView | None:

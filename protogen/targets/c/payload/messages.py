@@ -27,6 +27,7 @@ from protogen.targets.c.payload.initial import initialiser
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.measuring import Measure
 from protogen.targets.c.payload.message_names import claim_init, claim_message, constants_of
+from protogen.targets.c.payload.one_byte import only_byte
 from protogen.targets.c.payload.records import Records, StructView
 from protogen.targets.c.payload.storing import Put, Store
 from protogen.targets.c.payload.validating import Validate, can_be_refused, path_of
@@ -192,6 +193,8 @@ class _Codec:
         self.validates = can_be_refused(item.plan, item.sizes)
         self.is_image = is_image(item.plan)
         """True if a struct can be copied as a whole; see `NAME_AS_IN_MEMORY`."""
+        self.loads_inline = bool(only_byte(item.plan))
+        """True if the header has `load`: a call takes more than what it does."""
         self.held = held_numbers(item, printer.names)
         held = tuple(f"{number.type} {number.name}" for number in self.held)
         result = f"enum {self._prefix}_result"
@@ -209,7 +212,10 @@ class _Codec:
             "put": (f"{inline} void", (*given, printer.names.writer)),
             "encode": (result, (*given, "uint8_t *payload", "size_t capacity", "size_t *size")),
             "check": (f"static {result}", (payload, "size_t size", "size_t *need", *held)),
-            "load": ("void", (*message, payload, *size, *held)),
+            "load": (
+                "static inline void" if self.loads_inline else "void",
+                (*message, payload, *size, *held),
+            ),
             "decode": (result, (*message, payload, "size_t size", *held)),
         }
         """Result and arguments of each function."""
@@ -219,9 +225,11 @@ class _Codec:
         return f"{result}{'' if result.endswith('*') else ' '}{self._names[word]}", arguments
 
     def prototypes(self) -> tuple[str, ...]:
-        """Declarations for the header."""
-        words = ("encode", "decode", "load") if self._struct else ("encode", "decode")
-        return tuple(map(self.prototype, words))
+        """Declarations for the header, and what is defined there."""
+        found = list(map(self.prototype, ("encode", "decode")))
+        if self._struct:
+            found.append(self._load() if self.loads_inline else self.prototype("load"))
+        return tuple(found)
 
     def prototype(self, word: str) -> str:
         """The declaration of a function for the header."""
@@ -236,7 +244,7 @@ class _Codec:
         found += [self._store(), self._encode()]
         if self.checks:
             found.append(self._check())
-        found += [self._load()] if self._struct else []
+        found += [self._load()] if self._struct and not self.loads_inline else []
         return (*found, self._decode())
 
     def _function(self, word: str, lines: Lines) -> str:

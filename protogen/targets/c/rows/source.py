@@ -48,7 +48,7 @@ class _Spelling(msgspec.Struct, frozen=True):
     @property
     def call(self) -> str:
         """The call that makes the frame of a row."""
-        given = f"{self.message}{self.parts}, frame, {self.room}, &size"
+        given = f"{self.message}{self.parts}, frame, {self.room}"
         return f"{self.function}({given.removeprefix(', ')})"
 
 
