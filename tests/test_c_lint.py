@@ -90,20 +90,21 @@ def test_no_compiler_warns(path: Path, style: Style, events: Events, tmp_path: P
         units.append(made.stubs)
     # A single header holds the same code, as is tested below: one compiler takes what is around it.
     compilers = C99 if style == "split" or path in DOCUMENTS else {"gcc": C99["gcc"]}
-    named = f"-D{made.protocol.name.upper()}_NAMES"
+    macro = made.protocol.name.upper()
+    more = [f"-D{macro}_NAMES", f"-D{macro}_COUNTERS"]
     for compiler, flags in compilers.items():
         check = [
             require_tool(compiler),
             *flags,
             *WARNINGS,
-            *([named] if compiler == "clang" else []),
+            *(more if compiler == "clang" else []),
         ]
         compiled = [made.source] if made.source and compiler in OPTIMISING else []
         for unit in compiled:
             quiet([*check, *COMPILED, unit], tmp_path)
         quiet([*check, *PARSED, *(unit for unit in units if unit not in compiled)], tmp_path)
     sources = translation_units(made, tmp_path, "cc")
-    quiet([require_tool("g++"), "-std=c++11", *WARNINGS, named, *PARSED, *sources], tmp_path)
+    quiet([require_tool("g++"), "-std=c++11", *WARNINGS, *more, *PARSED, *sources], tmp_path)
 
 
 @pytest.mark.parametrize("level", ["-O2", "-O3"])

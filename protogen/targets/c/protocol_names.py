@@ -27,34 +27,36 @@ implemented message unknown invalid no_message no_reason size value encoding noi
 stuffing truncated seeking taking failed lost found known open searching measuring empty needless
 before inside after frame stuffed fast_feed sse2 expect each has no_handlers no_weak api inline
 apart baud idle_timeout_ms protogen_version zeros names fine small_crc flash flash_8 flash_16
-flash_32 flash_64 packed as_in_memory hpp always_inline nodiscard
+flash_32 flash_64 counters count sum_failed wrong_sum other_frame packed as_in_memory hpp
+always_inline nodiscard
 """
 _TAGS = "result message event_kind reason writer transmission counters"
 _TYPES = "put offer float64"
 _FUNCTIONS = """
-write first is_high mask sum_of xor_of message_name result_name reason_name transmit transmitted
+write first is_high mask sum_of xor_of clear lose tally took message_name result_name reason_name
+transmit transmitted
 """
 _TAGS_OF_A_SENDER = "parts event decoder"
 _TYPES_OF_A_SENDER = "handler"
 _FUNCTIONS_OF_A_SENDER = """
-accept add_noise added begins close close_at_flush close_open compare complete content count cross
-decide decoder_dispatch decoder_event decoder_feed decoder_flush decoder_idle decoder_init
-decoder_next decoder_push dispatch drop end_noise ends_early enter_payload find_size finish_region
-fitted follow_end follow_start give_up hand_over has_special head_fits identify invalid is_idle
-is_plain judge leave let_go look looks_idle measure measure_head open pass payload payload_size
-reach read_length release reopen reset resume room run search seek seek_on send_head send_tail
-set_payload settle show specials stuff surplus tail_fits take take_byte take_head take_tail
-take_whole unstuff unstuff_to wire_end wrap wrap_byte write
+accept add_noise added begins close close_at_flush close_open compare complete content count
+counted cross decide decoder_counters decoder_dispatch decoder_event decoder_feed decoder_flush
+decoder_idle decoder_init decoder_next decoder_push dispatch drop end_noise ends_early
+enter_payload find_size finish_region fitted follow_end follow_start give_up hand_over has_special
+head_fits identify invalid is_idle is_plain judge leave let_go look looks_idle measure measure_head
+open pass payload payload_size reach read_length release reopen reset resume room run search seek
+seek_on send_head send_tail set_payload settle show specials stuff surplus tail_fits take take_byte
+take_head take_tail take_whole unstuff unstuff_to wire_end wrap wrap_byte write wrong
 """
-_MACROS_OF_A_SENDER = "frame_max idle_us decoder_init"
+_MACROS_OF_A_SENDER = "frame_max idle_us decoder_init counted wrong"
 _FUNCTIONS_OF_A_CANDIDATE = "begun begun_byte end fill_up mark read show step"
 _TAGS_OF_FORMS = "decoder event form"
 _FUNCTIONS_OF_FORMS = """
-add_noise choose count decoder_dispatch decoder_event decoder_feed decoder_flush decoder_idle
-decoder_init decoder_next decoder_push dispatch drop end_noise fail follow_end give invalid judge
-leave mark open reset resume run seek seek_on take
+add_noise choose count counted decoder_counters decoder_dispatch decoder_event decoder_feed
+decoder_flush decoder_idle decoder_init decoder_next decoder_push dispatch drop end_noise fail
+follow_end give invalid judge leave mark open reset resume run seek seek_on take
 """
-_MACROS_OF_FORMS = "frame_max decoder_init no_form no_start may_start is_start"
+_MACROS_OF_FORMS = "frame_max decoder_init counted no_form no_start may_start is_start"
 
 
 def names_of(protocol: Protocol) -> Names:

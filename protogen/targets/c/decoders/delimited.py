@@ -215,6 +215,20 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
         """True if a group of COBS may be full, so that no zero stands behind it."""
         return self.is_cobs and self.around + self.greatest_payload >= _SHORT_COBS
 
+    # --- counters ---------------------------------------------------------------------------------
+
+    @property
+    def weighs_sizes(self) -> bool:
+        """True if a decoder of all events looks at a frame's size before its checksum."""
+        is_early = self.plan.identity_is_early or not self.identified
+        has_sizes = self.only_size is None and self.length is None and bool(self.groups)
+        return bool(self.checksums) and is_early and has_sizes
+
+    def has_size(self, group: GroupView) -> str:
+        """The condition that a frame of the group has a size that it can have."""
+        size = group.greatest if group.fixed is None else group.fixed
+        return f"payload {'<=' if group.fixed is None else '=='} {size}U"
+
     # --- messages ---------------------------------------------------------------------------------
 
     @property

@@ -26,7 +26,7 @@ from protogen.targets.c.decoders.members import (
     candidate_members,
 )
 from protogen.targets.c.decoders.named import NamedDecoder
-from protogen.targets.c.decoders.push import PushDecoder
+from protogen.targets.c.decoders.push import PushDecoder, bytes_kept
 from protogen.targets.c.frame.numbers import ToldView
 from protogen.targets.c.options import Events
 from protogen.targets.c.spelling import Names
@@ -131,6 +131,11 @@ class FormsDecoder(NamedDecoder, frozen=True, dict=True):
         """Bytes of the buffer: a candidate of any form, at whose end a start of any form begins."""
         begun = max(item.start_size for item in self._each) - 1
         return max(item.plan.given_up_at for item in self._each) + max(begun, 0)
+
+    @property
+    def bytes_kept(self) -> tuple[str, str, str]:
+        """For counters: bytes of a complete frame, behind it, and those kept where none is."""
+        return bytes_kept(shares=self.search.plan.shares_delimiter)
 
     # --- what it is told --------------------------------------------------------------------------
 

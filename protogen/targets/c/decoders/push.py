@@ -13,6 +13,19 @@ from protogen.targets.c.frame.expressions import Index, byte, equals
 from protogen.targets.c.frame.stuffing import StuffingKind
 
 
+def bytes_kept(*, shares: bool) -> tuple[str, str, str]:
+    """Bytes of a frame that is complete, behind it, and those kept where none is.
+
+    A delimiter that two frames share is of the first one.
+    """
+    size, left = "decoder->failed", "(uint32_t)decoder->count - decoder->failed"
+    if not shares:
+        return size, left, "decoder->count"
+    kept = "(uint32_t)decoder->count - decoder->shared"
+    has_more = "decoder->count > decoder->shared"
+    return f"(uint32_t){size} - decoder->shared", left, f"{has_more} ? {kept} : 0U"
+
+
 class PushDecoder(PushStates, frozen=True, dict=True):
     """Members and conditions of a decoder with states."""
 
@@ -178,6 +191,11 @@ class PushDecoder(PushStates, frozen=True, dict=True):
         if self.plan.shares_delimiter:
             return "decoder->wire > decoder->shared"
         return "decoder->wire != 0U" if self.counts_wire else "decoder->content != 0U"
+
+    @property
+    def bytes_kept(self) -> tuple[str, str, str]:
+        """For counters: bytes of a complete frame, behind it, and those kept where none is."""
+        return bytes_kept(shares=self.plan.shares_delimiter)
 
     # --- the stuffed region -----------------------------------------------------------------------
 
