@@ -38,7 +38,7 @@ _NUMBER = """    {type} {name} = ({type})any;
     }}
 """
 """What `end` is given: numbers of elements, of which EVA follows each alone."""
-_FOLLOWED = 12
+_FOLLOWED = 8
 """The greatest of them."""
 _CALL = """        if (any != 0) {{
             {declared}(void){name}(payload, {given});
