@@ -6,14 +6,19 @@ static struct dagny_host_decoder decoder;
 static void take(void *user, const struct dagny_host_event *event) {
     void *const message = BENCH_MESSAGE;
     (void)user;
-    if (event->message == DAGNY_MESSAGE_MOTOR) {
+    switch (event->message) {
+    case DAGNY_MESSAGE_MOTOR:
         dagny_motor_load(message, event->payload);
-    } else if (event->message == DAGNY_MESSAGE_STEERING) {
+        break;
+    case DAGNY_MESSAGE_STEERING:
         dagny_steering_load(message, event->payload);
-    } else if (event->message == DAGNY_MESSAGE_REFLEX) {
+        break;
+    case DAGNY_MESSAGE_REFLEX:
         dagny_reflex_load(message, event->payload);
-    } else {
+        break;
+    default:
         dagny_power_load(message, event->payload);
+        break;
     }
     bench_seen((uint8_t)event->message);
 }
