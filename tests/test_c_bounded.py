@@ -85,7 +85,7 @@ STEPS = [
 
 ALL = bool(os.environ.get("PROTOGEN_PROVE_ALL"))
 WHOLE = [("bounded/trimmed", 13), *[("bounded/escaped", 15)] * ALL]
-"""Frames that are taken whole: of payloads that are filled up, and stuffed ones, which take long."""
+"""Frames taken whole: of payloads that are filled up, and stuffed ones: these take long."""
 
 
 def made_of(path: str, folder: Path) -> Generated:
