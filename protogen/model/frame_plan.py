@@ -241,20 +241,6 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         start = self.start_size - self.skipped
         return any(not run.first.is_tail and run.first.offset < start for run in runs)
 
-    def behind_start(self) -> FramePlan:
-        """The plan for those who keep no start literal: places are counted from behind it.
-
-        Its own bytes have negative places.
-        """
-        start = len(self.start_bytes)
-        return msgspec.structs.replace(
-            self,
-            head=tuple(item.skipping(start) for item in self.head),
-            further_lengths=tuple(item.skipping(start) for item in self.further_lengths),
-            checksums=tuple(item.skipping(start) for item in self.checksums),
-            region=None if self.region is None else self.region.skipping(start),
-        )
-
     # --- parts ------------------------------------------------------------------------------------
 
     def counted(self, part: LengthPart) -> CountedLength:

@@ -7,6 +7,7 @@ from functools import cached_property
 
 from msgspec.structs import astuple, replace
 
+from protogen.model.behind_start import behind_start
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.delimited import DelimitedDecoder
 from protogen.targets.c.decoders.flat import FlatDecoder
@@ -50,7 +51,7 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
         lean = self.flat or self.delimited
         if lean is None or lean.keeps_start:
             return self
-        return replace(self, plan=self.plan.behind_start())
+        return replace(self, plan=behind_start(self.plan))
 
     @property
     def polled(self) -> FlatDecoder | DelimitedDecoder | KeptDecoder | PushDecoder | None:

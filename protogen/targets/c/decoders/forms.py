@@ -16,6 +16,7 @@ from msgspec.structs import astuple
 from protogen.model.frame_plan import StartRule
 from protogen.model.protocol import Sender
 from protogen.targets.c.decoders.candidate import Candidate
+from protogen.targets.c.decoders.counting import bytes_kept
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.decoders.members import (
     ENDING,
@@ -26,7 +27,7 @@ from protogen.targets.c.decoders.members import (
     candidate_members,
 )
 from protogen.targets.c.decoders.named import NamedDecoder
-from protogen.targets.c.decoders.push import PushDecoder, bytes_kept
+from protogen.targets.c.decoders.push import PushDecoder
 from protogen.targets.c.frame.numbers import ToldView
 from protogen.targets.c.options import Events
 from protogen.targets.c.spelling import Names

@@ -7,23 +7,11 @@ from functools import cached_property
 
 from protogen.model.frame_places import Side
 from protogen.model.frame_plan import StartRule
+from protogen.targets.c.decoders.counting import bytes_kept
 from protogen.targets.c.decoders.groups import GroupView, ReceivedMessage
 from protogen.targets.c.decoders.states import PushStates
 from protogen.targets.c.frame.expressions import Index, byte, equals
 from protogen.targets.c.frame.stuffing import StuffingKind
-
-
-def bytes_kept(*, shares: bool) -> tuple[str, str, str]:
-    """Bytes of a frame that is complete, behind it, and those kept where none is.
-
-    A delimiter that two frames share is of the first one.
-    """
-    size, left = "decoder->failed", "(uint32_t)decoder->count - decoder->failed"
-    if not shares:
-        return size, left, "decoder->count"
-    kept = "(uint32_t)decoder->count - decoder->shared"
-    has_more = "decoder->count > decoder->shared"
-    return f"(uint32_t){size} - decoder->shared", left, f"{has_more} ? {kept} : 0U"
 
 
 class PushDecoder(PushStates, frozen=True, dict=True):
