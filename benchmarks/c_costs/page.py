@@ -121,10 +121,11 @@ ratios to that expert.
 
 Bytes of a linked program that decodes and encodes, with decoder and framing, less an empty one. An
 ordinary build is `-Os -ffunction-sections -fdata-sections` and `--gc-sections`; the other has
-`-flto` as well. RAM is what stands there all the time (`.data` and `.bss`): the decoder, and the
-addresses of handler and user where it has them. Messages belong to the application and are not
-counted. The lidar is sent byte by byte on these machines. The last program has three links:
-protogen and the expert have a decoder for each protocol, MAVLink one dialect with three channels.
+`-flto` as well, and there `NAME_APART` is `static`, as a generated source tells its user to define
+it. RAM is what stands there all the time (`.data` and `.bss`): the decoder, and the addresses of
+handler and user where it has them. Messages belong to the application and are not counted. The
+lidar is sent byte by byte on these machines. The last program has three links: protogen and the
+expert have a decoder for each protocol, MAVLink one dialect with three channels.
 
 ### ATmega328P
 

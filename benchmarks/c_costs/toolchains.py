@@ -33,6 +33,10 @@ class Toolchain:
     def compiler(self) -> str:
         return self.prefix + self.compiler_name
 
+    @property
+    def has_lto(self) -> bool:
+        return "-flto" in self.flags
+
     def version(self) -> str:
         return run([self.compiler, "--version"]).splitlines()[0]
 

@@ -26,6 +26,8 @@ class Subject:
     folders: tuple[Path, ...]
     sources: tuple[Path, ...]
     flags: tuple[str, ...] = ()
+    lto_flags: tuple[str, ...] = ()
+    """Those that go with `-flto`."""
 
 
 class Workshop:
@@ -58,7 +60,8 @@ class Workshop:
         header = FOLDER / "subjects" / f"use_{name}_all.h"
         folders = tuple(folder for part in parts for folder in part.folders)
         sources = tuple(source for part in parts for source in part.sources)
-        return Subject(kind, TOGETHER, header, folders, sources, parts[0].flags)
+        lto = tuple(flag for part in parts for flag in part.lto_flags)
+        return Subject(kind, TOGETHER, header, folders, sources, parts[0].flags, lto)
 
     def _protogen(self, events: str, protocol: Protocol) -> Subject:
         output = self.folder / events / protocol.name
@@ -69,7 +72,8 @@ class Workshop:
         source = output / "c" / f"{protocol.name}.c"
         header = FOLDER / "subjects" / f"use_protogen_{protocol.name}.h"
         flags = ("-DBENCH_POLLS",) if _is_polled(source.with_suffix(".h")) else ()
-        return Subject(events, protocol, header, (source.parent,), (source,), flags)
+        lto = (f"-D{protocol.name.upper()}_APART=static",)
+        return Subject(events, protocol, header, (source.parent,), (source,), flags, lto)
 
     def _included(self, protocol: Protocol) -> Subject:
         """The generated source as a part of the application's, all of it static."""
@@ -146,8 +150,9 @@ class Workshop:
         self._built += 1
         program = self.folder / f"program{self._built}"
         folders = [f"-I{folder}" for folder in (FOLDER / "harness", *subject.folders)]
+        flags = (*subject.flags, *(subject.lto_flags if toolchain.has_lto else ()))
         command = [
-            *(toolchain.compiler, *toolchain.flags, *subject.flags, *folders, *map(str, more)),
+            *(toolchain.compiler, *toolchain.flags, *flags, *folders, *map(str, more)),
             f'-DSUBJECT="{subject.header}"',
             f"-DBENCH_MESSAGE_SIZE={subject.protocol.memory}",
             str(FOLDER / "harness" / f"{harness}.c"),

@@ -4,20 +4,19 @@
 
 /*
  * What a function of the header needs is put into it, so that it is short and fast also where no
- * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
- * the function that calls it: define DAGNY_LIBRARY_APART as `static` with -flto, or in one source.
+ * linker optimises, and a linker can leave out what nobody calls. What is shared takes less flash
+ * once than in each function that calls it. What stands apart would slow down the function that
+ * calls it: define DAGNY_LIBRARY_APART as `static` with -flto, or in one source.
  */
 #if defined(__GNUC__)
 #define DAGNY_LIBRARY_INLINE static inline __attribute__((always_inline))
+#define DAGNY_LIBRARY_SHARED static __attribute__((noinline))
 #else
 #define DAGNY_LIBRARY_INLINE static inline
+#define DAGNY_LIBRARY_SHARED static
 #endif
 #ifndef DAGNY_LIBRARY_APART
-#if defined(__GNUC__)
-#define DAGNY_LIBRARY_APART static __attribute__((noinline))
-#else
-#define DAGNY_LIBRARY_APART static
-#endif
+#define DAGNY_LIBRARY_APART DAGNY_LIBRARY_SHARED
 #endif
 
 /*
@@ -670,8 +669,8 @@ static size_t dagny_library_host_wrap(uint8_t *frame, size_t payload, uint8_t id
 
 /* The frame of a message that is a byte; returns its size, 0 where it has no room. The byte is the
    first parameter as the message is that of the caller: then nothing has to be moved. */
-DAGNY_LIBRARY_APART size_t dagny_library_host_wrap_byte(const uint8_t *byte, uint8_t *frame,
-                                                        size_t capacity, uint8_t id) {
+DAGNY_LIBRARY_SHARED size_t dagny_library_host_wrap_byte(const uint8_t *byte, uint8_t *frame,
+                                                         size_t capacity, uint8_t id) {
     if (capacity < dagny_library_host_room(1U)) {
         return 0U;
     }

@@ -4,20 +4,19 @@
 
 /*
  * What a function of the header needs is put into it, so that it is short and fast also where no
- * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
- * the function that calls it: define RFLEX_APART as `static` with -flto, or in one source.
+ * linker optimises, and a linker can leave out what nobody calls. What is shared takes less flash
+ * once than in each function that calls it. What stands apart would slow down the function that
+ * calls it: define RFLEX_APART as `static` with -flto, or in one source.
  */
 #if defined(__GNUC__)
 #define RFLEX_INLINE static inline __attribute__((always_inline))
+#define RFLEX_SHARED static __attribute__((noinline))
 #else
 #define RFLEX_INLINE static inline
+#define RFLEX_SHARED static
 #endif
 #ifndef RFLEX_APART
-#if defined(__GNUC__)
-#define RFLEX_APART static __attribute__((noinline))
-#else
-#define RFLEX_APART static
-#endif
+#define RFLEX_APART RFLEX_SHARED
 #endif
 
 /*

@@ -4,20 +4,19 @@
 
 /*
  * What a function of the header needs is put into it, so that it is short and fast also where no
- * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
- * the function that calls it: define RN1_APART as `static` with -flto, or in one source.
+ * linker optimises, and a linker can leave out what nobody calls. What is shared takes less flash
+ * once than in each function that calls it. What stands apart would slow down the function that
+ * calls it: define RN1_APART as `static` with -flto, or in one source.
  */
 #if defined(__GNUC__)
 #define RN1_INLINE static inline __attribute__((always_inline))
+#define RN1_SHARED static __attribute__((noinline))
 #else
 #define RN1_INLINE static inline
+#define RN1_SHARED static
 #endif
 #ifndef RN1_APART
-#if defined(__GNUC__)
-#define RN1_APART static __attribute__((noinline))
-#else
-#define RN1_APART static
-#endif
+#define RN1_APART RN1_SHARED
 #endif
 
 /*
@@ -39,6 +38,10 @@
 #include <emmintrin.h>
 #endif
 
+RN1_INLINE uint8_t rn1_offset_s7(int8_t value) {
+    return (uint8_t)((uint8_t)value + 0x40U);
+}
+
 static bool rn1_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
     uint8_t all = 0U;
@@ -51,6 +54,10 @@ static bool rn1_is_seven_bit(const void *at, size_t size) {
 static int8_t rn1_load_s7(const uint8_t *at) {
     const uint8_t extended = (uint8_t)((at[0] ^ 0x40U) - 0x40U);
     return (int8_t)extended;
+}
+
+RN1_INLINE uint16_t rn1_offset_s14(int16_t value) {
+    return (uint16_t)((uint16_t)value + 0x2000U);
 }
 
 RN1_INLINE void rn1_store_u14le(uint8_t *at, uint16_t value) {
@@ -115,10 +122,7 @@ static void rn1_load_u14le_run(uint16_t *numbers, const uint8_t *at, size_t coun
 /* --- move_manual ------------------------------------------------------------------------------ */
 
 RN1_INLINE enum rn1_result rn1_move_manual_validate(const struct rn1_move_manual *message) {
-    if (message->speed < -64 || message->speed > 63) {
-        return RN1_ERROR_RANGE;
-    }
-    if (message->arc < -64 || message->arc > 63) {
+    if ((rn1_offset_s7(message->speed) | rn1_offset_s7(message->arc)) > 0x7FU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -173,10 +177,7 @@ enum rn1_result rn1_move_manual_decode(struct rn1_move_manual *message, const ui
 
 RN1_INLINE enum rn1_result rn1_move_relative_twostep_validate(
     const struct rn1_move_relative_twostep *message) {
-    if (message->angle < -8192 || message->angle > 8191) {
-        return RN1_ERROR_RANGE;
-    }
-    if (message->forward < -8192 || message->forward > 8191) {
+    if ((rn1_offset_s14(message->angle) | rn1_offset_s14(message->forward)) > 0x3FFFU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -234,10 +235,7 @@ enum rn1_result rn1_move_relative_twostep_decode(struct rn1_move_relative_twoste
 
 RN1_INLINE enum rn1_result rn1_move_relative_arc_validate(
     const struct rn1_move_relative_arc *message) {
-    if (message->angle < -8192 || message->angle > 8191) {
-        return RN1_ERROR_RANGE;
-    }
-    if (message->forward < -8192 || message->forward > 8191) {
+    if ((rn1_offset_s14(message->angle) | rn1_offset_s14(message->forward)) > 0x3FFFU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -487,13 +485,8 @@ RN1_INLINE enum rn1_result rn1_gyro_validate(const struct rn1_gyro *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if (message->int_x < -8192 || message->int_x > 8191) {
-        return RN1_ERROR_RANGE;
-    }
-    if (message->int_y < -8192 || message->int_y > 8191) {
-        return RN1_ERROR_RANGE;
-    }
-    if (message->int_z < -8192 || message->int_z > 8191) {
+    if ((rn1_offset_s14(message->int_x) | rn1_offset_s14(message->int_y) |
+         rn1_offset_s14(message->int_z)) > 0x3FFFU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -553,13 +546,8 @@ RN1_INLINE enum rn1_result rn1_xcel_validate(const struct rn1_xcel *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if (message->int_x < -8192 || message->int_x > 8191) {
-        return RN1_ERROR_RANGE;
-    }
-    if (message->int_y < -8192 || message->int_y > 8191) {
-        return RN1_ERROR_RANGE;
-    }
-    if (message->int_z < -8192 || message->int_z > 8191) {
+    if ((rn1_offset_s14(message->int_x) | rn1_offset_s14(message->int_y) |
+         rn1_offset_s14(message->int_z)) > 0x3FFFU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -619,13 +607,8 @@ RN1_INLINE enum rn1_result rn1_compass_validate(const struct rn1_compass *messag
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if (message->avg_x < -8192 || message->avg_x > 8191) {
-        return RN1_ERROR_RANGE;
-    }
-    if (message->avg_y < -8192 || message->avg_y > 8191) {
-        return RN1_ERROR_RANGE;
-    }
-    if (message->avg_z < -8192 || message->avg_z > 8191) {
+    if ((rn1_offset_s14(message->avg_x) | rn1_offset_s14(message->avg_y) |
+         rn1_offset_s14(message->avg_z)) > 0x3FFFU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -686,10 +669,7 @@ RN1_INLINE enum rn1_result rn1_optflow_validate(const struct rn1_optflow *messag
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if (message->dx < -8192 || message->dx > 8191) {
-        return RN1_ERROR_RANGE;
-    }
-    if (message->dy < -8192 || message->dy > 8191) {
+    if ((rn1_offset_s14(message->dx) | rn1_offset_s14(message->dy)) > 0x3FFFU) {
         return RN1_ERROR_RANGE;
     }
     if (message->q > 127U) {

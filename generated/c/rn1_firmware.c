@@ -4,20 +4,19 @@
 
 /*
  * What a function of the header needs is put into it, so that it is short and fast also where no
- * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
- * the function that calls it: define RN1_FIRMWARE_APART as `static` with -flto, or in one source.
+ * linker optimises, and a linker can leave out what nobody calls. What is shared takes less flash
+ * once than in each function that calls it. What stands apart would slow down the function that
+ * calls it: define RN1_FIRMWARE_APART as `static` with -flto, or in one source.
  */
 #if defined(__GNUC__)
 #define RN1_FIRMWARE_INLINE static inline __attribute__((always_inline))
+#define RN1_FIRMWARE_SHARED static __attribute__((noinline))
 #else
 #define RN1_FIRMWARE_INLINE static inline
+#define RN1_FIRMWARE_SHARED static
 #endif
 #ifndef RN1_FIRMWARE_APART
-#if defined(__GNUC__)
-#define RN1_FIRMWARE_APART static __attribute__((noinline))
-#else
-#define RN1_FIRMWARE_APART static
-#endif
+#define RN1_FIRMWARE_APART RN1_FIRMWARE_SHARED
 #endif
 
 /*
@@ -39,6 +38,10 @@
 #include <emmintrin.h>
 #endif
 
+RN1_FIRMWARE_INLINE uint8_t rn1_firmware_offset_s7(int8_t value) {
+    return (uint8_t)((uint8_t)value + 0x40U);
+}
+
 static bool rn1_firmware_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
     uint8_t all = 0U;
@@ -51,6 +54,10 @@ static bool rn1_firmware_is_seven_bit(const void *at, size_t size) {
 static int8_t rn1_firmware_load_s7(const uint8_t *at) {
     const uint8_t extended = (uint8_t)((at[0] ^ 0x40U) - 0x40U);
     return (int8_t)extended;
+}
+
+RN1_FIRMWARE_INLINE uint16_t rn1_firmware_offset_s14(int16_t value) {
+    return (uint16_t)((uint16_t)value + 0x2000U);
 }
 
 RN1_FIRMWARE_INLINE void rn1_firmware_store_u14be(uint8_t *at, uint16_t value) {
@@ -141,10 +148,7 @@ static int64_t rn1_firmware_load_s35be(const uint8_t *at) {
 
 RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_move_manual_validate(
     const struct rn1_firmware_move_manual *message) {
-    if (message->speed < -64 || message->speed > 63) {
-        return RN1_FIRMWARE_ERROR_RANGE;
-    }
-    if (message->arc < -64 || message->arc > 63) {
+    if ((rn1_firmware_offset_s7(message->speed) | rn1_firmware_offset_s7(message->arc)) > 0x7FU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -203,10 +207,8 @@ enum rn1_firmware_result rn1_firmware_move_manual_decode(struct rn1_firmware_mov
 
 RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_move_relative_twostep_validate(
     const struct rn1_firmware_move_relative_twostep *message) {
-    if (message->angle < -8192 || message->angle > 8191) {
-        return RN1_FIRMWARE_ERROR_RANGE;
-    }
-    if (message->forward < -8192 || message->forward > 8191) {
+    if ((rn1_firmware_offset_s14(message->angle) |
+         rn1_firmware_offset_s14(message->forward)) > 0x3FFFU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -546,13 +548,8 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_gyro_validate(
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if (message->int_x < -8192 || message->int_x > 8191) {
-        return RN1_FIRMWARE_ERROR_RANGE;
-    }
-    if (message->int_y < -8192 || message->int_y > 8191) {
-        return RN1_FIRMWARE_ERROR_RANGE;
-    }
-    if (message->int_z < -8192 || message->int_z > 8191) {
+    if ((rn1_firmware_offset_s14(message->int_x) | rn1_firmware_offset_s14(message->int_y) |
+         rn1_firmware_offset_s14(message->int_z)) > 0x3FFFU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -616,13 +613,8 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_xcel_validate(
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if (message->int_x < -8192 || message->int_x > 8191) {
-        return RN1_FIRMWARE_ERROR_RANGE;
-    }
-    if (message->int_y < -8192 || message->int_y > 8191) {
-        return RN1_FIRMWARE_ERROR_RANGE;
-    }
-    if (message->int_z < -8192 || message->int_z > 8191) {
+    if ((rn1_firmware_offset_s14(message->int_x) | rn1_firmware_offset_s14(message->int_y) |
+         rn1_firmware_offset_s14(message->int_z)) > 0x3FFFU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -686,13 +678,8 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_compass_validate(
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if (message->avg_x < -8192 || message->avg_x > 8191) {
-        return RN1_FIRMWARE_ERROR_RANGE;
-    }
-    if (message->avg_y < -8192 || message->avg_y > 8191) {
-        return RN1_FIRMWARE_ERROR_RANGE;
-    }
-    if (message->avg_z < -8192 || message->avg_z > 8191) {
+    if ((rn1_firmware_offset_s14(message->avg_x) | rn1_firmware_offset_s14(message->avg_y) |
+         rn1_firmware_offset_s14(message->avg_z)) > 0x3FFFU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -883,10 +870,8 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_facing_validate(
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if (message->heading < -8192 || message->heading > 8191) {
-        return RN1_FIRMWARE_ERROR_RANGE;
-    }
-    if (message->speed < -8192 || message->speed > 8191) {
+    if ((rn1_firmware_offset_s14(message->heading) |
+         rn1_firmware_offset_s14(message->speed)) > 0x3FFFU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -949,10 +934,8 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_optflow_integral_valid
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if (message->int_x < -8192 || message->int_x > 8191) {
-        return RN1_FIRMWARE_ERROR_RANGE;
-    }
-    if (message->int_y < -8192 || message->int_y > 8191) {
+    if ((rn1_firmware_offset_s14(message->int_x) |
+         rn1_firmware_offset_s14(message->int_y)) > 0x3FFFU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;

@@ -4,20 +4,19 @@
 
 /*
  * What a function of the header needs is put into it, so that it is short and fast also where no
- * linker optimises, and a linker can leave out what nobody calls. What stands apart would slow down
- * the function that calls it: define UHEROBOT_DAEMON_APART as `static` with -flto, or in one source.
+ * linker optimises, and a linker can leave out what nobody calls. What is shared takes less flash
+ * once than in each function that calls it. What stands apart would slow down the function that
+ * calls it: define UHEROBOT_DAEMON_APART as `static` with -flto, or in one source.
  */
 #if defined(__GNUC__)
 #define UHEROBOT_DAEMON_INLINE static inline __attribute__((always_inline))
+#define UHEROBOT_DAEMON_SHARED static __attribute__((noinline))
 #else
 #define UHEROBOT_DAEMON_INLINE static inline
+#define UHEROBOT_DAEMON_SHARED static
 #endif
 #ifndef UHEROBOT_DAEMON_APART
-#if defined(__GNUC__)
-#define UHEROBOT_DAEMON_APART static __attribute__((noinline))
-#else
-#define UHEROBOT_DAEMON_APART static
-#endif
+#define UHEROBOT_DAEMON_APART UHEROBOT_DAEMON_SHARED
 #endif
 
 UHEROBOT_DAEMON_INLINE void uherobot_daemon_store_u16be(uint8_t *at, uint16_t value) {

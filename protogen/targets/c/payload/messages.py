@@ -286,8 +286,9 @@ class _Codec:
 
     def _told(self, word: str, error: Callable[[str], str], size_error: str, good: str) -> str:
         """A function that looks at each member, and at the size of the payload."""
-        lines, unfit = Lines(), _unfit(self._item)
-        Validate(self._printer.helpers, lines, error).message(self._item.plan)
+        lines, unfit, by_member = Lines(), _unfit(self._item), word == "refused"
+        validate = Validate(self._printer.helpers, lines, error, by_member=by_member)
+        validate.message(self._item.plan)
         if unfit:
             lines.add(f"const size_t size = {self._names['measure']}(message);")
             with lines.block(f"if ({unfit})"):

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import groupby
+from typing import NamedTuple
 
 from protogen.c_language.numbers import constant, hexadecimal, unsigned
 from protogen.model.payload_plan import (
@@ -25,7 +27,7 @@ from protogen.model.payload_plan import (
     TrailingPresence,
 )
 from protogen.model.sizes import SizeSet
-from protogen.model.types import Text, counting_bits
+from protogen.model.types import Text, counting_bits, storage_bits
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.between import is_text
 from protogen.targets.c.payload.helpers import Helpers
@@ -65,17 +67,50 @@ def _is_bounded_by_bits(step: IntegerStep) -> bool:
     return is_plain and fits and not any(item.value > greatest for item in step.field.special)
 
 
+class _Span(NamedTuple):
+    """Numbers that can be sent just where they have so many bits."""
+
+    storage: int
+    """Bits of the member."""
+    bits: int
+    signed: bool
+
+
+def _span(step: AnyStep) -> _Span | None:
+    """The numbers that can be sent, where those are all of so many bits.
+
+    None for other bounds, and for a number that counts or selects something that follows.
+    """
+    if not isinstance(step, IntegerStep) or step.is_needed or Check.CLOSED in step.checks:
+        return None
+    least, greatest = step.bounds
+    bits = (greatest - least).bit_length()
+    type_ = step.type
+    is_whole = greatest - least == (1 << bits) - 1 and least == (-1 << (bits - 1) if least else 0)
+    is_plain = type_.role != "bool" and type_.signed == (least < 0)
+    has_offset = not type_.signed or storage_bits(bits) == storage_bits(type_.bits)
+    if not (is_whole and is_plain and has_offset and _outside(step, "x")) or step.field.special:
+        return None
+    return _Span(storage_bits(type_.bits), bits, type_.signed)
+
+
 def path_of(place: str) -> str:
     """A member of a message as text: `points[].x` for `message->points[i].x`."""
     return re.sub(r"\[\w+\]", "[]", place.removeprefix("message->"))
 
 
 class Validate(Walk):
-    """Prints a check of what `message` points to; `error` is returned for a member."""
+    """Prints a check of what `message` points to; `error` is returned for a member.
 
-    def __init__(self, helpers: Helpers, lines: Lines, error: Callable[[str], str]) -> None:
+    With `by_member` each is looked at by itself, else neighbours with the same bounds together.
+    """
+
+    def __init__(
+        self, helpers: Helpers, lines: Lines, error: Callable[[str], str], *, by_member: bool = True
+    ) -> None:
         super().__init__(helpers, lines)
         self._error = error
+        self._is_by_member = by_member
         self._member = ""
 
     def _refuse(self, condition: str) -> None:
@@ -92,6 +127,30 @@ class Validate(Walk):
             around, self._member = self._member, place
             super().step(step, place)
             self._member = around
+
+    def record(self, steps: Sequence[AnyStep], base: str) -> None:
+        """The members of a record; neighbours with the same bounds are looked at together."""
+        if self._is_by_member:
+            super().record(steps, base)
+            return
+        self._records.append(base)
+        for span, found in groupby((step for step in steps if step.is_refusable), _span):
+            group = list(found)
+            places = [base + self.helpers.member(step.name) for step in group]
+            if span is not None and len(group) > 1:
+                self._together(span, places)
+            else:
+                for step, place in zip(group, places, strict=True):
+                    self.step(step, place)
+        self._records.pop()
+
+    def _together(self, span: _Span, places: Sequence[str]) -> None:
+        """Refuse numbers of which one has more bits."""
+        numbers = list(places)
+        if span.signed:
+            offset = self.helpers.offset(span.bits)
+            numbers = [f"{offset}({place})" for place in places]
+        self._refuse(f"({' | '.join(numbers)}) > {hexadecimal((1 << span.bits) - 1)}")
 
     def number(self, step: NumberStep, place: str) -> None:
         """A number."""
