@@ -58,7 +58,7 @@ typedef char matty_status_layout[offsetof(struct matty_status, encoder3) == 16U 
 #endif
 
 /* avr-gcc makes a short loop of memcpy, while others call it. */
-MATTY_INLINE void matty_copy(uint8_t *to, const uint8_t *from, size_t size) {
+MATTY_INLINE void matty_copy_whole(uint8_t *to, const uint8_t *from, size_t size) {
 #if defined(__AVR__) && defined(__GNUC__)
     memcpy(to, from, size);
 #else
@@ -309,7 +309,7 @@ enum matty_result matty_nack_decode(const uint8_t *payload, size_t size) {
 MATTY_INLINE void matty_status_store(const struct matty_status *message, uint8_t *payload) {
 #if MATTY_AS_IN_MEMORY
     const uint8_t *const from = (const uint8_t *)message;
-    matty_copy(payload, from, 18U);
+    matty_copy_whole(payload, from, 18U);
 #else
     payload[0] = message->status;
     payload[1] = message->mode;
@@ -337,7 +337,7 @@ enum matty_result matty_status_encode(const struct matty_status *message, uint8_
 void matty_status_load(struct matty_status *message, const uint8_t *payload) {
 #if MATTY_AS_IN_MEMORY
     uint8_t *const to = (uint8_t *)message;
-    matty_copy(to, payload, 18U);
+    matty_copy_whole(to, payload, 18U);
 #else
     message->status = payload[0];
     message->mode = payload[1];

@@ -58,7 +58,7 @@ typedef char matty_v4_status_layout[offsetof(struct matty_v4_status, yaw) == 22U
 #endif
 
 /* avr-gcc makes a short loop of memcpy, while others call it. */
-MATTY_V4_INLINE void matty_v4_copy(uint8_t *to, const uint8_t *from, size_t size) {
+MATTY_V4_INLINE void matty_v4_copy_whole(uint8_t *to, const uint8_t *from, size_t size) {
 #if defined(__AVR__) && defined(__GNUC__)
     memcpy(to, from, size);
 #else
@@ -392,7 +392,7 @@ MATTY_V4_INLINE void matty_v4_status_store(const struct matty_v4_status *message
                                            uint8_t *payload) {
 #if MATTY_V4_AS_IN_MEMORY
     const uint8_t *const from = (const uint8_t *)message;
-    matty_v4_copy(payload, from, 24U);
+    matty_v4_copy_whole(payload, from, 24U);
 #else
     payload[0] = message->status;
     payload[1] = message->mode;
@@ -423,7 +423,7 @@ enum matty_v4_result matty_v4_status_encode(const struct matty_v4_status *messag
 void matty_v4_status_load(struct matty_v4_status *message, const uint8_t *payload) {
 #if MATTY_V4_AS_IN_MEMORY
     uint8_t *const to = (uint8_t *)message;
-    matty_v4_copy(to, payload, 24U);
+    matty_v4_copy_whole(to, payload, 24U);
 #else
     message->status = payload[0];
     message->mode = payload[1];

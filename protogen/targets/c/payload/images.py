@@ -70,9 +70,9 @@ def copied(prefix: str, to: str, source: str, size: int) -> tuple[str, ...]:
     if to == "message":
         return (
             "uint8_t *const to = (uint8_t *)message;",
-            f"{prefix}_copy(to, {source}, {size}U);",
+            f"{prefix}_copy_whole(to, {source}, {size}U);",
         )
     return (
         "const uint8_t *const from = (const uint8_t *)message;",
-        f"{prefix}_copy({to}, from, {size}U);",
+        f"{prefix}_copy_whole({to}, from, {size}U);",
     )
