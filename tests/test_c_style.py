@@ -7,10 +7,12 @@ from pathlib import Path
 import pytest
 
 from protogen.api import load
+from protogen.targets.c.decoders.members import members_of
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.decoders.style import DecoderStyle, decoder_style
+from protogen.targets.c.emit import unit_of
 from protogen.targets.c.frame.part_numbers import PartNumbers
-from protogen.targets.c.options import Events
+from protogen.targets.c.options import COptions, Events
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.protocol_names import names_of
 
@@ -67,3 +69,55 @@ def test_the_style_of_a_decoder(
     plan, numbers = protocol.sender(sender).plan, PartNumbers(Helpers(names))
     frame = ReceivedFrame(names, sender, plan, groups=(), events=events, numbers=numbers)
     assert decoder_style(frame) is style
+
+
+LAST_BYTE = """\
+protocol: sample
+byte_order: big
+endpoints: {host: Host, board: Board}
+frame:
+  opening: {literal: 0x7E}
+  id:      {type: uint8, id: true}
+  length:  {type: uint8, counts: payload}
+  payload: {}
+CHECKS
+transparency: {covers: id..check, escape: {byte: 0x7D, of: [0x7D, 0x7E], transform: invert}}
+messages:
+  reading: {from: board, id: 1, fields: {a: uint32}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("checks", "room"),
+    [
+        # It is compared as it comes.
+        (["check: {type: uint8, algorithm: sum-8, covers: id..payload}"], 6),
+        # Its last byte says nothing without its first.
+        (["check: {type: uint16, algorithm: sum-16, covers: id..payload}"], 8),
+        # Another checksum is summed over it, too.
+        (
+            [
+                "first: {type: uint8, algorithm: xor-8, covers: [id, payload, check]}",
+                "check: {type: uint8, algorithm: sum-8, covers: id..payload}",
+            ],
+            8,
+        ),
+        (
+            [
+                "first: {type: uint8, algorithm: xor-8, covers: id..payload}",
+                "check: {type: uint8, algorithm: sum-8, covers: id..first}",
+            ],
+            7,
+        ),
+    ],
+)
+def test_a_checksum_that_is_the_last_byte_takes_no_room(
+    checks: list[str], room: int, tmp_path: Path
+) -> None:
+    path = tmp_path / "sample.yaml"
+    lines = "\n".join(f"  {line}" for line in checks)
+    path.write_text(LAST_BYTE.replace("CHECKS", lines), encoding="utf-8")
+    [decoder] = unit_of(load(path), COptions(events="messages")).framing.decoders
+    [buffer] = [member for member in members_of(decoder) if member.name == "buffer"]
+    assert decoder.flat
+    assert buffer.count == room

@@ -37,6 +37,20 @@ typedef char dagny_library_sonar_layout[offsetof(struct dagny_library_sonar, dis
 typedef char dagny_library_odometry_layout[offsetof(struct dagny_library_odometry, steer) == 12U ? 1
                                                                                                  : -1];
 typedef char dagny_library_gps_position_layout[offsetof(struct dagny_library_gps_position, longitude) == 4U ? 1 : -1];
+#if defined(__AVR__) && defined(__GNUC__)
+#include <string.h>
+#endif
+
+/* avr-gcc makes a short loop of memcpy, while others call it. */
+DAGNY_LIBRARY_INLINE void dagny_library_copy_whole(uint8_t *to, const uint8_t *from, size_t size) {
+#if defined(__AVR__) && defined(__GNUC__)
+    memcpy(to, from, size);
+#else
+    for (size_t i = 0; i < size; i++) {
+        to[i] = from[i];
+    }
+#endif
+}
 #endif
 
 DAGNY_LIBRARY_INLINE void dagny_library_store_u16le(uint8_t *at, uint16_t value) {
@@ -66,9 +80,7 @@ DAGNY_LIBRARY_INLINE void dagny_library_sonar_store(const struct dagny_library_s
                                                     uint8_t *payload) {
 #if DAGNY_LIBRARY_AS_IN_MEMORY
     const uint8_t *const from = (const uint8_t *)message;
-    for (size_t i = 0; i < 5U; i++) {
-        payload[i] = from[i];
-    }
+    dagny_library_copy_whole(payload, from, 5U);
 #else
     dagny_library_copy(payload, message->distances, 5U);
 #endif
@@ -88,9 +100,7 @@ enum dagny_library_result dagny_library_sonar_encode(const struct dagny_library_
 void dagny_library_sonar_load(struct dagny_library_sonar *message, const uint8_t *payload) {
 #if DAGNY_LIBRARY_AS_IN_MEMORY
     uint8_t *const to = (uint8_t *)message;
-    for (size_t i = 0; i < 5U; i++) {
-        to[i] = payload[i];
-    }
+    dagny_library_copy_whole(to, payload, 5U);
 #else
     dagny_library_copy(message->distances, payload, 5U);
 #endif
@@ -177,9 +187,7 @@ DAGNY_LIBRARY_INLINE void dagny_library_odometry_store(const struct dagny_librar
                                                        uint8_t *payload) {
 #if DAGNY_LIBRARY_AS_IN_MEMORY
     const uint8_t *const from = (const uint8_t *)message;
-    for (size_t i = 0; i < 13U; i++) {
-        payload[i] = from[i];
-    }
+    dagny_library_copy_whole(payload, from, 13U);
 #else
     dagny_library_store_u16le(payload, message->right_count);
     dagny_library_store_u16le(payload + 2, message->left_count);
@@ -204,9 +212,7 @@ enum dagny_library_result dagny_library_odometry_encode(
 void dagny_library_odometry_load(struct dagny_library_odometry *message, const uint8_t *payload) {
 #if DAGNY_LIBRARY_AS_IN_MEMORY
     uint8_t *const to = (uint8_t *)message;
-    for (size_t i = 0; i < 13U; i++) {
-        to[i] = payload[i];
-    }
+    dagny_library_copy_whole(to, payload, 13U);
 #else
     message->right_count = dagny_library_load_u16le(payload);
     message->left_count = dagny_library_load_u16le(payload + 2);
@@ -418,9 +424,7 @@ DAGNY_LIBRARY_INLINE void dagny_library_gps_position_store(
     const struct dagny_library_gps_position *message, uint8_t *payload) {
 #if DAGNY_LIBRARY_AS_IN_MEMORY
     const uint8_t *const from = (const uint8_t *)message;
-    for (size_t i = 0; i < 8U; i++) {
-        payload[i] = from[i];
-    }
+    dagny_library_copy_whole(payload, from, 8U);
 #else
     dagny_library_store_u32le(payload, (uint32_t)message->latitude);
     dagny_library_store_u32le(payload + 4, (uint32_t)message->longitude);
@@ -442,9 +446,7 @@ void dagny_library_gps_position_load(struct dagny_library_gps_position *message,
                                      const uint8_t *payload) {
 #if DAGNY_LIBRARY_AS_IN_MEMORY
     uint8_t *const to = (uint8_t *)message;
-    for (size_t i = 0; i < 8U; i++) {
-        to[i] = payload[i];
-    }
+    dagny_library_copy_whole(to, payload, 8U);
 #else
     message->latitude = (int32_t)dagny_library_load_u32le(payload);
     message->longitude = (int32_t)dagny_library_load_u32le(payload + 4);

@@ -52,6 +52,20 @@
 #if MATTY_AS_IN_MEMORY
 /* This does not compile where a struct is laid out in another way. */
 typedef char matty_status_layout[offsetof(struct matty_status, encoder3) == 16U ? 1 : -1];
+#if defined(__AVR__) && defined(__GNUC__)
+#include <string.h>
+#endif
+
+/* avr-gcc makes a short loop of memcpy, while others call it. */
+MATTY_INLINE void matty_copy_whole(uint8_t *to, const uint8_t *from, size_t size) {
+#if defined(__AVR__) && defined(__GNUC__)
+    memcpy(to, from, size);
+#else
+    for (size_t i = 0; i < size; i++) {
+        to[i] = from[i];
+    }
+#endif
+}
 #endif
 
 MATTY_INLINE void matty_store_u16le(uint8_t *at, uint16_t value) {
@@ -294,9 +308,7 @@ enum matty_result matty_nack_decode(const uint8_t *payload, size_t size) {
 MATTY_INLINE void matty_status_store(const struct matty_status *message, uint8_t *payload) {
 #if MATTY_AS_IN_MEMORY
     const uint8_t *const from = (const uint8_t *)message;
-    for (size_t i = 0; i < 18U; i++) {
-        payload[i] = from[i];
-    }
+    matty_copy_whole(payload, from, 18U);
 #else
     payload[0] = message->status;
     payload[1] = message->mode;
@@ -324,9 +336,7 @@ enum matty_result matty_status_encode(const struct matty_status *message, uint8_
 void matty_status_load(struct matty_status *message, const uint8_t *payload) {
 #if MATTY_AS_IN_MEMORY
     uint8_t *const to = (uint8_t *)message;
-    for (size_t i = 0; i < 18U; i++) {
-        to[i] = payload[i];
-    }
+    matty_copy_whole(to, payload, 18U);
 #else
     message->status = payload[0];
     message->mode = payload[1];
@@ -1346,13 +1356,43 @@ static inline bool matty_pc_is_plain(const uint8_t *data, size_t size) {
 }
 #endif
 
+/* Take a byte of content off the wire. Returns where that ends there; 0 where something stands that
+   `push` has to look at. */
+static inline size_t matty_pc_unstuff_one(const uint8_t *data, size_t size, size_t from,
+                                          uint8_t *unstuffed) {
+    uint8_t byte;
+    if (from == size) {
+        return 0;
+    }
+    byte = data[from];
+    from++;
+    switch (byte) {
+    case 0x55U:
+        return 0;
+    case 0x56U:
+        if (size - from >= 1U && data[from] == 0xAAU) {
+            byte = 0x55U;
+            from += 1U;
+        } else if (size - from >= 1U && data[from] == 0xA9U) {
+            byte = 0x56U;
+            from += 1U;
+        } else {
+            return 0;
+        }
+        break;
+    default:
+        break;
+    }
+    *unstuffed = byte;
+    return from;
+}
+
 /* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
    wire; 0 where something stands in between that `push` has to look at. */
 static size_t matty_pc_unstuff_to(struct matty_pc_decoder *decoder, const uint8_t *data,
                                   size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
     while (at < need) {
-        uint8_t byte;
         bool goes_on = true;
 #if MATTY_SSE2
         while (goes_on && 126U - at >= 16U && size - from >= 16U) {
@@ -1387,29 +1427,10 @@ static size_t matty_pc_unstuff_to(struct matty_pc_decoder *decoder, const uint8_
         if (at == need) {
             return from;
         }
-        if (from == size) {
+        from = matty_pc_unstuff_one(data, size, from, &buffer[at]);
+        if (from == 0U) {
             return 0;
         }
-        byte = data[from];
-        from++;
-        switch (byte) {
-        case 0x55U:
-            return 0;
-        case 0x56U:
-            if (size - from >= 1U && data[from] == 0xAAU) {
-                byte = 0x55U;
-                from += 1U;
-            } else if (size - from >= 1U && data[from] == 0xA9U) {
-                byte = 0x56U;
-                from += 1U;
-            } else {
-                return 0;
-            }
-            break;
-        default:
-            break;
-        }
-        buffer[at] = byte;
         at++;
     }
     return from;
@@ -1859,13 +1880,43 @@ static inline bool matty_esp_is_plain(const uint8_t *data, size_t size) {
 }
 #endif
 
+/* Take a byte of content off the wire. Returns where that ends there; 0 where something stands that
+   `push` has to look at. */
+static inline size_t matty_esp_unstuff_one(const uint8_t *data, size_t size, size_t from,
+                                           uint8_t *unstuffed) {
+    uint8_t byte;
+    if (from == size) {
+        return 0;
+    }
+    byte = data[from];
+    from++;
+    switch (byte) {
+    case 0x55U:
+        return 0;
+    case 0x56U:
+        if (size - from >= 1U && data[from] == 0xAAU) {
+            byte = 0x55U;
+            from += 1U;
+        } else if (size - from >= 1U && data[from] == 0xA9U) {
+            byte = 0x56U;
+            from += 1U;
+        } else {
+            return 0;
+        }
+        break;
+    default:
+        break;
+    }
+    *unstuffed = byte;
+    return from;
+}
+
 /* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
    wire; 0 where something stands in between that `push` has to look at. */
 static size_t matty_esp_unstuff_to(struct matty_esp_decoder *decoder, const uint8_t *data,
                                    size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
     while (at < need) {
-        uint8_t byte;
         bool goes_on = true;
 #if MATTY_SSE2
         while (goes_on && 126U - at >= 16U && size - from >= 16U) {
@@ -1900,29 +1951,10 @@ static size_t matty_esp_unstuff_to(struct matty_esp_decoder *decoder, const uint
         if (at == need) {
             return from;
         }
-        if (from == size) {
+        from = matty_esp_unstuff_one(data, size, from, &buffer[at]);
+        if (from == 0U) {
             return 0;
         }
-        byte = data[from];
-        from++;
-        switch (byte) {
-        case 0x55U:
-            return 0;
-        case 0x56U:
-            if (size - from >= 1U && data[from] == 0xAAU) {
-                byte = 0x55U;
-                from += 1U;
-            } else if (size - from >= 1U && data[from] == 0xA9U) {
-                byte = 0x56U;
-                from += 1U;
-            } else {
-                return 0;
-            }
-            break;
-        default:
-            break;
-        }
-        buffer[at] = byte;
         at++;
     }
     return from;

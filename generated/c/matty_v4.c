@@ -52,6 +52,20 @@
 #if MATTY_V4_AS_IN_MEMORY
 /* This does not compile where a struct is laid out in another way. */
 typedef char matty_v4_status_layout[offsetof(struct matty_v4_status, yaw) == 22U ? 1 : -1];
+#if defined(__AVR__) && defined(__GNUC__)
+#include <string.h>
+#endif
+
+/* avr-gcc makes a short loop of memcpy, while others call it. */
+MATTY_V4_INLINE void matty_v4_copy_whole(uint8_t *to, const uint8_t *from, size_t size) {
+#if defined(__AVR__) && defined(__GNUC__)
+    memcpy(to, from, size);
+#else
+    for (size_t i = 0; i < size; i++) {
+        to[i] = from[i];
+    }
+#endif
+}
 #endif
 
 MATTY_V4_INLINE void matty_v4_store_u16le(uint8_t *at, uint16_t value) {
@@ -377,9 +391,7 @@ MATTY_V4_INLINE void matty_v4_status_store(const struct matty_v4_status *message
                                            uint8_t *payload) {
 #if MATTY_V4_AS_IN_MEMORY
     const uint8_t *const from = (const uint8_t *)message;
-    for (size_t i = 0; i < 24U; i++) {
-        payload[i] = from[i];
-    }
+    matty_v4_copy_whole(payload, from, 24U);
 #else
     payload[0] = message->status;
     payload[1] = message->mode;
@@ -410,9 +422,7 @@ enum matty_v4_result matty_v4_status_encode(const struct matty_v4_status *messag
 void matty_v4_status_load(struct matty_v4_status *message, const uint8_t *payload) {
 #if MATTY_V4_AS_IN_MEMORY
     uint8_t *const to = (uint8_t *)message;
-    for (size_t i = 0; i < 24U; i++) {
-        to[i] = payload[i];
-    }
+    matty_v4_copy_whole(to, payload, 24U);
 #else
     message->status = payload[0];
     message->mode = payload[1];
@@ -1583,13 +1593,43 @@ static inline bool matty_v4_pc_is_plain(const uint8_t *data, size_t size) {
 }
 #endif
 
+/* Take a byte of content off the wire. Returns where that ends there; 0 where something stands that
+   `push` has to look at. */
+static inline size_t matty_v4_pc_unstuff_one(const uint8_t *data, size_t size, size_t from,
+                                             uint8_t *unstuffed) {
+    uint8_t byte;
+    if (from == size) {
+        return 0;
+    }
+    byte = data[from];
+    from++;
+    switch (byte) {
+    case 0x55U:
+        return 0;
+    case 0x56U:
+        if (size - from >= 1U && data[from] == 0xAAU) {
+            byte = 0x55U;
+            from += 1U;
+        } else if (size - from >= 1U && data[from] == 0xA9U) {
+            byte = 0x56U;
+            from += 1U;
+        } else {
+            return 0;
+        }
+        break;
+    default:
+        break;
+    }
+    *unstuffed = byte;
+    return from;
+}
+
 /* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
    wire; 0 where something stands in between that `push` has to look at. */
 static size_t matty_v4_pc_unstuff_to(struct matty_v4_pc_decoder *decoder, const uint8_t *data,
                                      size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
     while (at < need) {
-        uint8_t byte;
         bool goes_on = true;
 #if MATTY_V4_SSE2
         while (goes_on && 127U - at >= 16U && size - from >= 16U) {
@@ -1624,29 +1664,10 @@ static size_t matty_v4_pc_unstuff_to(struct matty_v4_pc_decoder *decoder, const 
         if (at == need) {
             return from;
         }
-        if (from == size) {
+        from = matty_v4_pc_unstuff_one(data, size, from, &buffer[at]);
+        if (from == 0U) {
             return 0;
         }
-        byte = data[from];
-        from++;
-        switch (byte) {
-        case 0x55U:
-            return 0;
-        case 0x56U:
-            if (size - from >= 1U && data[from] == 0xAAU) {
-                byte = 0x55U;
-                from += 1U;
-            } else if (size - from >= 1U && data[from] == 0xA9U) {
-                byte = 0x56U;
-                from += 1U;
-            } else {
-                return 0;
-            }
-            break;
-        default:
-            break;
-        }
-        buffer[at] = byte;
         at++;
     }
     return from;
@@ -2102,13 +2123,43 @@ static inline bool matty_v4_esp_is_plain(const uint8_t *data, size_t size) {
 }
 #endif
 
+/* Take a byte of content off the wire. Returns where that ends there; 0 where something stands that
+   `push` has to look at. */
+static inline size_t matty_v4_esp_unstuff_one(const uint8_t *data, size_t size, size_t from,
+                                              uint8_t *unstuffed) {
+    uint8_t byte;
+    if (from == size) {
+        return 0;
+    }
+    byte = data[from];
+    from++;
+    switch (byte) {
+    case 0x55U:
+        return 0;
+    case 0x56U:
+        if (size - from >= 1U && data[from] == 0xAAU) {
+            byte = 0x55U;
+            from += 1U;
+        } else if (size - from >= 1U && data[from] == 0xA9U) {
+            byte = 0x56U;
+            from += 1U;
+        } else {
+            return 0;
+        }
+        break;
+    default:
+        break;
+    }
+    *unstuffed = byte;
+    return from;
+}
+
 /* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
    wire; 0 where something stands in between that `push` has to look at. */
 static size_t matty_v4_esp_unstuff_to(struct matty_v4_esp_decoder *decoder, const uint8_t *data,
                                       size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
     while (at < need) {
-        uint8_t byte;
         bool goes_on = true;
 #if MATTY_V4_SSE2
         while (goes_on && 127U - at >= 16U && size - from >= 16U) {
@@ -2143,29 +2194,10 @@ static size_t matty_v4_esp_unstuff_to(struct matty_v4_esp_decoder *decoder, cons
         if (at == need) {
             return from;
         }
-        if (from == size) {
+        from = matty_v4_esp_unstuff_one(data, size, from, &buffer[at]);
+        if (from == 0U) {
             return 0;
         }
-        byte = data[from];
-        from++;
-        switch (byte) {
-        case 0x55U:
-            return 0;
-        case 0x56U:
-            if (size - from >= 1U && data[from] == 0xAAU) {
-                byte = 0x55U;
-                from += 1U;
-            } else if (size - from >= 1U && data[from] == 0xA9U) {
-                byte = 0x56U;
-                from += 1U;
-            } else {
-                return 0;
-            }
-            break;
-        default:
-            break;
-        }
-        buffer[at] = byte;
         at++;
     }
     return from;

@@ -2297,13 +2297,46 @@ static inline bool rflex_linux_is_plain(const uint8_t *data, size_t size) {
 }
 #endif
 
+/* Take a byte of content off the wire. Returns where that ends there; 0 where something stands that
+   `push` has to look at. */
+static inline size_t rflex_linux_unstuff_one(const uint8_t *data, size_t size, size_t from,
+                                             uint8_t *unstuffed) {
+    uint8_t byte;
+    if (from == size) {
+        return 0;
+    }
+    byte = data[from];
+    from++;
+    switch (byte) {
+    case 0x1BU:
+        if (size - from >= 1U && data[from] == 0x00U) {
+            byte = 0x1BU;
+            from += 1U;
+        } else {
+            return 0;
+        }
+        break;
+    case 0x7CU:
+        if (size - from >= 2U && data[from] == 0x1BU && data[from + 1U] == 0x01U) {
+            byte = 0x7CU;
+            from += 2U;
+        } else {
+            return 0;
+        }
+        break;
+    default:
+        break;
+    }
+    *unstuffed = byte;
+    return from;
+}
+
 /* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
    wire; 0 where something stands in between that `push` has to look at. */
 static size_t rflex_linux_unstuff_to(struct rflex_linux_decoder *decoder, const uint8_t *data,
                                      size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
     while (at < need) {
-        uint8_t byte;
         bool goes_on = true;
 #if RFLEX_SSE2
         while (goes_on && 262U - at >= 16U && size - from >= 16U) {
@@ -2338,32 +2371,10 @@ static size_t rflex_linux_unstuff_to(struct rflex_linux_decoder *decoder, const 
         if (at == need) {
             return from;
         }
-        if (from == size) {
+        from = rflex_linux_unstuff_one(data, size, from, &buffer[at]);
+        if (from == 0U) {
             return 0;
         }
-        byte = data[from];
-        from++;
-        switch (byte) {
-        case 0x1BU:
-            if (size - from >= 1U && data[from] == 0x00U) {
-                byte = 0x1BU;
-                from += 1U;
-            } else {
-                return 0;
-            }
-            break;
-        case 0x7CU:
-            if (size - from >= 2U && data[from] == 0x1BU && data[from + 1U] == 0x01U) {
-                byte = 0x7CU;
-                from += 2U;
-            } else {
-                return 0;
-            }
-            break;
-        default:
-            break;
-        }
-        buffer[at] = byte;
         at++;
     }
     return from;
@@ -3005,13 +3016,46 @@ static inline bool rflex_flex_is_plain(const uint8_t *data, size_t size) {
 }
 #endif
 
+/* Take a byte of content off the wire. Returns where that ends there; 0 where something stands that
+   `push` has to look at. */
+static inline size_t rflex_flex_unstuff_one(const uint8_t *data, size_t size, size_t from,
+                                            uint8_t *unstuffed) {
+    uint8_t byte;
+    if (from == size) {
+        return 0;
+    }
+    byte = data[from];
+    from++;
+    switch (byte) {
+    case 0x1BU:
+        if (size - from >= 1U && data[from] == 0x00U) {
+            byte = 0x1BU;
+            from += 1U;
+        } else {
+            return 0;
+        }
+        break;
+    case 0x7CU:
+        if (size - from >= 2U && data[from] == 0x1BU && data[from + 1U] == 0x01U) {
+            byte = 0x7CU;
+            from += 2U;
+        } else {
+            return 0;
+        }
+        break;
+    default:
+        break;
+    }
+    *unstuffed = byte;
+    return from;
+}
+
 /* Take content off the wire until there are `need` bytes of it. Returns where that ends on the
    wire; 0 where something stands in between that `push` has to look at. */
 static size_t rflex_flex_unstuff_to(struct rflex_flex_decoder *decoder, const uint8_t *data,
                                     size_t size, size_t from, size_t at, size_t need) {
     uint8_t *const buffer = decoder->buffer;
     while (at < need) {
-        uint8_t byte;
         bool goes_on = true;
 #if RFLEX_SSE2
         while (goes_on && 262U - at >= 16U && size - from >= 16U) {
@@ -3046,32 +3090,10 @@ static size_t rflex_flex_unstuff_to(struct rflex_flex_decoder *decoder, const ui
         if (at == need) {
             return from;
         }
-        if (from == size) {
+        from = rflex_flex_unstuff_one(data, size, from, &buffer[at]);
+        if (from == 0U) {
             return 0;
         }
-        byte = data[from];
-        from++;
-        switch (byte) {
-        case 0x1BU:
-            if (size - from >= 1U && data[from] == 0x00U) {
-                byte = 0x1BU;
-                from += 1U;
-            } else {
-                return 0;
-            }
-            break;
-        case 0x7CU:
-            if (size - from >= 2U && data[from] == 0x1BU && data[from + 1U] == 0x01U) {
-                byte = 0x7CU;
-                from += 2U;
-            } else {
-                return 0;
-            }
-            break;
-        default:
-            break;
-        }
-        buffer[at] = byte;
         at++;
     }
     return from;

@@ -7,8 +7,10 @@ from functools import cached_property
 
 from protogen.targets.c.decoders.groups import GroupView
 from protogen.targets.c.decoders.received import ReceivedFrame
+from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
 from protogen.targets.c.frame.expressions import byte
 from protogen.targets.c.frame.numbers import NumberView
+from protogen.targets.c.frame.part_numbers import fills_bytes
 from protogen.targets.c.frame.stuffing import Branch, Node, StuffingKind
 
 
@@ -40,6 +42,11 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
     def place(self) -> str:
         """The place in the buffer of the byte that is taken."""
         return "at - 1U" if self.lead else "at"
+
+    @property
+    def place_behind(self) -> str:
+        """The same where that counter has counted it."""
+        return f"at - {self.lead + 1}U"
 
     @property
     def payload(self) -> str:
@@ -124,6 +131,35 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         if self.only_size is not None:
             return ""
         return f"({self.counter})(decoder->{self.size_member} - {self.counts_around}U), "
+
+    @cached_property
+    def handed(self) -> ChecksumView | None:
+        """The checksum that is the last byte of a frame: it is compared as it comes, and not kept.
+
+        The zeros of a payload that is filled up need its room.
+        """
+        if self.end_size or self.counts_digits or self.filled_size:
+            return None
+        last = self.around - 1
+        for c in self.checksums:
+            is_byte = c.size == 1 and fills_bytes(c.part) and not c.optional
+            if is_byte and c.at.at(0) == last and self._covers_up_to(last):
+                return c
+        return None
+
+    def _covers_up_to(self, last: int) -> bool:
+        """True if no checksum covers the last byte."""
+        runs = [item for c in self.checksums for item in c.covers if isinstance(item, CoveredRun)]
+        return all(run.last.at(0) <= last for run in runs)
+
+    @property
+    def buffer_size(self) -> int:
+        """Bytes of the buffer."""
+        return super().buffer_size - (1 if self.handed else 0)
+
+    def differs(self, c: ChecksumView) -> str:
+        """The condition that a checksum is wrong, where the last byte is handed over."""
+        return "last != due" if c == self.handed else c.differs(self.payload)
 
     @property
     def kept_content(self) -> str:

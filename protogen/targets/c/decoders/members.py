@@ -120,7 +120,8 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
     if stuffing is not None and kind is StuffingKind.LENIENT_CODES:
         about = "Bytes that may be a sequence of the stuffing."
         found.append(Member("uint8_t", "sequence", about, stuffing.longest))
-    found.append(Member("uint8_t", "buffer", "Bytes of the candidate.", view.buffer_size))
+    buffer_size = (view.flat or view).buffer_size
+    found.append(Member("uint8_t", "buffer", "Bytes of the candidate.", buffer_size))
     if view.keeps_both:
         found.append(Member("uint8_t", "unstuffed", "Content of the candidate.", plan.greatest))
     if is_polled and view.filled_size:

@@ -65,16 +65,14 @@ def _lies_alike(type_: NumberType) -> bool:
     return type_.bits == 8 * type_.size and is_whole(type_) and type_.byte_order == "little"
 
 
-def copied(to: str, source: str, size: int) -> tuple[str, ...]:
+def copied(prefix: str, to: str, source: str, size: int) -> tuple[str, ...]:
     """Statements that copy so many bytes between a struct and a payload."""
-    target, from_ = ("to", source) if to == "message" else (to, "from")
-    casts = {
-        "message": "uint8_t *const to = (uint8_t *)message;",
-        "payload": "const uint8_t *const from = (const uint8_t *)message;",
-    }
+    if to == "message":
+        return (
+            "uint8_t *const to = (uint8_t *)message;",
+            f"{prefix}_copy_whole(to, {source}, {size}U);",
+        )
     return (
-        casts[to],
-        f"for (size_t i = 0; i < {size}U; i++) {{",
-        f"    {target}[i] = {from_}[i];",
-        "}",
+        "const uint8_t *const from = (const uint8_t *)message;",
+        f"{prefix}_copy_whole({to}, from, {size}U);",
     )

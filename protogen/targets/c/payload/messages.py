@@ -318,7 +318,7 @@ class _Codec:
             assert self.fixed is not None
             lines.put_first(
                 f"#if {self._upper}_AS_IN_MEMORY",
-                *copied(to, source, self.fixed),
+                *copied(self._prefix, to, source, self.fixed),
                 "#else",
             )
             lines.add("#endif")
