@@ -354,3 +354,32 @@ def test_a_small_board_counts_without_a_warning(path: Path, tmp_path: Path) -> N
     macro = f"-D{unit_of(protocol_of(path), MESSAGES).names.prefix.upper()}_COUNTERS"
     flags = ["-Os", "-mmcu=atmega328p", macro, "-c", f"{file}.c"]
     run([require_tool("avr-gcc"), *FLAGS, *flags], tmp_path)
+
+
+SWITCH = """
+#include "matty.h"
+bool is_message(enum matty_message message);
+bool is_message(enum matty_message message) {{
+    switch (message) {{
+{cases}
+        return true;
+    case MATTY_NO_MESSAGE:
+        return false;
+    }}
+    return false;
+}}
+"""
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang", "g++"])
+@pytest.mark.parametrize("define", [[], ["-DMATTY_COUNTERS"]], ids=["off", "on"])
+def test_a_switch_over_all_messages_is_complete(
+    compiler: str, define: list[str], tmp_path: Path
+) -> None:
+    """Counters add nothing to the messages that a user's `switch` has to name."""
+    source_of(MATTY, tmp_path)
+    messages = [it.constant for it in unit_of(protocol_of(MATTY), MESSAGES).module.messages]
+    cases = "\n".join(f"    case {constant}:" for constant in messages)
+    source = "main.cc" if compiler == "g++" else "main.c"
+    (tmp_path / source).write_text(SWITCH.format(cases=cases), encoding="utf-8")
+    run([require_tool(compiler), "-Wall", "-Wextra", *define, "-fsyntax-only", source], tmp_path)
