@@ -38,10 +38,6 @@
 #include <emmintrin.h>
 #endif
 
-RN1_INLINE uint8_t rn1_offset_s7(int8_t value) {
-    return (uint8_t)((uint8_t)value + 0x40U);
-}
-
 static bool rn1_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
     uint8_t all = 0U;
@@ -54,10 +50,6 @@ static bool rn1_is_seven_bit(const void *at, size_t size) {
 static int8_t rn1_load_s7(const uint8_t *at) {
     const uint8_t extended = (uint8_t)((at[0] ^ 0x40U) - 0x40U);
     return (int8_t)extended;
-}
-
-RN1_INLINE uint16_t rn1_offset_s14(int16_t value) {
-    return (uint16_t)((uint16_t)value + 0x2000U);
 }
 
 RN1_INLINE void rn1_store_u14le(uint8_t *at, uint16_t value) {
@@ -122,7 +114,8 @@ static void rn1_load_u14le_run(uint16_t *numbers, const uint8_t *at, size_t coun
 /* --- move_manual ------------------------------------------------------------------------------ */
 
 RN1_INLINE enum rn1_result rn1_move_manual_validate(const struct rn1_move_manual *message) {
-    if ((rn1_offset_s7(message->speed) | rn1_offset_s7(message->arc)) > 0x7FU) {
+    if (((uint8_t)((uint8_t)message->speed + 0x40U) |
+         (uint8_t)((uint8_t)message->arc + 0x40U)) > 0x7FU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -177,7 +170,8 @@ enum rn1_result rn1_move_manual_decode(struct rn1_move_manual *message, const ui
 
 RN1_INLINE enum rn1_result rn1_move_relative_twostep_validate(
     const struct rn1_move_relative_twostep *message) {
-    if ((rn1_offset_s14(message->angle) | rn1_offset_s14(message->forward)) > 0x3FFFU) {
+    if (((uint16_t)((uint16_t)message->angle + 0x2000U) |
+         (uint16_t)((uint16_t)message->forward + 0x2000U)) > 0x3FFFU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -235,7 +229,8 @@ enum rn1_result rn1_move_relative_twostep_decode(struct rn1_move_relative_twoste
 
 RN1_INLINE enum rn1_result rn1_move_relative_arc_validate(
     const struct rn1_move_relative_arc *message) {
-    if ((rn1_offset_s14(message->angle) | rn1_offset_s14(message->forward)) > 0x3FFFU) {
+    if (((uint16_t)((uint16_t)message->angle + 0x2000U) |
+         (uint16_t)((uint16_t)message->forward + 0x2000U)) > 0x3FFFU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -485,8 +480,9 @@ RN1_INLINE enum rn1_result rn1_gyro_validate(const struct rn1_gyro *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if ((rn1_offset_s14(message->int_x) | rn1_offset_s14(message->int_y) |
-         rn1_offset_s14(message->int_z)) > 0x3FFFU) {
+    if (((uint16_t)((uint16_t)message->int_x + 0x2000U) |
+         (uint16_t)((uint16_t)message->int_y + 0x2000U) |
+         (uint16_t)((uint16_t)message->int_z + 0x2000U)) > 0x3FFFU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -546,8 +542,9 @@ RN1_INLINE enum rn1_result rn1_xcel_validate(const struct rn1_xcel *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if ((rn1_offset_s14(message->int_x) | rn1_offset_s14(message->int_y) |
-         rn1_offset_s14(message->int_z)) > 0x3FFFU) {
+    if (((uint16_t)((uint16_t)message->int_x + 0x2000U) |
+         (uint16_t)((uint16_t)message->int_y + 0x2000U) |
+         (uint16_t)((uint16_t)message->int_z + 0x2000U)) > 0x3FFFU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -607,8 +604,9 @@ RN1_INLINE enum rn1_result rn1_compass_validate(const struct rn1_compass *messag
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if ((rn1_offset_s14(message->avg_x) | rn1_offset_s14(message->avg_y) |
-         rn1_offset_s14(message->avg_z)) > 0x3FFFU) {
+    if (((uint16_t)((uint16_t)message->avg_x + 0x2000U) |
+         (uint16_t)((uint16_t)message->avg_y + 0x2000U) |
+         (uint16_t)((uint16_t)message->avg_z + 0x2000U)) > 0x3FFFU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -669,7 +667,8 @@ RN1_INLINE enum rn1_result rn1_optflow_validate(const struct rn1_optflow *messag
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if ((rn1_offset_s14(message->dx) | rn1_offset_s14(message->dy)) > 0x3FFFU) {
+    if (((uint16_t)((uint16_t)message->dx + 0x2000U) |
+         (uint16_t)((uint16_t)message->dy + 0x2000U)) > 0x3FFFU) {
         return RN1_ERROR_RANGE;
     }
     if (message->q > 127U) {

@@ -38,10 +38,6 @@
 #include <emmintrin.h>
 #endif
 
-RN1_FIRMWARE_INLINE uint8_t rn1_firmware_offset_s7(int8_t value) {
-    return (uint8_t)((uint8_t)value + 0x40U);
-}
-
 static bool rn1_firmware_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
     uint8_t all = 0U;
@@ -54,10 +50,6 @@ static bool rn1_firmware_is_seven_bit(const void *at, size_t size) {
 static int8_t rn1_firmware_load_s7(const uint8_t *at) {
     const uint8_t extended = (uint8_t)((at[0] ^ 0x40U) - 0x40U);
     return (int8_t)extended;
-}
-
-RN1_FIRMWARE_INLINE uint16_t rn1_firmware_offset_s14(int16_t value) {
-    return (uint16_t)((uint16_t)value + 0x2000U);
 }
 
 RN1_FIRMWARE_INLINE void rn1_firmware_store_u14be(uint8_t *at, uint16_t value) {
@@ -148,7 +140,8 @@ static int64_t rn1_firmware_load_s35be(const uint8_t *at) {
 
 RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_move_manual_validate(
     const struct rn1_firmware_move_manual *message) {
-    if ((rn1_firmware_offset_s7(message->speed) | rn1_firmware_offset_s7(message->arc)) > 0x7FU) {
+    if (((uint8_t)((uint8_t)message->speed + 0x40U) |
+         (uint8_t)((uint8_t)message->arc + 0x40U)) > 0x7FU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -207,8 +200,8 @@ enum rn1_firmware_result rn1_firmware_move_manual_decode(struct rn1_firmware_mov
 
 RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_move_relative_twostep_validate(
     const struct rn1_firmware_move_relative_twostep *message) {
-    if ((rn1_firmware_offset_s14(message->angle) |
-         rn1_firmware_offset_s14(message->forward)) > 0x3FFFU) {
+    if (((uint16_t)((uint16_t)message->angle + 0x2000U) |
+         (uint16_t)((uint16_t)message->forward + 0x2000U)) > 0x3FFFU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -548,8 +541,9 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_gyro_validate(
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if ((rn1_firmware_offset_s14(message->int_x) | rn1_firmware_offset_s14(message->int_y) |
-         rn1_firmware_offset_s14(message->int_z)) > 0x3FFFU) {
+    if (((uint16_t)((uint16_t)message->int_x + 0x2000U) |
+         (uint16_t)((uint16_t)message->int_y + 0x2000U) |
+         (uint16_t)((uint16_t)message->int_z + 0x2000U)) > 0x3FFFU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -613,8 +607,9 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_xcel_validate(
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if ((rn1_firmware_offset_s14(message->int_x) | rn1_firmware_offset_s14(message->int_y) |
-         rn1_firmware_offset_s14(message->int_z)) > 0x3FFFU) {
+    if (((uint16_t)((uint16_t)message->int_x + 0x2000U) |
+         (uint16_t)((uint16_t)message->int_y + 0x2000U) |
+         (uint16_t)((uint16_t)message->int_z + 0x2000U)) > 0x3FFFU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -678,8 +673,9 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_compass_validate(
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if ((rn1_firmware_offset_s14(message->avg_x) | rn1_firmware_offset_s14(message->avg_y) |
-         rn1_firmware_offset_s14(message->avg_z)) > 0x3FFFU) {
+    if (((uint16_t)((uint16_t)message->avg_x + 0x2000U) |
+         (uint16_t)((uint16_t)message->avg_y + 0x2000U) |
+         (uint16_t)((uint16_t)message->avg_z + 0x2000U)) > 0x3FFFU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -870,8 +866,8 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_facing_validate(
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if ((rn1_firmware_offset_s14(message->heading) |
-         rn1_firmware_offset_s14(message->speed)) > 0x3FFFU) {
+    if (((uint16_t)((uint16_t)message->heading + 0x2000U) |
+         (uint16_t)((uint16_t)message->speed + 0x2000U)) > 0x3FFFU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -934,8 +930,8 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_optflow_integral_valid
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if ((rn1_firmware_offset_s14(message->int_x) |
-         rn1_firmware_offset_s14(message->int_y)) > 0x3FFFU) {
+    if (((uint16_t)((uint16_t)message->int_x + 0x2000U) |
+         (uint16_t)((uint16_t)message->int_y + 0x2000U)) > 0x3FFFU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;

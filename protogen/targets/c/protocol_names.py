@@ -33,7 +33,7 @@ always_inline nodiscard
 _TAGS = "result message event_kind reason writer transmission counters"
 _TYPES = "put offer float64"
 _FUNCTIONS = """
-write first is_high mask sum_of xor_of clear lose tally took message_name result_name reason_name
+copy_whole write first is_high mask sum_of xor_of clear lose tally took message_name result_name reason_name
 transmit transmitted
 """
 _TAGS_OF_A_SENDER = "parts event decoder"
@@ -46,7 +46,7 @@ enter_payload find_size finish_region fitted follow_end follow_start give_up han
 head_fits identify invalid is_idle is_plain judge leave let_go look looks_idle measure measure_head
 open pass payload payload_size reach read_length release reopen reset resume room run search seek
 seek_on send_head send_tail set_payload settle show specials stuff surplus tail_fits take take_byte
-take_head take_tail take_whole unstuff unstuff_to wire_end wrap wrap_byte write wrong
+take_head take_tail take_whole unstuff unstuff_one unstuff_to wire_end wrap wrap_byte write wrong
 """
 _MACROS_OF_A_SENDER = "frame_max idle_us decoder_init counted wrong"
 _FUNCTIONS_OF_A_CANDIDATE = "begun begun_byte end fill_up mark read show step"

@@ -361,13 +361,6 @@ class Helpers:
         key = f"all_bits_u{storage_bits(type_.bits)}"
         return self.helper(key, kind, arguments, _ALL_BITS.format(kind=kind))
 
-    def offset(self, bits: int) -> str:
-        """The function that says how far a signed number is above the least of so many bits."""
-        kind, width = unsigned_type(bits), storage_bits(bits)
-        body = [f"return ({kind})(({kind})value + {hexadecimal(1 << (bits - 1))});"]
-        arguments = (f"int{width}_t value",)
-        return self.helper(f"offset_s{bits}", kind, arguments, body, is_short=True)
-
     def missing(self) -> str:
         """The function that says how many bytes a payload needs at least."""
         result = f"enum {self._names.prefix}_result"

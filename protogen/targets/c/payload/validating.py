@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
-from protogen.c_language.numbers import constant, hexadecimal, unsigned
+from protogen.c_language.numbers import constant, hexadecimal, unsigned, unsigned_type
 from protogen.model.payload_plan import (
     AnyStep,
     BytesStep,
@@ -145,11 +145,14 @@ class Validate(Walk):
         self._records.pop()
 
     def _together(self, span: _Span, places: Sequence[str]) -> None:
-        """Refuse numbers of which one has more bits."""
+        """Refuse numbers of which one has more bits.
+
+        It calls nothing: SDCC loses a byte of a message where an expression has two such calls.
+        """
         numbers = list(places)
         if span.signed:
-            offset = self.helpers.offset(span.bits)
-            numbers = [f"{offset}({place})" for place in places]
+            kind, above = unsigned_type(span.bits), hexadecimal(1 << (span.bits - 1))
+            numbers = [f"({kind})(({kind}){place} + {above})" for place in places]
         self._refuse(f"({' | '.join(numbers)}) > {hexadecimal((1 << span.bits) - 1)}")
 
     def number(self, step: NumberStep, place: str) -> None:
