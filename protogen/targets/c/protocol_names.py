@@ -33,8 +33,8 @@ always_inline nodiscard
 _TAGS = "result message event_kind reason writer transmission counters"
 _TYPES = "put offer float64"
 _FUNCTIONS = """
-copy_whole write first is_high mask sum_of xor_of clear lose tally took message_name result_name reason_name
-transmit transmitted
+copy_whole write first is_high mask sum_of xor_of clear lose tally took message_name result_name
+reason_name transmit transmitted
 """
 _TAGS_OF_A_SENDER = "parts event decoder"
 _TYPES_OF_A_SENDER = "handler"
