@@ -116,6 +116,11 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         return self.idle_member == "limit" and not self.plan.end_bytes
 
     @property
+    def gives_up_first(self) -> bool:
+        """True if `push` gives up before it looks at a byte, and takes that back for a digit."""
+        return False
+
+    @property
     def skip_start(self) -> str:
         """What passes by a start that nobody asked for; empty where that is giving it up."""
         sets_limit = self.idle_member == "limit" and self.only_size is None
