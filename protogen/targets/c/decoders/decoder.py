@@ -126,7 +126,7 @@ class DecoderView(ReceivedFrame, frozen=True, dict=True):
         """The condition that nothing of a frame is there."""
         lean = self.flat or self.delimited
         if lean is not None:
-            found = [f"decoder->{lean.idle_member} == {lean.idle_value}U"]
+            found = [lean.is_idle]
             found += ["decoder->node == 0U"] if lean.has_node else []
         else:
             found = [f"decoder->state == {self.protocol_upper}_SEEKING"]

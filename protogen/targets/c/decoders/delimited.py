@@ -161,6 +161,11 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
         return self.counted(self.first_head) if self.plan.shares_delimiter else 0
 
     @property
+    def gives_up_first(self) -> bool:
+        """True if `push` gives up before it looks at a byte, and takes that back for a digit."""
+        return self.counts_digits and self.idle_value == self.counter_begun and not self.holds_end
+
+    @property
     def idle_member(self) -> str:
         """The counter that says that bytes pass by until a frame may begin."""
         return "content"

@@ -111,6 +111,23 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         return 0 if is_nothing else self.counted(self.buffer_size + 1)
 
     @property
+    def is_idle(self) -> str:
+        """The condition that no candidate is open."""
+        if self.is_over_when_full:
+            return "decoder->content >= decoder->limit"
+        return f"decoder->{self.idle_member} == {self.idle_value}U"
+
+    @property
+    def is_over_when_full(self) -> bool:
+        """True if no byte is due behind the last one of content, so that nothing is given up."""
+        return self.idle_member == "limit" and not self.plan.end_bytes
+
+    @property
+    def gives_up_first(self) -> bool:
+        """True if `push` gives up before it looks at a byte, and takes that back for a digit."""
+        return False
+
+    @property
     def skip_start(self) -> str:
         """What passes by a start that nobody asked for; empty where that is giving it up."""
         sets_limit = self.idle_member == "limit" and self.only_size is None
