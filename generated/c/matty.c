@@ -531,7 +531,7 @@ static uint8_t matty_sum_8_negated_run(uint8_t sum, const uint8_t *data, size_t 
         uint64_t lanes = 0;
         for (; index < end; index += 8U) {
             uint64_t word;
-            memcpy(&word, &data[index], 8);
+            (void)memcpy(&word, &data[index], 8);
             lanes += word & UINT64_C(0x00FF00FF00FF00FF);
             lanes += (word >> 8) & UINT64_C(0x00FF00FF00FF00FF);
         }
@@ -1407,19 +1407,19 @@ static size_t matty_pc_unstuff_to(struct matty_pc_decoder *decoder, const uint8_
 #endif
         while (goes_on && need - at >= 8U && size - from >= 8U) {
             uint64_t word;
-            memcpy(&word, &data[from], 8);
+            (void)memcpy(&word, &data[from], 8);
             goes_on = !matty_pc_has_special(word);
             if (goes_on) {
-                memcpy(&buffer[at], &word, 8);
+                (void)memcpy(&buffer[at], &word, 8);
                 from += 8U;
                 at += 8U;
             }
         }
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
-            memcpy(&word, &data[from], 4);
+            (void)memcpy(&word, &data[from], 4);
             if (!matty_pc_has_special(word)) {
-                memcpy(&buffer[at], &word, 4);
+                (void)memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
             }
@@ -1931,19 +1931,19 @@ static size_t matty_esp_unstuff_to(struct matty_esp_decoder *decoder, const uint
 #endif
         while (goes_on && need - at >= 8U && size - from >= 8U) {
             uint64_t word;
-            memcpy(&word, &data[from], 8);
+            (void)memcpy(&word, &data[from], 8);
             goes_on = !matty_esp_has_special(word);
             if (goes_on) {
-                memcpy(&buffer[at], &word, 8);
+                (void)memcpy(&buffer[at], &word, 8);
                 from += 8U;
                 at += 8U;
             }
         }
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
-            memcpy(&word, &data[from], 4);
+            (void)memcpy(&word, &data[from], 4);
             if (!matty_esp_has_special(word)) {
-                memcpy(&buffer[at], &word, 4);
+                (void)memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
             }

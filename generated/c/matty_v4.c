@@ -653,7 +653,7 @@ static uint8_t matty_v4_sum_8_negated_run(uint8_t sum, const uint8_t *data, size
         uint64_t lanes = 0;
         for (; index < end; index += 8U) {
             uint64_t word;
-            memcpy(&word, &data[index], 8);
+            (void)memcpy(&word, &data[index], 8);
             lanes += word & UINT64_C(0x00FF00FF00FF00FF);
             lanes += (word >> 8) & UINT64_C(0x00FF00FF00FF00FF);
         }
@@ -1644,19 +1644,19 @@ static size_t matty_v4_pc_unstuff_to(struct matty_v4_pc_decoder *decoder, const 
 #endif
         while (goes_on && need - at >= 8U && size - from >= 8U) {
             uint64_t word;
-            memcpy(&word, &data[from], 8);
+            (void)memcpy(&word, &data[from], 8);
             goes_on = !matty_v4_pc_has_special(word);
             if (goes_on) {
-                memcpy(&buffer[at], &word, 8);
+                (void)memcpy(&buffer[at], &word, 8);
                 from += 8U;
                 at += 8U;
             }
         }
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
-            memcpy(&word, &data[from], 4);
+            (void)memcpy(&word, &data[from], 4);
             if (!matty_v4_pc_has_special(word)) {
-                memcpy(&buffer[at], &word, 4);
+                (void)memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
             }
@@ -2174,19 +2174,19 @@ static size_t matty_v4_esp_unstuff_to(struct matty_v4_esp_decoder *decoder, cons
 #endif
         while (goes_on && need - at >= 8U && size - from >= 8U) {
             uint64_t word;
-            memcpy(&word, &data[from], 8);
+            (void)memcpy(&word, &data[from], 8);
             goes_on = !matty_v4_esp_has_special(word);
             if (goes_on) {
-                memcpy(&buffer[at], &word, 8);
+                (void)memcpy(&buffer[at], &word, 8);
                 from += 8U;
                 at += 8U;
             }
         }
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
-            memcpy(&word, &data[from], 4);
+            (void)memcpy(&word, &data[from], 4);
             if (!matty_v4_esp_has_special(word)) {
-                memcpy(&buffer[at], &word, 4);
+                (void)memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
             }

@@ -1160,7 +1160,7 @@ static uint8_t rflex_drivers_xor_8_run(uint8_t sum, const uint8_t *data, size_t 
     uint64_t all = 0;
     for (; size - index >= 8U; index += 8U) {
         uint64_t word;
-        memcpy(&word, &data[index], 8);
+        (void)memcpy(&word, &data[index], 8);
         all ^= word;
     }
     all ^= all >> 32;
@@ -2854,19 +2854,19 @@ static size_t rflex_drivers_linux_unstuff_to(struct rflex_drivers_linux_decoder 
 #endif
         while (goes_on && need - at >= 8U && size - from >= 8U) {
             uint64_t word;
-            memcpy(&word, &data[from], 8);
+            (void)memcpy(&word, &data[from], 8);
             goes_on = !rflex_drivers_linux_has_special(word);
             if (goes_on) {
-                memcpy(&buffer[at], &word, 8);
+                (void)memcpy(&buffer[at], &word, 8);
                 from += 8U;
                 at += 8U;
             }
         }
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
-            memcpy(&word, &data[from], 4);
+            (void)memcpy(&word, &data[from], 4);
             if (!rflex_drivers_linux_has_special(word)) {
-                memcpy(&buffer[at], &word, 4);
+                (void)memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
             }
@@ -3597,19 +3597,19 @@ static size_t rflex_drivers_flex_unstuff_to(struct rflex_drivers_flex_decoder *d
 #endif
         while (goes_on && need - at >= 8U && size - from >= 8U) {
             uint64_t word;
-            memcpy(&word, &data[from], 8);
+            (void)memcpy(&word, &data[from], 8);
             goes_on = !rflex_drivers_flex_has_special(word);
             if (goes_on) {
-                memcpy(&buffer[at], &word, 8);
+                (void)memcpy(&buffer[at], &word, 8);
                 from += 8U;
                 at += 8U;
             }
         }
         if (need - at >= 4U && size - from >= 4U) {
             uint64_t word = 0;
-            memcpy(&word, &data[from], 4);
+            (void)memcpy(&word, &data[from], 4);
             if (!rflex_drivers_flex_has_special(word)) {
-                memcpy(&buffer[at], &word, 4);
+                (void)memcpy(&buffer[at], &word, 4);
                 from += 4U;
                 at += 4U;
             }

@@ -961,16 +961,16 @@ static inline bool rn1_is_high(const uint8_t *data, size_t size) {
 #endif
         for (; size - index >= 8U; index += 8U) {
             uint64_t word;
-            memcpy(&word, &data[index], 8);
+            (void)memcpy(&word, &data[index], 8);
             all |= word;
         }
-        memcpy(&last, &data[size - 8U], 8);
+        (void)memcpy(&last, &data[size - 8U], 8);
         all |= last;
     } else if (size >= 4U) {
         uint32_t first;
         uint32_t last;
-        memcpy(&first, data, 4);
-        memcpy(&last, &data[size - 4U], 4);
+        (void)memcpy(&first, data, 4);
+        (void)memcpy(&last, &data[size - 4U], 4);
         all = (uint64_t)first | last;
     } else {
         for (; index < size; index++) {
