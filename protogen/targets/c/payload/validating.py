@@ -86,7 +86,7 @@ def _span(step: AnyStep) -> _Span | None:
     least, greatest = step.bounds
     bits = (greatest - least).bit_length()
     type_ = step.type
-    is_whole = greatest - least == (1 << bits) - 1 and least == (-1 << (bits - 1) if least else 0)
+    is_whole = greatest - least == (1 << bits) - 1 > 0 and least in (0, -(1 << bits) // 2)
     is_plain = type_.role != "bool" and type_.signed == (least < 0)
     has_offset = not type_.signed or storage_bits(bits) == storage_bits(type_.bits)
     if not (is_whole and is_plain and has_offset and _outside(step, "x")) or step.field.special:
