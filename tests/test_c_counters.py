@@ -226,6 +226,35 @@ def test_polled_decoders_count_what_python_finds(path: Path, decoder: str) -> No
                 assert found.checksums <= due.checksums
 
 
+COMMANDS = """
+protocol: commands
+endpoints: {host: Host}
+byte_order: little
+frame:
+  id: {type: uint8, id: true}
+  payload: {}
+  sum: {type: uint8, algorithm: xor-8, covers: id..payload}
+  end: {literal: 0x0A, unprotected: end}
+decisions:
+  end: {question: One inside?, document: No., choice: The size tells., because: Nothing else.}
+messages:
+  go: {id: 1, from: host, fields: {x: uint8}}
+  turn: {id: 2, from: host, fields: {x: uint8}}
+"""
+
+
+def test_no_checksum_is_wrong_of_a_small_frame_with_an_unknown_identity(tmp_path: Path) -> None:
+    path = tmp_path / "commands.yaml"
+    path.write_text(COMMANDS, encoding="utf-8")
+    dice = Random(7)
+    streams = [bytes.fromhex("00 0A 01 0A"), bytes.fromhex("01 05 05 0A 02 05 07 0A")]
+    streams += [bytes(dice.choice(b"\x00\x01\x02\x03\x0a") for _ in range(9)) for _ in range(200)]
+    for data in streams:
+        due, found = expected(path, "host", data), counted(path, "host", data, 0)
+        assert (found.messages, found.lost) == (due.messages, due.lost), data.hex(" ")
+        assert found.checksums <= due.checksums, data.hex(" ")
+
+
 def cut(path: Path, sender: str, data: bytes) -> list[tuple[str, int, str | None]]:
     """Kind, size and reason of each event of Python."""
     cutter = module_at(path).Decoder(sender)
