@@ -6,19 +6,19 @@ static struct dagny_host_decoder decoder;
 static void take(void *user, const struct dagny_host_event *event) {
     void *const message = BENCH_MESSAGE;
     (void)user;
-    switch (event->message) {
-    case DAGNY_MESSAGE_MOTOR:
+#if !defined(BENCH_POLLS)
+    if (event->message == DAGNY_NO_MESSAGE) { /* A handler gets all events. */
+        return;
+    }
+#endif
+    if (event->message == DAGNY_MESSAGE_MOTOR) {
         dagny_motor_load(message, event->payload);
-        break;
-    case DAGNY_MESSAGE_STEERING:
+    } else if (event->message == DAGNY_MESSAGE_STEERING) {
         dagny_steering_load(message, event->payload);
-        break;
-    case DAGNY_MESSAGE_REFLEX:
+    } else if (event->message == DAGNY_MESSAGE_REFLEX) {
         dagny_reflex_load(message, event->payload);
-        break;
-    default:
+    } else { /* As beside the expert, nothing else comes here. */
         dagny_power_load(message, event->payload);
-        break;
     }
     bench_seen((uint8_t)event->message);
 }
