@@ -337,7 +337,7 @@ def test_a_buffer_that_is_too_small_by_a_byte_is_found(tmp_path: Path) -> None:
 
 def test_a_buffer_that_a_polled_decoder_writes_behind_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(MATTY), tmp_path, COptions(events="messages"))
-    header = changed(made.header, r"uint8_t buffer\[126\];", "uint8_t buffer[125];")
+    header = changed(made.header, r"uint8_t buffer\[124\];", "uint8_t buffer[123];")
     report = prove(made, push_driver(made.protocol, header), first=True)
     assert any("out of bounds" in found for found in report.found)
 

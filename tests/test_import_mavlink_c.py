@@ -57,20 +57,18 @@ static void ours_{name}(const mavlink_message_t *m) {{
     mavlink_{theirs}_t theirs;
     struct {protocol}_{name} ours;
     uint8_t made[300];
-    size_t size = 0;
+    size_t size;
     memset(&ours, 0, sizeof ours);
     mavlink_msg_{theirs}_decode(m, &theirs);
     {to_ours}
-    enum {protocol}_result result;
     if (m->incompat_flags == 0)
-        result = {protocol}_{name}_frame_from_component_unsigned(
-            &ours, m->compat_flags, m->seq, m->sysid, m->compid, made, sizeof made, &size);
+        size = {protocol}_{name}_frame_from_component_unsigned(
+            &ours, m->compat_flags, m->seq, m->sysid, m->compid, made, sizeof made);
     else
-        result = {protocol}_{name}_frame_from_component_signed(
+        size = {protocol}_{name}_frame_from_component_signed(
             &ours, m->compat_flags, m->seq, m->sysid, m->compid, m->signature[0],
-            number(m->signature + 1, 6, 0), number(m->signature + 7, 6, 1), made, sizeof made,
-            &size);
-    check(made, result == {upper}_OK ? size : 0, "protogen");
+            number(m->signature + 1, 6, 0), number(m->signature + 7, 6, 1), made, sizeof made);
+    check(made, size, "protogen");
 }}
 
 static void theirs_{name}(const uint8_t *payload, size_t size, const uint8_t sender[3]) {{
