@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import reduce
 
 import msgspec
 
 from protogen.model.protocol import Protocol
 from protogen.targets import naming
+from protogen.targets.c.cpp.calls import call_of
 from protogen.targets.c.cpp.enums import CppEnum, cpp_enums
 from protogen.targets.c.cpp.names import CppNames, cpp_names
 from protogen.targets.c.cpp.physical import CppPhysical, cpp_physical
@@ -69,19 +70,18 @@ class CppFrame(msgspec.Struct, frozen=True):
     @property
     def frame_call(self) -> str:
         """The call of C's function for a buffer."""
-        known = {"frame": "frame.data()", "capacity": "frame.size()"}
-        return self._call(self.item.called.function, self.item.frame_arguments, known)
+        known = {"message": "&message", "frame": "frame.data()", "capacity": "frame.size()"}
+        return call_of(self.item.called.function, self.item.frame_arguments, known)
 
     @property
     def send_call(self) -> str:
         """The call of C's function that sends."""
-        known = {"put": "&detail::put_byte<decltype(give_)>", "user": "&give_"}
-        return self._call(self.item.called.send, self.item.send_arguments("put_type"), known)
-
-    def _call(self, function: str, arguments: Sequence[str], known: dict[str, str]) -> str:
-        given = {"message": "&message", **known}
-        names = (argument.rpartition(" ")[2].lstrip("*") for argument in arguments)
-        return f"::{function}({', '.join(given.get(name, name) for name in names)})"
+        known = {
+            "message": "&message",
+            "put": "&detail::put_byte<decltype(give_)>",
+            "user": "&give_",
+        }
+        return call_of(self.item.called.send, self.item.send_arguments("put_type"), known)
 
 
 class CppReceived(msgspec.Struct, frozen=True):

@@ -9,6 +9,7 @@ import msgspec
 from protogen.model.payload_plan import BytesStep, RecordStep
 from protogen.model.types import Text
 from protogen.targets import naming
+from protogen.targets.c.cpp.calls import call_of
 from protogen.targets.c.cpp.names import CppNames
 from protogen.targets.c.frame.message_frames import MessageFrame
 from protogen.targets.c.payload.in_place import Setter
@@ -43,8 +44,7 @@ class CppWriter(msgspec.Struct, frozen=True):
     @property
     def end(self) -> str:
         """The call of C's function that ends it."""
-        names = [argument.rpartition(" ")[2] for argument in self.item.end_given]
-        return f"::{self.item.called.end}({', '.join([*names, 'frame_'])})"
+        return call_of(self.item.called.end, self.item.end_arguments, {"frame": "frame_"})
 
 
 def cpp_writers(
