@@ -40,8 +40,7 @@ class CoveredRun(msgspec.Struct, frozen=True):
             return f"content, {last}"
         if self.last.place.side is Side.HEAD:
             return f"&content[{first}], {self.last.place.offset - self.first.place.offset}U"
-        before = "" if first == "0U" else f" - ({first})" if " " in first else f" - {first}"
-        return f"&content[{first}], {last}{before}"
+        return f"&content[{first}], {last} - {f'({first})' if ' ' in first else first}"
 
 
 class CoveredLiteral(msgspec.Struct, frozen=True):

@@ -157,7 +157,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
     @property
     def passed_on(self) -> str:
         """The same as arguments behind others."""
-        return "".join(f", {item.name}" for item in self._parameters)
+        return "".join(f", {name}" for name in self.names)
 
     @property
     def names(self) -> list[str]:
