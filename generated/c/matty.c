@@ -1149,11 +1149,10 @@ static void matty_pc_set_payload(struct matty_pc_decoder *decoder, uint16_t size
 }
 
 static uint8_t matty_pc_read_length(struct matty_pc_decoder *decoder, uint16_t length) {
-    uint16_t size = length;
-    if (length < 2U || length > 123U || size < 2U || size - 2U > 121U) {
+    if (length < 2U || length > 123U) {
         return MATTY_LENGTH;
     }
-    matty_pc_set_payload(decoder, (uint16_t)(size - 2U));
+    matty_pc_set_payload(decoder, (uint16_t)(length - 2U));
     return MATTY_FINE;
 }
 
@@ -1672,11 +1671,10 @@ static void matty_esp_set_payload(struct matty_esp_decoder *decoder, uint16_t si
 }
 
 static uint8_t matty_esp_read_length(struct matty_esp_decoder *decoder, uint16_t length) {
-    uint16_t size = length;
-    if (length < 2U || length > 123U || size < 2U || size - 2U > 121U) {
+    if (length < 2U || length > 123U) {
         return MATTY_LENGTH;
     }
-    matty_esp_set_payload(decoder, (uint16_t)(size - 2U));
+    matty_esp_set_payload(decoder, (uint16_t)(length - 2U));
     return MATTY_FINE;
 }
 

@@ -1385,11 +1385,10 @@ static void matty_v4_pc_set_payload(struct matty_v4_pc_decoder *decoder, uint16_
 }
 
 static uint8_t matty_v4_pc_read_length(struct matty_v4_pc_decoder *decoder, uint16_t length) {
-    uint16_t size = length;
-    if (length < 2U || length > 124U || size < 2U || size - 2U > 122U) {
+    if (length < 2U || length > 124U) {
         return MATTY_V4_LENGTH;
     }
-    matty_v4_pc_set_payload(decoder, (uint16_t)(size - 2U));
+    matty_v4_pc_set_payload(decoder, (uint16_t)(length - 2U));
     return MATTY_V4_FINE;
 }
 
@@ -1915,11 +1914,10 @@ static void matty_v4_esp_set_payload(struct matty_v4_esp_decoder *decoder, uint1
 }
 
 static uint8_t matty_v4_esp_read_length(struct matty_v4_esp_decoder *decoder, uint16_t length) {
-    uint16_t size = length;
-    if (length < 2U || length > 124U || size < 2U || size - 2U > 122U) {
+    if (length < 2U || length > 124U) {
         return MATTY_V4_LENGTH;
     }
-    matty_v4_esp_set_payload(decoder, (uint16_t)(size - 2U));
+    matty_v4_esp_set_payload(decoder, (uint16_t)(length - 2U));
     return MATTY_V4_FINE;
 }
 

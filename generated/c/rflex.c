@@ -1987,8 +1987,7 @@ static void rflex_linux_set_payload(struct rflex_linux_decoder *decoder, uint16_
 }
 
 static uint8_t rflex_linux_read_length(struct rflex_linux_decoder *decoder, uint16_t length) {
-    uint16_t size = length;
-    rflex_linux_set_payload(decoder, (uint16_t)size);
+    rflex_linux_set_payload(decoder, length);
     return RFLEX_FINE;
 }
 
@@ -2706,8 +2705,7 @@ static void rflex_flex_set_payload(struct rflex_flex_decoder *decoder, uint16_t 
 }
 
 static uint8_t rflex_flex_read_length(struct rflex_flex_decoder *decoder, uint16_t length) {
-    uint16_t size = length;
-    rflex_flex_set_payload(decoder, (uint16_t)size);
+    rflex_flex_set_payload(decoder, length);
     return RFLEX_FINE;
 }
 

@@ -2484,8 +2484,7 @@ static void rflex_drivers_linux_set_payload(struct rflex_drivers_linux_decoder *
 
 static uint8_t rflex_drivers_linux_read_length(struct rflex_drivers_linux_decoder *decoder,
                                                uint16_t length) {
-    uint16_t size = length;
-    rflex_drivers_linux_set_payload(decoder, (uint16_t)size);
+    rflex_drivers_linux_set_payload(decoder, length);
     return RFLEX_DRIVERS_FINE;
 }
 
@@ -3229,8 +3228,7 @@ static void rflex_drivers_flex_set_payload(struct rflex_drivers_flex_decoder *de
 
 static uint8_t rflex_drivers_flex_read_length(struct rflex_drivers_flex_decoder *decoder,
                                               uint16_t length) {
-    uint16_t size = length;
-    rflex_drivers_flex_set_payload(decoder, (uint16_t)size);
+    rflex_drivers_flex_set_payload(decoder, length);
     return RFLEX_DRIVERS_FINE;
 }
 

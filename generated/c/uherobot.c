@@ -543,11 +543,10 @@ static void uherobot_daemon_set_payload(struct uherobot_daemon_decoder *decoder,
 
 static uint8_t uherobot_daemon_read_length(struct uherobot_daemon_decoder *decoder,
                                            uint16_t length) {
-    uint16_t size = length;
-    if (length < 2U || size < 2U || size - 2U > 253U) {
+    if (length < 2U) {
         return UHEROBOT_LENGTH;
     }
-    uherobot_daemon_set_payload(decoder, (uint16_t)(size - 2U));
+    uherobot_daemon_set_payload(decoder, (uint16_t)(length - 2U));
     return UHEROBOT_FINE;
 }
 
@@ -853,11 +852,10 @@ static void uherobot_board_set_payload(struct uherobot_board_decoder *decoder, u
 }
 
 static uint8_t uherobot_board_read_length(struct uherobot_board_decoder *decoder, uint16_t length) {
-    uint16_t size = length;
-    if (length < 2U || size < 2U || size - 2U > 253U) {
+    if (length < 2U) {
         return UHEROBOT_LENGTH;
     }
-    uherobot_board_set_payload(decoder, (uint16_t)(size - 2U));
+    uherobot_board_set_payload(decoder, (uint16_t)(length - 2U));
     return UHEROBOT_FINE;
 }
 

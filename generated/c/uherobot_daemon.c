@@ -544,11 +544,10 @@ static void uherobot_daemon_daemon_set_payload(struct uherobot_daemon_daemon_dec
 
 static uint8_t uherobot_daemon_daemon_read_length(struct uherobot_daemon_daemon_decoder *decoder,
                                                   uint16_t length) {
-    uint16_t size = length;
-    if (length < 2U || size < 2U || size - 2U > 253U) {
+    if (length < 2U) {
         return UHEROBOT_DAEMON_LENGTH;
     }
-    uherobot_daemon_daemon_set_payload(decoder, (uint16_t)(size - 2U));
+    uherobot_daemon_daemon_set_payload(decoder, (uint16_t)(length - 2U));
     return UHEROBOT_DAEMON_FINE;
 }
 
@@ -892,8 +891,7 @@ static void uherobot_daemon_board_set_payload(struct uherobot_daemon_board_decod
 
 static uint8_t uherobot_daemon_board_read_length(struct uherobot_daemon_board_decoder *decoder,
                                                  uint16_t length) {
-    uint16_t size = length;
-    uherobot_daemon_board_set_payload(decoder, (uint16_t)size);
+    uherobot_daemon_board_set_payload(decoder, length);
     return UHEROBOT_DAEMON_FINE;
 }
 

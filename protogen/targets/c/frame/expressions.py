@@ -62,11 +62,6 @@ def plus(size: int) -> str:
     return f" + {size}U" if size else ""
 
 
-def minus(size: int) -> str:
-    """A size that is taken off what stands in front of it."""
-    return f" - {size}U" if size else ""
-
-
 # --- bytes ----------------------------------------------------------------------------------------
 
 

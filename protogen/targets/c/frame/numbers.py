@@ -19,7 +19,7 @@ from protogen.model.parts import (
     ToldLength,
     ToldPart,
 )
-from protogen.targets.c.frame.expressions import byte, less_absent, minus
+from protogen.targets.c.frame.expressions import byte, less_absent
 from protogen.targets.c.frame.part_numbers import PartNumbers
 from protogen.targets.c.frame.texts import comment_of
 from protogen.targets.c.spelling import Names
@@ -389,20 +389,26 @@ class LengthView(msgspec.Struct, frozen=True):
 
     @property
     def impossible(self) -> str:
-        """The condition of the same where nothing wraps: `size` still counts the other parts.
-
-        Empty where no length is impossible.
-        """
-        found = []
-        if self.least > 0:
-            found.append(f"length < {self.least}U")
-        if self.greatest < (1 << self.bits) - 1:
-            found.append(f"length > {self.greatest}U")
-        if self.base:
-            found.append(f"size < {self.base}U")
-        if self.base or self.payload < (1 << self.bits) - 1:
-            found.append(f"size{minus(self.base)} > {self.payload}U")
+        """The condition that no frame has `length`; empty where each may be one."""
+        smallest = self.base + self.optional
+        if self.optional and self.least <= self.base:
+            found = [f"(length != {self.base}U && length <= {smallest}U)"]
+        else:
+            least = max(self.least, smallest + bool(self.optional))
+            found = [f"length < {least}U"] if least > 0 else []
+        greatest = min(self.greatest, smallest + self.payload)
+        if greatest < (1 << self.bits) - 1:
+            found.append(f"length > {greatest}U")
         return " || ".join(found)
+
+    def told_payload(self, type_: str) -> str:
+        """The payload's size that a possible `length` tells, of a C type."""
+        if self.optional:
+            behind = f"length - {self.base + self.optional}U"
+            return f"({type_})(length != {self.base}U ? {behind} : 0U)"
+        if self.base:
+            return f"({type_})(length - {self.base}U)"
+        return "length" if type_ == self.type else f"({type_})length"
 
 
 def length_of(plan: FramePlan) -> LengthView | None:
