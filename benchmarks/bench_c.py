@@ -5,7 +5,7 @@
     python benchmarks/bench_c.py --small rover  # prints flash, RAM and cycles of some protocols
     python benchmarks/bench_c.py --sizes        # writes benchmarks/c/sizes.toml alone
 
-Needs avr-gcc, arm-none-eabi-gcc, cc, libsimavr-dev and `pip install pymavlink`. The first run
+Needs avr-gcc, arm-none-eabi-gcc, cc, libsimavr-dev and `pip install '.[bench]'`. The first run
 fetches nanopb's C sources by npm into `.cache/bench`; without them its cells stay empty.
 """
 
@@ -66,7 +66,8 @@ def small(workshop: Workshop, names: Sequence[str]) -> str:
     tables = (
         f"ATmega328P\n{memory_table(results.avr)}",
         f"Cortex-M0\n{memory_table(results.arm)}",
-        cycles_table(results),
+        f"Cycles, ATmega328P\n{cycles_table(results.avr_cycles)}",
+        f"Cycles, Cortex-M0\n{cycles_table(results.arm_cycles)}",
         bytes_table(results, protocols),
     )
     return "\n\n".join(tables)
@@ -78,6 +79,8 @@ def missing_tools(tools: Sequence[str]) -> list[str]:
 
 _CHECKS: dict[str, Callable[[], object]] = {
     "pymavlink": lambda: find_spec("pymavlink"),
+    "pyelftools": lambda: find_spec("elftools"),
+    "unicorn": lambda: find_spec("unicorn"),
     "libsimavr-dev": lambda: Path("/usr/include/simavr/sim_avr.h").exists(),
 }
 TOOLS = ("avr-gcc", "arm-none-eabi-gcc", "cc", *_CHECKS)

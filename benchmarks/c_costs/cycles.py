@@ -1,20 +1,41 @@
-"""Cycles of decoding and encoding on an ATmega328P, in simavr."""
+"""Cycles of decoding and encoding on small machines, in simulators."""
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import nan
 from pathlib import Path
 from statistics import median
 
+from c_costs import cortex_m0
+from c_costs.events import Event, said, spans
 from c_costs.protocols import FOLDER
-from c_costs.toolchains import AVR_APART, HOST, Toolchain, run
+from c_costs.toolchains import ARM, AVR, AVR_APART, HOST, Toolchain, run
 from c_costs.workshop import Subject, Workshop, frames_of
 
 FRAMES = 8
 """Frames of each message that are decoded and encoded."""
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A small machine that counts cycles."""
+
+    builds: Mapping[str, Toolchain]
+    events: Callable[[Path], list[Event]]
+    """Runs a program, and returns what it tells."""
+    loop: int
+    """Cycles of the harness's own loop for each byte: load, increment, compare and branch."""
+
+
+def atmega328p(counter: Path) -> Machine:
+    """The one of simavr."""
+    return Machine(AVR, lambda program: _avr_events(run([str(counter), str(program)])), 7)
+
+
+CORTEX_M0 = Machine(ARM, cortex_m0.events, 7)
 
 
 def build_counter(workshop: Workshop) -> Path:
@@ -34,38 +55,39 @@ class Cycles:
     encode: float
 
 
-def cycles(
-    workshop: Workshop, toolchain: Toolchain, counter: Path, subject: Subject
-) -> list[Cycles]:
-    """Decode and encode frames of each message on an ATmega328P."""
+def cycles(workshop: Workshop, machine: Machine, build: str, subject: Subject) -> list[Cycles]:
+    """Decode and encode frames of each message on a machine."""
     host = workshop.build(HOST, "host", subject)
     return [
-        _cycles_of(workshop, toolchain, counter, subject, which, frames_of(host, which, FRAMES))
+        _cycles_of(workshop, machine, build, subject, which, frames_of(host, which, FRAMES))
         for which in range(len(subject.protocol.messages))
     ]
 
 
 def _cycles_of(
     workshop: Workshop,
-    toolchain: Toolchain,
-    counter: Path,
+    machine: Machine,
+    build: str,
     subject: Subject,
     which: int,
     frames: list[bytes],
 ) -> Cycles:
-    program = _with_frames(workshop, toolchain, subject, which, frames)
-    spans, said = _spans(run([str(counter), str(program)]))
+    program = _with_frames(workshop, machine.builds[build], subject, which, frames)
+    told = machine.events(program)
     sizes = [len(frame) for frame in frames]
-    heard = list(zip(*[iter(said)] * 3, strict=True))
+    heard = list(zip(*[iter(said(told))] * 3, strict=True))
     made = [low | high << 8 for _, low, high in heard]
     # MAVLink cuts zeros off at the end, which nobody counts where it sends byte by byte.
     if not all(made) if subject.kind == "mavlink" else made != sizes:
-        raise SystemExit(f"{subject.kind} {subject.protocol.name} {which} on AVR: {heard}, {sizes}")
+        where = machine.builds[build].title
+        text = f"{subject.kind} {subject.protocol.name} {which} on {where}: {heard}, {sizes}"
+        raise SystemExit(text)
+    encoded = median(spans(told, 3))
     if any(seen != 1 for seen, _, _ in heard):
-        return Cycles(median(sizes), nan, median(spans[3]))
+        return Cycles(median(sizes), nan, encoded)
     # The first decode only wakes the decoder up. A payload without a frame is handed over at once.
-    loop = 0 if subject.kind == "nanopb" else _loop(sizes)
-    return Cycles(median(sizes), median(spans[1][1:]) - loop, median(spans[3]))
+    loop = 0 if subject.kind == "nanopb" else machine.loop * median(sizes)
+    return Cycles(median(sizes), median(spans(told, 1)[1:]) - loop, encoded)
 
 
 def _with_frames(
@@ -74,11 +96,6 @@ def _with_frames(
     folder = Path(tempfile.mkdtemp(dir=workshop.folder))
     (folder / "frames.h").write_text(_table(which, frames), encoding="utf-8")
     return workshop.build(toolchain, "cycles", subject, f"-I{folder}")
-
-
-def _loop(sizes: Sequence[int]) -> float:
-    """Cycles of the harness's own loop: `lpm`, increment, compare and branch for each byte."""
-    return 7 * median(sizes)
 
 
 def cycles_apart(workshop: Workshop, counter: Path, subject: Subject) -> list[tuple[str, float]]:
@@ -104,20 +121,16 @@ def cycles_apart(workshop: Workshop, counter: Path, subject: Subject) -> list[tu
 _HARNESS = ("decode", "bench_seen", "subject_push", "main")
 
 
-def _spans(text: str) -> tuple[dict[int, list[int]], list[int]]:
-    """Cycles between the marks 1 and 2, and 3 and 4; and the bytes that were said."""
-    spans: dict[int, list[int]] = {1: [], 3: []}
-    said: list[int] = []
-    begin = 0
+def _avr_events(text: str) -> list[Event]:
+    """What harness/counter.c prints."""
+    told = []
     for words in map(str.split, text.splitlines()):
         match words:
             case ["say", byte]:
-                said.append(int(byte))
-            case ["mark", ("1" | "3"), cycle]:
-                begin = int(cycle)
-            case ["mark", ("2" | "4") as mark, cycle]:
-                spans[int(mark) - 1].append(int(cycle) - begin)
-    return spans, said
+                told.append(Event(0, said=int(byte)))
+            case ["mark", mark, cycle]:
+                told.append(Event(int(cycle), mark=int(mark)))
+    return told
 
 
 def _table(which: int, frames: Sequence[bytes]) -> str:

@@ -7,7 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from c_costs.cycles import Cycles, build_counter, cycles, cycles_apart
+from c_costs.cycles import (
+    CORTEX_M0,
+    Cycles,
+    atmega328p,
+    build_counter,
+    cycles,
+    cycles_apart,
+)
 from c_costs.memory import Memory, memory, spenders
 from c_costs.nanopb import nanopb
 from c_costs.protocols import (
@@ -35,7 +42,8 @@ class Results:
 
     avr: dict[tuple[str, str, str], Memory] = field(default_factory=dict)
     arm: dict[tuple[str, str, str], Memory] = field(default_factory=dict)
-    cycles: dict[tuple[str, str, str], list[Cycles]] = field(default_factory=dict)
+    avr_cycles: dict[tuple[str, str, str], list[Cycles]] = field(default_factory=dict)
+    arm_cycles: dict[tuple[str, str, str], list[Cycles]] = field(default_factory=dict)
     speeds: dict[tuple[str, str], Speed] = field(default_factory=dict)
     """By kind, and protocol and message."""
     recovery: dict[tuple[str, str], Recovery] = field(default_factory=dict)
@@ -95,7 +103,8 @@ def _measure_small(workshop: Workshop, counter: Path, subject: Subject, results:
     _measure_memory(workshop, subject, results)
     for build in _builds(subject):
         key = build, subject.kind, subject.protocol.name
-        results.cycles[key] = cycles(workshop, AVR[build], counter, subject)
+        results.avr_cycles[key] = cycles(workshop, atmega328p(counter), build, subject)
+        results.arm_cycles[key] = cycles(workshop, CORTEX_M0, build, subject)
 
 
 def _measure_memory(workshop: Workshop, subject: Subject, results: Results) -> None:

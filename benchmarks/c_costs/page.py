@@ -45,7 +45,9 @@ def page(results: Results, rounds: int, seeds: int) -> str:
         versions=versions(),
         avr=memory_table(results.avr),
         arm=memory_table(results.arm),
-        cycles=cycles_table(results),
+        avr_cycles=cycles_table(results.avr_cycles),
+        arm_cycles=cycles_table(results.arm_cycles),
+        unicorn=version("unicorn"),
         per_byte=bytes_table(results),
         rover=rover_line(results),
         slow=slow_bytes(results),
@@ -142,7 +144,7 @@ less the harness's loop, and encoding it again. Medians of {frames} frames of ra
 decodes a payload that lies in memory, of other bytes than a frame's; bytes are those of protogen's
 frame.
 
-{cycles}
+{avr_cycles}
 
 ### Decoding, for each byte
 
@@ -150,6 +152,13 @@ frame.
 {slow}
 
 {per_byte}
+
+## Cycles on a Cortex-M0
+
+The same programs in Unicorn {unicorn}, with the cycles of each instruction as Arm's manual has them
+(DDI 0432C, 3.3): memory without wait states, and the fast multiplier.
+
+{arm_cycles}
 
 ## This machine
 

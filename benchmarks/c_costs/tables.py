@@ -87,11 +87,11 @@ def _memory(item: Memory | None, expert: Memory) -> str:
     return f"{text} ({ratio(item.flash, expert.flash)} / {ratio(item.ram, expert.ram)})"
 
 
-def cycles_table(results: Results) -> str:
+def cycles_table(found: Mapping[tuple[str, str, str], list[Cycles]]) -> str:
     lines = header("decode / encode", "build", "bytes", *SMALL_KINDS.values(), texts=2)
     for protocol, which, message in messages():
         for build in BUILDS:
-            items = _kinds_of(results.cycles, build, protocol)
+            items = _kinds_of(found, build, protocol)
             if items:
                 expert = items["expert"][which]
                 cells = [
@@ -123,7 +123,7 @@ def bytes_table(results: Results, protocols: Sequence[Protocol] = PROTOCOLS) -> 
     for protocol, which, message in messages(protocols):
         cells = []
         for build in BUILDS:
-            items = _kinds_of(results.cycles, build, protocol)
+            items = _kinds_of(results.avr_cycles, build, protocol)
             cells += [_per_byte(items[kind][which]) if items else NOTHING for kind in kinds]
         lines.append(row([f"{protocol.label} {message}", *cells]))
     return "\n".join(lines)
@@ -135,7 +135,7 @@ def _per_byte(item: Cycles) -> str:
 
 def rover_line(results: Results) -> str:
     """What README.md says of its own protocol."""
-    ordinary, linked = (results.cycles[build, "messages", "rover"][0] for build in BUILDS)
+    ordinary, linked = (results.avr_cycles[build, "messages", "rover"][0] for build in BUILDS)
     return (
         f"An ATmega328P decodes rover's `state` in {_per_byte(ordinary)} cycles a byte, "
         f"{_per_byte(linked)} with `-flto`; 1 Mbaud at 16 MHz leaves {BYTE}."
@@ -148,7 +148,7 @@ def slow_bytes(results: Results) -> str:
         f"* {protocol.label} {message}, {TITLES[build]}: {_per_byte(item)}"
         for protocol, which, message in messages()
         for build in BUILDS
-        for item in [results.cycles[build, "messages", protocol.name][which]]
+        for item in [results.avr_cycles[build, "messages", protocol.name][which]]
         if not item.decode / item.bytes <= BYTE
     ]
     return "\n".join(["Above that are:", "", *slow]) if slow else "None is above that."
@@ -165,12 +165,19 @@ def ratios(results: Results) -> Iterator[Ratio]:
                     name = f"{title}, {protocol.title}, {TITLES[build]}"
                     yield Ratio(f"{name}: flash", own.flash / expert.flash, AIMS[build])
                     yield Ratio(f"{name}: RAM", own.ram / expert.ram, AIMS[build])
+    for title, cycles in (("ATmega328P", results.avr_cycles), ("Cortex-M0", results.arm_cycles)):
+        yield from _cycle_ratios(title, cycles)
+
+
+def _cycle_ratios(
+    title: str, found: Mapping[tuple[str, str, str], list[Cycles]]
+) -> Iterator[Ratio]:
     for protocol, which, message in messages():
         for build in BUILDS:
-            counted = _kinds_of(results.cycles, build, protocol)
+            counted = _kinds_of(found, build, protocol)
             if counted:
                 mine, other = counted["messages"][which], counted["expert"][which]
-                name = f"ATmega328P, {protocol.label} {message}, {TITLES[build]}"
+                name = f"{title}, {protocol.label} {message}, {TITLES[build]}"
                 for what in ("decode", "encode"):
                     value = getattr(mine, what) / getattr(other, what)
                     yield Ratio(f"{name}: cycles to {what}", value, AIMS[build])

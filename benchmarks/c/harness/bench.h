@@ -38,7 +38,11 @@ static union {
 #define BENCH_MESSAGE ((void *)&bench_memory)
 #endif
 
-#if !defined(__AVR__) && !defined(BENCH_SIZE)
+#if defined(__AVR__) || defined(__ARM_ARCH_6M__)
+#define BENCH_SMALL 1
+#endif
+
+#if !defined(BENCH_SMALL)
 static uint32_t bench_dice = 1;
 /* xorshift32: the same values everywhere. */
 static uint32_t bench_random(void) {
@@ -50,7 +54,7 @@ static uint32_t bench_random(void) {
 #define BENCH_FILL 1
 #endif
 
-#if defined(__AVR__) || defined(BENCH_SIZE)
+#if defined(BENCH_SMALL)
 /* Small machines send a lidar turn byte by byte. */
 #define BENCH_SINK 1
 #if defined(__AVR__)

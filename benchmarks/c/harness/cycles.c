@@ -1,17 +1,32 @@
 /*
- * Runs on an ATmega328P in simavr, where harness/counter.c notes the cycle of each write to
- * GPIOR0: 1 and 2 around a decoded frame, 3 and 4 around an encoded one, 0xFF at the end. What is
- * written to GPIOR1 is printed.
+ * Runs on an ATmega328P in simavr, or on a Cortex-M0 in Unicorn, which note the cycle of each mark:
+ * 1 and 2 around a decoded frame, 3 and 4 around an encoded one, END at the end. What is said is
+ * printed.
  */
-#include <avr/pgmspace.h>
-
 #include "bench.h"
 #include SUBJECT
 
-#include "frames.h" /* FRAMES, frame_which, frame_at, frame_size, frame_bytes, all in flash */
+#if defined(__AVR__)
+#include <avr/pgmspace.h>
+#define MARK(number) (*(volatile uint8_t *)0x003E = (number)) /* GPIOR0 */
+#define SAY (*(volatile uint8_t *)0x004A)                     /* GPIOR1 */
+#define END 0xFF
+#else
+/* Moves of r9 to r12 and of lr to itself. */
+#define MARK(number) __asm__ volatile(".short " MARK_##number ::: "memory")
+#define MARK_1 "0x46C9"
+#define MARK_2 "0x46D2"
+#define MARK_3 "0x46DB"
+#define MARK_4 "0x46E4"
+#define MARK_END "0x46F6"
+#define SAY (*(volatile uint8_t *)0x40002000)
+#define PROGMEM
+#define pgm_read_byte(at) (*(at))
+#define pgm_read_word(at) (*(at))
+#define memcpy_P memcpy
+#endif
 
-#define MARK (*(volatile uint8_t *)0x003E)
-#define SAY (*(volatile uint8_t *)0x004A)
+#include "frames.h" /* FRAMES, frame_which, frame_at, frame_size, frame_bytes, all in flash */
 
 static uint8_t seen;
 #if defined(SUBJECT_UNFRAMED)
@@ -31,10 +46,10 @@ static void decode(uint8_t index) {
     const uint8_t *const end = at + pgm_read_word(&frame_size[index]);
 #if defined(SUBJECT_UNFRAMED)
     memcpy_P(frame_out, at, (size_t)(end - at));
-    MARK = 1;
+    MARK(1);
     subject_decode(pgm_read_byte(&frame_which[index]), frame_out, (size_t)(end - at));
 #else
-    MARK = 1;
+    MARK(1);
     do {
         subject_push(pgm_read_byte(at));
         /* Bytes of a line come one by one: between two of them a decoder is in its memory. */
@@ -42,14 +57,14 @@ static void decode(uint8_t index) {
         at++;
     } while (at != end);
 #endif
-    MARK = 2;
+    MARK(2);
 }
 
 static void encode(uint8_t index) {
     size_t size;
-    MARK = 3;
+    MARK(3);
     size = subject_encode(pgm_read_byte(&frame_which[index]), frame_out, sizeof frame_out);
-    MARK = 4;
+    MARK(4);
     SAY = (uint8_t)size;
     SAY = (uint8_t)(size >> 8);
 }
@@ -63,7 +78,7 @@ int main(void) {
         SAY = seen;
         encode(index);
     }
-    MARK = 0xFF;
+    MARK(END);
     for (;;) {
     }
 }
