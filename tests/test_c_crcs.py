@@ -25,6 +25,7 @@ CHECK_DATA = b"123456789"
 WAYS = {
     "bit by bit": ("-DT_FAST_FEED=1", "-DT_SMALL_CRC=1"),
     "small machines": ("-DT_FAST_FEED=0",),
+    "machines of bytes": ("-DT_FAST_FEED=0", "-DOF_BYTES"),
     "hosts": ("-DT_FAST_FEED=1",),
 }
 SIZES = (*range(20), 257, 4099, 9001)
@@ -98,6 +99,7 @@ def program(algorithms: tuple[Algorithm, ...]) -> str:
     return (
         "#include <stdint.h>\n#include <stddef.h>\n#include <stdio.h>\n"
         "#define T_INLINE static inline\n"
+        "#ifdef OF_BYTES\n#undef UINTPTR_MAX\n#define UINTPTR_MAX 0xFFFF\n#endif\n"
         f"{template.choice(checksums)}\n{template.functions(checksums, False)}\n"
         f"static const uint8_t data[] = {{{octets}}};\n"
         f"static const size_t sizes[] = {{{', '.join(map(str, SIZES))}}};\n"

@@ -41,12 +41,19 @@ typedef char dagny_library_gps_position_layout[offsetof(struct dagny_library_gps
 #include <string.h>
 #endif
 
-/* avr-gcc makes a short loop of memcpy, while others call it. */
+/* avr-gcc makes a short loop of memcpy, while others call it, as they do for a loop of single bytes. */
 DAGNY_LIBRARY_INLINE void dagny_library_copy_whole(uint8_t *to, const uint8_t *from, size_t size) {
 #if defined(__AVR__) && defined(__GNUC__)
     memcpy(to, from, size);
 #else
-    for (size_t i = 0; i < size; i++) {
+    size_t i = 0;
+    for (; i + 1U < size; i += 2U) {
+        const uint8_t first = from[i];
+        const uint8_t second = from[i + 1U];
+        to[i] = first;
+        to[i + 1U] = second;
+    }
+    if (i < size) {
         to[i] = from[i];
     }
 #endif
