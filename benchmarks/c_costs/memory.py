@@ -21,7 +21,7 @@ class Memory:
 def memory(workshop: Workshop, toolchain: Toolchain, subject: Subject) -> Memory:
     program = workshop.build(toolchain, "size", subject)
     empty = workshop.build(toolchain, "size", nothing(subject.protocol))
-    whole, base = _size(toolchain, program), _size(toolchain, empty)
+    whole, base = size_of(toolchain, program), size_of(toolchain, empty)
     return Memory(whole.flash - base.flash, whole.ram - base.ram)
 
 
@@ -29,7 +29,7 @@ def nothing(protocol: Protocol) -> Subject:
     return Subject("empty", protocol, FOLDER / "subjects" / "use_empty.h", (), ())
 
 
-def _size(toolchain: Toolchain, program: Path) -> Memory:
+def size_of(toolchain: Toolchain, program: Path) -> Memory:
     said = run([f"{toolchain.prefix}size", str(program)])
     text, data, bss = map(int, said.splitlines()[1].split()[:3])
     return Memory(text + data, data + bss)

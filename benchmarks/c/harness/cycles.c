@@ -1,30 +1,10 @@
 /*
- * Runs on an ATmega328P in simavr, or on a Cortex-M0 in Unicorn, which note the cycle of each mark:
- * 1 and 2 around a decoded frame, 3 and 4 around an encoded one, END at the end. What is said is
- * printed.
+ * Decodes and encodes frames, with the marks 1 and 2 around a decoded one, and 3 and 4 around an
+ * encoded one. Says how many messages it has seen of each, and how large the encoded one is.
  */
 #include "bench.h"
+#include "marks.h"
 #include SUBJECT
-
-#if defined(__AVR__)
-#include <avr/pgmspace.h>
-#define MARK(number) (*(volatile uint8_t *)0x003E = (number)) /* GPIOR0 */
-#define SAY (*(volatile uint8_t *)0x004A)                     /* GPIOR1 */
-#define END 0xFF
-#else
-/* Moves of r9 to r12 and of lr to itself. */
-#define MARK(number) __asm__ volatile(".short " MARK_##number ::: "memory")
-#define MARK_1 "0x46C9"
-#define MARK_2 "0x46D2"
-#define MARK_3 "0x46DB"
-#define MARK_4 "0x46E4"
-#define MARK_END "0x46F6"
-#define SAY (*(volatile uint8_t *)0x40002000)
-#define PROGMEM
-#define pgm_read_byte(at) (*(at))
-#define pgm_read_word(at) (*(at))
-#define memcpy_P memcpy
-#endif
 
 #include "frames.h" /* FRAMES, frame_which, frame_at, frame_size, frame_bytes, all in flash */
 
