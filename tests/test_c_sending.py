@@ -167,6 +167,39 @@ int main(void) {{
 """
 
 
+COMMANDS = f"""{EXPECT}
+#include "dagny.h"
+
+int main(void) {{
+    static const uint8_t identities[4] = {{
+        DAGNY_MOTOR_ID, DAGNY_STEERING_ID, DAGNY_REFLEX_ID, DAGNY_POWER_ID}};
+    static const struct dagny_steering steering = {{0x40}};
+    static const struct dagny_power power = {{0x40}};
+    size_t index;
+    uint8_t made[4];
+    for (index = 0; index < 4; index++) {{
+        const uint8_t id = identities[index];
+        const uint8_t due[4] = {{id, 0x40, (uint8_t)(id ^ 0x40), 0x0A}};
+        uint8_t frame[4] = {{1, 2, 3, 4}};
+        EXPECT(dagny_host_frame_byte(0x40, frame, 3, id) == 0);
+        EXPECT(frame[0] == 1 && frame[1] == 2 && frame[2] == 3);
+        EXPECT(dagny_host_frame_byte(0x40, frame, 4, id) == 4);
+        EXPECT(memcmp(frame, due, 4) == 0);
+    }}
+    EXPECT(dagny_power_frame(&power, made, 4) == 4 && memcmp(made, "P\\x40\\x10\\n", 4) == 0);
+    EXPECT(dagny_steering_frame(&steering, made, 4) == 4);
+    EXPECT(memcmp(made, "S\\x40\\x13\\n", 4) == 0);
+    EXPECT(dagny_steering_frame(&steering, made, 3) == 0);
+    return 0;
+}}
+"""
+
+
+@EACH_COMPILER
+def test_the_frame_of_a_byte_has_the_identity_that_is_given(compiler: str, tmp_path: Path) -> None:
+    run(compiler, COMMANDS, ["dagny"], tmp_path)
+
+
 @EACH_COMPILER
 def test_a_message_begins_with_its_defaults(compiler: str, tmp_path: Path) -> None:
     schema = tmp_path / "defaults.yaml"

@@ -878,14 +878,11 @@ static size_t dagny_host_wrap(uint8_t *frame, size_t payload, uint8_t id) {
     return size + 1U;
 }
 
-/* The frame of a message that is a byte; returns its size, 0 where it has no room. The byte is the
-   first parameter as the message is that of the caller: then nothing has to be moved. */
-DAGNY_SHARED size_t dagny_host_wrap_byte(const uint8_t *byte, uint8_t *frame, size_t capacity,
-                                         uint8_t id) {
+size_t dagny_host_frame_byte(uint8_t byte, uint8_t *frame, size_t capacity, uint8_t id) {
     if (capacity < dagny_host_room(1U)) {
         return 0U;
     }
-    *dagny_host_payload(frame, 1U) = *byte;
+    *dagny_host_payload(frame, 1U) = byte;
     return dagny_host_wrap(frame, 1U, id);
 }
 
@@ -1311,10 +1308,6 @@ size_t dagny_hardware_status_end(uint8_t data_size, uint8_t *frame) {
     return dagny_host_ends_early(frame, size) ? 0U : size;
 }
 
-size_t dagny_motor_frame(const struct dagny_motor *message, uint8_t *frame, size_t capacity) {
-    return dagny_host_wrap_byte(&message->s, frame, capacity, 0x4DU);
-}
-
 enum dagny_result dagny_motor_send(const struct dagny_motor *message, dagny_put put, void *user) {
     struct dagny_writer writer;
     const size_t payload = 1U;
@@ -1326,10 +1319,6 @@ enum dagny_result dagny_motor_send(const struct dagny_motor *message, dagny_put 
     dagny_motor_put(message, &writer);
     dagny_host_send_tail(&writer, payload, 0x4DU);
     return DAGNY_OK;
-}
-
-size_t dagny_steering_frame(const struct dagny_steering *message, uint8_t *frame, size_t capacity) {
-    return dagny_host_wrap_byte(&message->s, frame, capacity, 0x53U);
 }
 
 enum dagny_result dagny_steering_send(const struct dagny_steering *message, dagny_put put,
@@ -1344,10 +1333,6 @@ enum dagny_result dagny_steering_send(const struct dagny_steering *message, dagn
     dagny_steering_put(message, &writer);
     dagny_host_send_tail(&writer, payload, 0x53U);
     return DAGNY_OK;
-}
-
-size_t dagny_reflex_frame(const struct dagny_reflex *message, uint8_t *frame, size_t capacity) {
-    return dagny_host_wrap_byte(&message->reflex, frame, capacity, 0x52U);
 }
 
 enum dagny_result dagny_reflex_send(const struct dagny_reflex *message, dagny_put put, void *user) {
@@ -1372,10 +1357,6 @@ size_t dagny_power_down_frame(uint8_t *frame, size_t capacity) {
     dagny_power_down_store(dagny_host_payload(frame, payload));
     size = dagny_host_wrap(frame, payload, 0x50U);
     return dagny_host_ends_early(frame, size) ? 0U : size;
-}
-
-size_t dagny_power_frame(const struct dagny_power *message, uint8_t *frame, size_t capacity) {
-    return dagny_host_wrap_byte(&message->code, frame, capacity, 0x50U);
 }
 
 enum dagny_result dagny_power_send(const struct dagny_power *message, dagny_put put, void *user) {

@@ -751,6 +751,12 @@ static inline bool dagny_transmitted(struct dagny_transmission *frame) {
     return all;
 }
 
+/**
+ * The frame of a message that is one byte, for callers who have in a variable what tells it from
+ * others. That there is such a message is not checked. `frame` of each of these messages calls this.
+ */
+DAGNY_API size_t dagny_host_frame_byte(uint8_t byte, uint8_t *frame, size_t capacity, uint8_t id);
+
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_SONAR_FRAME_MAX 131U
 #define DAGNY_SONAR_FRAME_ROOM 131U
@@ -825,24 +831,30 @@ DAGNY_API size_t dagny_hardware_status_end(uint8_t data_size, uint8_t *frame);
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_MOTOR_FRAME_MAX 4U
 #define DAGNY_MOTOR_FRAME_ROOM 4U
-DAGNY_API size_t dagny_motor_frame(const struct dagny_motor *message, uint8_t *frame,
-                                   size_t capacity);
+static inline size_t dagny_motor_frame(const struct dagny_motor *message, uint8_t *frame,
+                                       size_t capacity) {
+    return dagny_host_frame_byte(message->s, frame, capacity, 0x4DU);
+}
 DAGNY_API enum dagny_result dagny_motor_send(const struct dagny_motor *message, dagny_put put,
                                              void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_STEERING_FRAME_MAX 4U
 #define DAGNY_STEERING_FRAME_ROOM 4U
-DAGNY_API size_t dagny_steering_frame(const struct dagny_steering *message, uint8_t *frame,
-                                      size_t capacity);
+static inline size_t dagny_steering_frame(const struct dagny_steering *message, uint8_t *frame,
+                                          size_t capacity) {
+    return dagny_host_frame_byte(message->s, frame, capacity, 0x53U);
+}
 DAGNY_API enum dagny_result dagny_steering_send(const struct dagny_steering *message, dagny_put put,
                                                 void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_REFLEX_FRAME_MAX 4U
 #define DAGNY_REFLEX_FRAME_ROOM 4U
-DAGNY_API size_t dagny_reflex_frame(const struct dagny_reflex *message, uint8_t *frame,
-                                    size_t capacity);
+static inline size_t dagny_reflex_frame(const struct dagny_reflex *message, uint8_t *frame,
+                                        size_t capacity) {
+    return dagny_host_frame_byte(message->reflex, frame, capacity, 0x52U);
+}
 DAGNY_API enum dagny_result dagny_reflex_send(const struct dagny_reflex *message, dagny_put put,
                                               void *user);
 
@@ -854,8 +866,10 @@ DAGNY_API size_t dagny_power_down_frame(uint8_t *frame, size_t capacity);
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_POWER_FRAME_MAX 4U
 #define DAGNY_POWER_FRAME_ROOM 4U
-DAGNY_API size_t dagny_power_frame(const struct dagny_power *message, uint8_t *frame,
-                                   size_t capacity);
+static inline size_t dagny_power_frame(const struct dagny_power *message, uint8_t *frame,
+                                       size_t capacity) {
+    return dagny_host_frame_byte(message->code, frame, capacity, 0x50U);
+}
 DAGNY_API enum dagny_result dagny_power_send(const struct dagny_power *message, dagny_put put,
                                              void *user);
 

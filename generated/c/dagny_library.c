@@ -676,14 +676,11 @@ static size_t dagny_library_host_wrap(uint8_t *frame, size_t payload, uint8_t id
     return (size_t)written;
 }
 
-/* The frame of a message that is a byte; returns its size, 0 where it has no room. The byte is the
-   first parameter as the message is that of the caller: then nothing has to be moved. */
-DAGNY_LIBRARY_SHARED size_t dagny_library_host_wrap_byte(const uint8_t *byte, uint8_t *frame,
-                                                         size_t capacity, uint8_t id) {
+size_t dagny_library_host_frame_byte(uint8_t byte, uint8_t *frame, size_t capacity, uint8_t id) {
     if (capacity < dagny_library_host_room(1U)) {
         return 0U;
     }
-    *dagny_library_host_payload(frame, 1U) = *byte;
+    *dagny_library_host_payload(frame, 1U) = byte;
     return dagny_library_host_wrap(frame, 1U, id);
 }
 
@@ -1030,11 +1027,6 @@ enum dagny_library_result dagny_library_drive_send(const struct dagny_library_dr
     return DAGNY_LIBRARY_OK;
 }
 
-size_t dagny_library_steering_frame(const struct dagny_library_steering *message, uint8_t *frame,
-                                    size_t capacity) {
-    return dagny_library_host_wrap_byte(&message->position, frame, capacity, 0x53U);
-}
-
 enum dagny_library_result dagny_library_steering_send(const struct dagny_library_steering *message,
                                                       dagny_library_put put, void *user) {
     struct dagny_library_writer writer;
@@ -1047,11 +1039,6 @@ enum dagny_library_result dagny_library_steering_send(const struct dagny_library
     dagny_library_steering_put(message, &writer);
     dagny_library_host_send_tail(&writer, payload, 0x53U);
     return DAGNY_LIBRARY_OK;
-}
-
-size_t dagny_library_power_frame(const struct dagny_library_power *message, uint8_t *frame,
-                                 size_t capacity) {
-    return dagny_library_host_wrap_byte(&message->code, frame, capacity, 0x50U);
 }
 
 enum dagny_library_result dagny_library_power_send(const struct dagny_library_power *message,

@@ -643,6 +643,13 @@ static inline bool dagny_library_transmitted(struct dagny_library_transmission *
     return all;
 }
 
+/**
+ * The frame of a message that is one byte, for callers who have in a variable what tells it from
+ * others. That there is such a message is not checked. `frame` of each of these messages calls this.
+ */
+DAGNY_LIBRARY_API size_t dagny_library_host_frame_byte(uint8_t byte, uint8_t *frame,
+                                                       size_t capacity, uint8_t id);
+
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_SONAR_FRAME_MAX 12U
 #define DAGNY_LIBRARY_SONAR_FRAME_ROOM 13U
@@ -704,16 +711,20 @@ DAGNY_LIBRARY_API enum dagny_library_result dagny_library_drive_send(
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_STEERING_FRAME_MAX 4U
 #define DAGNY_LIBRARY_STEERING_FRAME_ROOM 5U
-DAGNY_LIBRARY_API size_t dagny_library_steering_frame(const struct dagny_library_steering *message,
-                                                      uint8_t *frame, size_t capacity);
+static inline size_t dagny_library_steering_frame(const struct dagny_library_steering *message,
+                                                  uint8_t *frame, size_t capacity) {
+    return dagny_library_host_frame_byte(message->position, frame, capacity, 0x53U);
+}
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_steering_send(
     const struct dagny_library_steering *message, dagny_library_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_LIBRARY_POWER_FRAME_MAX 4U
 #define DAGNY_LIBRARY_POWER_FRAME_ROOM 5U
-DAGNY_LIBRARY_API size_t dagny_library_power_frame(const struct dagny_library_power *message,
-                                                   uint8_t *frame, size_t capacity);
+static inline size_t dagny_library_power_frame(const struct dagny_library_power *message,
+                                               uint8_t *frame, size_t capacity) {
+    return dagny_library_host_frame_byte(message->code, frame, capacity, 0x50U);
+}
 DAGNY_LIBRARY_API enum dagny_library_result dagny_library_power_send(
     const struct dagny_library_power *message, dagny_library_put put, void *user);
 

@@ -42,11 +42,12 @@ _FUNCTIONS_OF_A_SENDER = """
 accept add_noise added begins close close_at_flush close_open compare complete content count
 counted cross decide decoder_counters decoder_dispatch decoder_event decoder_feed decoder_flush
 decoder_idle decoder_init decoder_next decoder_push dispatch drop end_noise ends_early
-enter_payload find_size finish_region fitted follow_end follow_start give_up hand_over has_special
-head_fits identify invalid is_idle is_plain judge leave let_go look looks_idle measure measure_head
-open pass payload payload_size reach read_length release reopen reset resume room run search seek
-seek_on send_head send_tail set_payload settle show specials stuff surplus tail_fits take take_byte
-take_head take_tail take_whole unstuff unstuff_one unstuff_to wire_end wrap wrap_byte write wrong
+enter_payload find_size finish_region fitted follow_end follow_start frame_byte give_up hand_over
+has_special head_fits identify invalid is_idle is_plain judge leave let_go look looks_idle measure
+measure_head open pass payload payload_size reach read_length release reopen reset resume room run
+search seek seek_on send_head send_tail set_payload settle show specials stuff surplus tail_fits
+take take_byte take_head take_tail take_whole unstuff unstuff_one unstuff_to wire_end wrap write
+wrong
 """
 _MACROS_OF_A_SENDER = "frame_max idle_us decoder_init counted wrong"
 _FUNCTIONS_OF_A_CANDIDATE = "begun begun_byte end fill_up mark read show step"

@@ -59,6 +59,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """Those in which no group of COBS is ever full, so that no byte moves when they are stuffed."""
     around_bytes: frozenset[str]
     """Those in which the payloads of several messages are a byte, so that they share a function."""
+    around_others: frozenset[str]
+    """Those in which that of some message is anything else."""
     trims: frozenset[str]
     """Those in which zeros at the end of some payload may be left out."""
     cuts_sent: bool
@@ -192,6 +194,7 @@ def framing_view(
         in_place=frozenset(frame.decoder.name for frame in distinct if frame.is_one_region)
         - {item.frame.decoder.name for item in message_frames if item.may_fill_group},
         around_bytes=_several(item.frame.decoder.name for item in message_frames if item.byte),
+        around_others=frozenset(i.frame.decoder.name for i in message_frames if not i.byte),
         trims=frozenset(item.frame.decoder.name for item in message_frames if item.is_trimmed),
         cuts_sent=any(item.sends and item.is_trimmed for item in message_frames),
         idle_checks=frozenset(
