@@ -836,9 +836,9 @@ static inline uint8_t dagny_xor_8_step(uint8_t sum, uint8_t byte) {
 }
 
 static uint8_t dagny_xor_8_run(uint8_t sum, const uint8_t *data, size_t size) {
-    size_t index = 0;
-    for (; index < size; index++) {
-        sum = dagny_xor_8_step(sum, data[index]);
+    for (; size > 0U; size--) {
+        sum = dagny_xor_8_step(sum, *data);
+        data++;
     }
     return sum;
 }
@@ -1530,9 +1530,9 @@ static uint8_t dagny_host_complete(struct dagny_host_decoder *decoder) {
     if (decoder->payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, content, 1U + (size_t)decoder->payload);
+        sum = dagny_xor_8_run(sum, content, 2U + (size_t)decoder->payload);
         due = dagny_xor_8_final(sum);
-        if (content[1U + decoder->payload] != due) {
+        if (due != 0U) {
             return DAGNY_CHECKSUM;
         }
     }
@@ -2004,9 +2004,9 @@ static uint8_t dagny_robot_complete(struct dagny_robot_decoder *decoder) {
     if (decoder->payload != 0U) {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = dagny_xor_8_run(sum, content, 1U + (size_t)decoder->payload);
+        sum = dagny_xor_8_run(sum, content, 2U + (size_t)decoder->payload);
         due = dagny_xor_8_final(sum);
-        if (content[1U + decoder->payload] != due) {
+        if (due != 0U) {
             return DAGNY_CHECKSUM;
         }
     }

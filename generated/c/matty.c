@@ -546,8 +546,11 @@ static uint8_t matty_sum_8_negated_run(uint8_t sum, const uint8_t *data, size_t 
     }
 #endif
 #endif
-    for (; index < size; index++) {
-        sum = matty_sum_8_negated_step(sum, data[index]);
+    data = &data[index];
+    size -= index;
+    for (; size > 0U; size--) {
+        sum = matty_sum_8_negated_step(sum, *data);
+        data++;
     }
     return sum;
 }
@@ -1116,9 +1119,9 @@ static uint8_t matty_pc_complete(struct matty_pc_decoder *decoder) {
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_sum_8_negated_run(sum, &content[1U], 4U + (size_t)decoder->payload - 1U);
+        sum = matty_sum_8_negated_run(sum, &content[1U], 5U + (size_t)decoder->payload - 1U);
         due = matty_sum_8_negated_final(sum);
-        if (content[4U + decoder->payload] != due) {
+        if (due != 0U) {
             return MATTY_CHECKSUM;
         }
     }
@@ -1516,9 +1519,9 @@ static size_t matty_pc_take_whole(struct matty_pc_decoder *decoder, const uint8_
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_sum_8_negated_run(sum, &content[1U], 4U + payload - 1U);
+        sum = matty_sum_8_negated_run(sum, &content[1U], 5U + payload - 1U);
         due = matty_sum_8_negated_final(sum);
-        if (content[4U + payload] != due) {
+        if (due != 0U) {
             return 0;
         }
     }
@@ -1638,9 +1641,9 @@ static uint8_t matty_esp_complete(struct matty_esp_decoder *decoder) {
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_sum_8_negated_run(sum, &content[1U], 4U + (size_t)decoder->payload - 1U);
+        sum = matty_sum_8_negated_run(sum, &content[1U], 5U + (size_t)decoder->payload - 1U);
         due = matty_sum_8_negated_final(sum);
-        if (content[4U + decoder->payload] != due) {
+        if (due != 0U) {
             return MATTY_CHECKSUM;
         }
     }
@@ -2039,9 +2042,9 @@ static size_t matty_esp_take_whole(struct matty_esp_decoder *decoder, const uint
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_sum_8_negated_run(sum, &content[1U], 4U + payload - 1U);
+        sum = matty_sum_8_negated_run(sum, &content[1U], 5U + payload - 1U);
         due = matty_sum_8_negated_final(sum);
-        if (content[4U + payload] != due) {
+        if (due != 0U) {
             return 0;
         }
     }

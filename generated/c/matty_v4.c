@@ -668,8 +668,11 @@ static uint8_t matty_v4_sum_8_negated_run(uint8_t sum, const uint8_t *data, size
     }
 #endif
 #endif
-    for (; index < size; index++) {
-        sum = matty_v4_sum_8_negated_step(sum, data[index]);
+    data = &data[index];
+    size -= index;
+    for (; size > 0U; size--) {
+        sum = matty_v4_sum_8_negated_step(sum, *data);
+        data++;
     }
     return sum;
 }
@@ -1352,9 +1355,9 @@ static uint8_t matty_v4_pc_complete(struct matty_v4_pc_decoder *decoder) {
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_v4_sum_8_negated_run(sum, &content[1U], 4U + (size_t)decoder->payload - 1U);
+        sum = matty_v4_sum_8_negated_run(sum, &content[1U], 5U + (size_t)decoder->payload - 1U);
         due = matty_v4_sum_8_negated_final(sum);
-        if (content[4U + decoder->payload] != due) {
+        if (due != 0U) {
             return MATTY_V4_CHECKSUM;
         }
     }
@@ -1753,9 +1756,9 @@ static size_t matty_v4_pc_take_whole(struct matty_v4_pc_decoder *decoder, const 
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_v4_sum_8_negated_run(sum, &content[1U], 4U + payload - 1U);
+        sum = matty_v4_sum_8_negated_run(sum, &content[1U], 5U + payload - 1U);
         due = matty_v4_sum_8_negated_final(sum);
-        if (content[4U + payload] != due) {
+        if (due != 0U) {
             return 0;
         }
     }
@@ -1881,9 +1884,9 @@ static uint8_t matty_v4_esp_complete(struct matty_v4_esp_decoder *decoder) {
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_v4_sum_8_negated_run(sum, &content[1U], 4U + (size_t)decoder->payload - 1U);
+        sum = matty_v4_sum_8_negated_run(sum, &content[1U], 5U + (size_t)decoder->payload - 1U);
         due = matty_v4_sum_8_negated_final(sum);
-        if (content[4U + decoder->payload] != due) {
+        if (due != 0U) {
             return MATTY_V4_CHECKSUM;
         }
     }
@@ -2282,9 +2285,9 @@ static size_t matty_v4_esp_take_whole(struct matty_v4_esp_decoder *decoder, cons
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = matty_v4_sum_8_negated_run(sum, &content[1U], 4U + payload - 1U);
+        sum = matty_v4_sum_8_negated_run(sum, &content[1U], 5U + payload - 1U);
         due = matty_v4_sum_8_negated_final(sum);
-        if (content[4U + payload] != due) {
+        if (due != 0U) {
             return 0;
         }
     }

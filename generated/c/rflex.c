@@ -586,13 +586,15 @@ void rflex_sonar_data_load(struct rflex_sonar_data *message, const uint8_t *payl
     message->unknown = rflex_load_u32be(payload);
     message->timestamp = rflex_load_u32be(payload + 4);
     const uint8_t *at = payload + 8;
-    message->readings_count = 0U;
-    while (at < payload + size) {
-        message->readings[message->readings_count].cluster = at[0];
-        message->readings[message->readings_count].distance = rflex_load_u16be(at + 1);
+    const uint8_t *const stop = payload + size;
+    size_t count = 0U;
+    while (at < stop) {
+        message->readings[count].cluster = at[0];
+        message->readings[count].distance = rflex_load_u16be(at + 1);
         at += 3U;
-        message->readings_count++;
+        count++;
     }
+    message->readings_count = (uint8_t)count;
 }
 
 enum rflex_result rflex_sonar_data_decode(struct rflex_sonar_data *message, const uint8_t *payload,
@@ -926,8 +928,11 @@ static uint8_t rflex_xor_8_run(uint8_t sum, const uint8_t *data, size_t size) {
     sum = (uint8_t)(sum ^ all ^ (all >> 8));
 #endif
 #endif
-    for (; index < size; index++) {
-        sum = rflex_xor_8_step(sum, data[index]);
+    data = &data[index];
+    size -= index;
+    for (; size > 0U; size--) {
+        sum = rflex_xor_8_step(sum, *data);
+        data++;
     }
     return sum;
 }
@@ -1946,9 +1951,9 @@ static uint8_t rflex_linux_complete(struct rflex_linux_decoder *decoder) {
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_xor_8_run(sum, &content[6U], 6U + (size_t)decoder->payload - 6U);
+        sum = rflex_xor_8_run(sum, &content[6U], 7U + (size_t)decoder->payload - 6U);
         due = rflex_xor_8_final(sum);
-        if (content[6U + decoder->payload] != due) {
+        if (due != 0U) {
             return RFLEX_CHECKSUM;
         }
     }
@@ -2459,9 +2464,9 @@ static size_t rflex_linux_take_whole(struct rflex_linux_decoder *decoder, const 
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_xor_8_run(sum, &content[6U], 6U + payload - 6U);
+        sum = rflex_xor_8_run(sum, &content[6U], 7U + payload - 6U);
         due = rflex_xor_8_final(sum);
-        if (content[6U + payload] != due) {
+        if (due != 0U) {
             return 0;
         }
     }
@@ -2664,9 +2669,9 @@ static uint8_t rflex_flex_complete(struct rflex_flex_decoder *decoder) {
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_xor_8_run(sum, &content[6U], 6U + (size_t)decoder->payload - 6U);
+        sum = rflex_xor_8_run(sum, &content[6U], 7U + (size_t)decoder->payload - 6U);
         due = rflex_xor_8_final(sum);
-        if (content[6U + decoder->payload] != due) {
+        if (due != 0U) {
             return RFLEX_CHECKSUM;
         }
     }
@@ -3177,9 +3182,9 @@ static size_t rflex_flex_take_whole(struct rflex_flex_decoder *decoder, const ui
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_xor_8_run(sum, &content[6U], 6U + payload - 6U);
+        sum = rflex_xor_8_run(sum, &content[6U], 7U + payload - 6U);
         due = rflex_xor_8_final(sum);
-        if (content[6U + payload] != due) {
+        if (due != 0U) {
             return 0;
         }
     }

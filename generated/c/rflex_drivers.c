@@ -713,13 +713,15 @@ void rflex_drivers_sonar_data_load(struct rflex_drivers_sonar_data *message, con
     message->retval = rflex_drivers_load_u32be(payload);
     message->timestamp = rflex_drivers_load_u32be(payload + 4);
     const uint8_t *at = payload + 8;
-    message->readings_count = 0U;
-    while (at < payload + size) {
-        message->readings[message->readings_count].cluster = at[0];
-        message->readings[message->readings_count].distance = rflex_drivers_load_u16be(at + 1);
+    const uint8_t *const stop = payload + size;
+    size_t count = 0U;
+    while (at < stop) {
+        message->readings[count].cluster = at[0];
+        message->readings[count].distance = rflex_drivers_load_u16be(at + 1);
         at += 3U;
-        message->readings_count++;
+        count++;
     }
+    message->readings_count = (uint8_t)count;
 }
 
 enum rflex_drivers_result rflex_drivers_sonar_data_decode(struct rflex_drivers_sonar_data *message,
@@ -1168,8 +1170,11 @@ static uint8_t rflex_drivers_xor_8_run(uint8_t sum, const uint8_t *data, size_t 
     sum = (uint8_t)(sum ^ all ^ (all >> 8));
 #endif
 #endif
-    for (; index < size; index++) {
-        sum = rflex_drivers_xor_8_step(sum, data[index]);
+    data = &data[index];
+    size -= index;
+    for (; size > 0U; size--) {
+        sum = rflex_drivers_xor_8_step(sum, *data);
+        data++;
     }
     return sum;
 }
@@ -2440,9 +2445,9 @@ static uint8_t rflex_drivers_linux_complete(struct rflex_drivers_linux_decoder *
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_drivers_xor_8_run(sum, &content[2U], 6U + (size_t)decoder->payload - 2U);
+        sum = rflex_drivers_xor_8_run(sum, &content[2U], 7U + (size_t)decoder->payload - 2U);
         due = rflex_drivers_xor_8_final(sum);
-        if (content[6U + decoder->payload] != due) {
+        if (due != 0U) {
             return RFLEX_DRIVERS_CHECKSUM;
         }
     }
@@ -2964,9 +2969,9 @@ static size_t rflex_drivers_linux_take_whole(struct rflex_drivers_linux_decoder 
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_drivers_xor_8_run(sum, &content[2U], 6U + payload - 2U);
+        sum = rflex_drivers_xor_8_run(sum, &content[2U], 7U + payload - 2U);
         due = rflex_drivers_xor_8_final(sum);
-        if (content[6U + payload] != due) {
+        if (due != 0U) {
             return 0;
         }
     }
@@ -3184,9 +3189,9 @@ static uint8_t rflex_drivers_flex_complete(struct rflex_drivers_flex_decoder *de
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_drivers_xor_8_run(sum, &content[2U], 6U + (size_t)decoder->payload - 2U);
+        sum = rflex_drivers_xor_8_run(sum, &content[2U], 7U + (size_t)decoder->payload - 2U);
         due = rflex_drivers_xor_8_final(sum);
-        if (content[6U + decoder->payload] != due) {
+        if (due != 0U) {
             return RFLEX_DRIVERS_CHECKSUM;
         }
     }
@@ -3706,9 +3711,9 @@ static size_t rflex_drivers_flex_take_whole(struct rflex_drivers_flex_decoder *d
     {
         uint8_t sum = 0x00U;
         uint8_t due;
-        sum = rflex_drivers_xor_8_run(sum, &content[2U], 6U + payload - 2U);
+        sum = rflex_drivers_xor_8_run(sum, &content[2U], 7U + payload - 2U);
         due = rflex_drivers_xor_8_final(sum);
-        if (content[6U + payload] != due) {
+        if (due != 0U) {
             return 0;
         }
     }

@@ -174,10 +174,6 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
         """Bytes of the buffer."""
         return super().buffer_size - (1 if self.handed else 0)
 
-    def differs(self, c: ChecksumView) -> str:
-        """The condition that a checksum is wrong, where the last byte is handed over."""
-        return "last != due" if c == self.handed else c.differs(self.payload)
-
     @property
     def kept_content(self) -> str:
         """Where the content begins in the buffer."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from protogen.copying import replace
 from protogen.model.checksums import ChecksumSpec, find_algorithm
 from protogen.model.frame_places import Run, Side
 from protogen.model.frame_plan import FramePlan
@@ -104,8 +105,31 @@ class ChecksumView(msgspec.Struct, frozen=True):
         runs = [item for item in self.covers if isinstance(item, CoveredRun)]
         return len(runs) == len(self.covers) and sum(run.size(payload) for run in runs) <= most
 
+    @property
+    def cancels(self) -> bool:
+        """True if the result over what it covers and itself is 0, and it stands right behind that.
+
+        One comparison with 0 is shorter than one with a byte that has to be found.
+        """
+        spec, covers = self.checksum.spec, self.covers
+        if not spec.is_folded_byte or not spec.is_bare or spec.negated != (spec.kind == "sum"):
+            return False
+        if self.over_wire or self.sums_stuffed or len(covers) != 1 or not fills_bytes(self.part):
+            return False
+        run = covers[0]
+        return isinstance(run, CoveredRun) and self.size == 1 and run.last == self.at
+
+    def verified(self, run: CoveredRun) -> CoveredRun:
+        """The run that a receiver sums up: with the checksum, where that leaves 0."""
+        if not self.cancels:
+            return run
+        place = replace(self.at.place, offset=self.at.place.offset + 1)
+        return replace(run, last=replace(self.at, place=place))
+
     def differs(self, payload: str) -> str:
         """The condition that `content` has another number than `due`, or other bytes or bits."""
+        if self.cancels:
+            return "due != 0U"
         if self.is_bits:
             found = self.numbers.bits(self.part.type, "content", self.at.of(payload))
             return f"{found} != {taken_bits(self.part, 'due')}"

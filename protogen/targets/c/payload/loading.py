@@ -86,7 +86,9 @@ class Load(PlacedWalk):
 
     def part(self, step: PartStep, place: str) -> None:
         """A number of the frame."""
-        self.lines.add(f"{place} = {parameter_for(self.helpers.member(step.name))};")
+        name = parameter_for(self.helpers.member(step.name))
+        self._locals.add(name)
+        self.lines.add(f"{place} = {name};")
 
     def optional(self, step: OptionalStep, place: str) -> None:
         """A step that may be there; where the payload's end says it, a member keeps that."""
@@ -260,9 +262,11 @@ class Load(PlacedWalk):
             return
         self.settle()
         self.reads_size = True
-        self.lines.add(f"{member} = 0U;")
-        with self.lines.block("while (at < payload + size)"):
-            index = member if step.element.holds_values else "0"
+        end, count = self.variable("stop"), self.variable("count")
+        self.lines.add(f"const uint8_t *const {end} = payload + size;", f"size_t {count} = 0U;")
+        with self.lines.block(f"while (at < {end})"):
+            index = count if step.element.holds_values else "0"
             self.step(step.element, f"{place}[{index}]")
             self.settle()
-            self.lines.add(f"{member}++;")
+            self.lines.add(f"{count}++;")
+        self.lines.add(f"{member} = ({counting_type(step.count.greatest)}){count};")
