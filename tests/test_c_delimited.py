@@ -94,11 +94,28 @@ messages:
   state: {id: 1, from: station, fields: {mode: {type: uint8, values: {off: 1}, closed: true}}}
   calm: {id: 2, from: station}
 """
+VERSION = """
+protocol: version_between
+endpoints: {station: Weather station}
+byte_order: big
+frame:
+  start: {literal: 0x7E}
+  version: {literal: 5}
+  payload: {}
+  check: {type: uint8, algorithm: sum-8, covers: [version, payload]}
+  end: {literal: 0x7C}
+transparency:
+  covers: version..check
+  escape: {byte: 0x7D, of: [0x7C, 0x7D, 0x7E], transform: invert}
+messages:
+  wind: {from: station, fields: {speed: uint16}}
+"""
 SCHEMAS = {
     "long_cobs": LONG_COBS,
     "shared_start": SHARED_START,
     "digits_between": DIGITS,
     "newer_between_zeros": NEWER,
+    "version_between": VERSION,
 }
 DIGITS_BEHIND_STARTS = """
 protocol: digits_behind_starts
@@ -115,7 +132,25 @@ messages:
   text: {id: 1, from: station, fields: {data: {type: bytes, size: {fill: true, max: 120}}}}
   wind: {id: 2, from: station, fields: {speed: uint16}}
 """
+ONE_SIZE = """
+protocol: one_size
+endpoints: {station: Weather station}
+byte_order: big
+frame:
+  start: {literal: 0x7E}
+  version: {literal: 5}
+  length: {type: uint8, counts: payload}
+  gain: {type: uint8, default: 2}
+  id: {type: uint8, id: true}
+  payload: {}
+  check: {type: uint8, algorithm: sum-8, covers: version..payload}
+transparency: {covers: version..check, escape: {byte: 0x7D, of: [0x7D, 0x7E], transform: invert}}
+messages:
+  wind: {id: 1, from: station, fields: {speed: uint16}}
+  rain: {id: 2, from: station, fields: {fallen: uint16}}
+"""
 FLAT = {
+    "one_size": ONE_SIZE,
     "newer_behind_starts": NEWER_BEHIND_STARTS,
     "digits_behind_starts": DIGITS_BEHIND_STARTS,
 }
@@ -131,7 +166,7 @@ def paths(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     return found
 
 
-@pytest.mark.parametrize("name", [*SCHEMAS, "digits_behind_starts"])
+@pytest.mark.parametrize("name", [*SCHEMAS, "digits_behind_starts", "one_size"])
 def test_streams_have_the_messages_that_python_finds(name: str, paths: dict[str, Path]) -> None:
     path = paths[name]
     [decoder] = unit_of(protocol_of(path), MESSAGES).framing.decoders
@@ -185,6 +220,39 @@ def test_what_is_too_short_to_be_cut_is_no_message(paths: dict[str, Path], name:
     steps: list[Step] = [(kind, data) for data in frames for kind in KINDS]
     found = python_events(module_at(path), "station", steps)
     assert [event.kind for events in found for event in events] == ["invalid"] * 2 + ["message"] * 4
+    check_events(process_of(path, MESSAGES), module_at(path), "station", steps)
+
+
+def test_what_stands_in_the_head_of_no_frame_is_no_message(paths: dict[str, Path]) -> None:
+    """A frame of the schema, then the same with another byte in its head, and the checksum of that.
+
+    Behind each is one of which no byte is wrong.
+    """
+    between = b"\x7e\x05\x01\x02\x08\x7c"
+    others = (b"\x7e\x06\x01\x02\x09\x7c", b"\x7e\x04\x01\x02\x07\x7c")
+    check_heads(paths["version_between"], between, others)
+    one_size = b"\x7e\x05\x02\x02\x01\x01\x02\x0d"
+    check_heads(
+        paths["one_size"],
+        one_size,
+        (
+            b"\x7e\x04\x02\x02\x01\x01\x02\x0c",
+            b"\x7e\x05\x02\x02\x03\x01\x02\x0f",
+            b"\x7e\x05\x03\x02\x01\x01\x02\x03\x11",
+            b"\x7e\x05\x03\x02\x01\x01\x02\x0e",
+            b"\x7e\x05\x01\x02\x01\x01\x0b",
+            b"\x7e\x05\x00\x02\x01\x08",
+        ),
+    )
+
+
+def check_heads(path: Path, frame: bytes, others: tuple[bytes, ...]) -> None:
+    steps: list[Step] = []
+    for kind in KINDS:
+        steps += [(kind, data) for other in others for data in (frame, other, other + frame)]
+    steps.append(("flush",))
+    found = python_events(module_at(path), "station", steps)
+    assert sum(event.kind == "message" for events in found for event in events) == 4 * len(others)
     check_events(process_of(path, MESSAGES), module_at(path), "station", steps)
 
 

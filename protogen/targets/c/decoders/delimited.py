@@ -236,16 +236,6 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
 
     # --- messages ---------------------------------------------------------------------------------
 
-    @property
-    def always_known(self) -> bool:
-        """False: any bytes may stand between two ends."""
-        return False
-
-    @property
-    def tells_by_key(self) -> bool:
-        """True if there is an identity."""
-        return self.identified
-
     def size_is_certain(self, group: GroupView) -> bool:
         """True if a payload of that identity has a size that its message can have."""
         if self.only_size is not None:
@@ -255,30 +245,20 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
             return False
         return message.takes_any_size or message.check_sees_size
 
+    @property
+    def judges_last(self) -> bool:
+        """True: what an end ends is judged by it."""
+        return True
+
     def is_other_length(self, length: str) -> str:
         """The condition that the payload has another size than the length says, or may say."""
+        if self.only_size is not None:
+            return super().is_other_length(length)
         assert self.length is not None
-        base, size = self.length.base, self.only_size
-        if size is not None:
-            return f"{length} != {base + size}U"
+        base = self.length.base
         found = self.length.beyond(length, self.greatest_payload)
         due = f"({self.length.wrapping})(payload + {base}U)" if base else "payload"
         return " || ".join([*found, f"{length} != {due}"])
-
-    @property
-    def compares_size(self) -> bool:
-        """True if a length in the head has to say how large the payload turned out to be."""
-        return self.only_size is None and any(number.is_length for number in self.head_numbers)
-
-    @property
-    def checks_parts(self) -> bool:
-        """True if something of the head is looked at behind the start, besides the identity."""
-        literals = any(literal.index >= self.plan.start_size for literal in self.head_literals)
-        numbers = (
-            n.seven_bit or n.fault or n.bounds or n.contradicts or n.is_length
-            for n in self.head_numbers
-        )
-        return literals or any(numbers)
 
 
 def is_delimited(frame: ReceivedFrame) -> bool:

@@ -9,7 +9,7 @@ from protogen.targets.c.decoders.groups import GroupView
 from protogen.targets.c.decoders.received import ReceivedFrame
 from protogen.targets.c.frame.checksums import ChecksumView, CoveredRun
 from protogen.targets.c.frame.expressions import byte
-from protogen.targets.c.frame.numbers import NumberView
+from protogen.targets.c.frame.numbers import LiteralView, NumberView
 from protogen.targets.c.frame.part_numbers import fills_bytes
 from protogen.targets.c.frame.stuffing import Branch, Node, StuffingKind
 
@@ -218,9 +218,45 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
 
     @property
     def checks_head(self) -> bool:
-        """True if something behind the start, in front of the payload, is looked at."""
+        """True if something behind the start, in front of the payload, is looked at as it comes."""
+        if self.judges_last:
+            return False
         indices = [item.index for item in self.head_literals] + [n.last for n in self.head_numbers]
         return any(index >= self.first_head for index in indices)
+
+    @property
+    def judges_last(self) -> bool:
+        """True if the head is looked at when all of a frame is there, and not as it comes.
+
+        Where all frames have one size nothing else of the head is needed before, and no byte costs
+        a look at which one it is. A start that shows ends what is none of them.
+        """
+        return self.only_size is not None and not self.identity_is_start
+
+    def is_other_length(self, length: str) -> str:
+        """The condition that the payload has another size than the length says."""
+        assert self.length is not None and self.only_size is not None
+        return f"{length} != {self.length.base + self.only_size}U"
+
+    @property
+    def compares_size(self) -> bool:
+        """True if a length in the head has to say how large the payload turned out to be."""
+        return self.only_size is None and any(number.is_length for number in self.head_numbers)
+
+    @property
+    def checks_parts(self) -> bool:
+        """True if something of the head is looked at behind the start, besides the identity."""
+        numbers = (
+            n.seven_bit or n.fault or n.bounds or n.contradicts or n.is_length
+            for n in self.head_numbers
+        )
+        return bool(self.literals_behind_start) or any(numbers)
+
+    @property
+    def literals_behind_start(self) -> tuple[LiteralView, ...]:
+        """Fixed bytes in front of the payload that are not the start's."""
+        first = self.plan.start_size - self.plan.skipped
+        return tuple(literal for literal in self.head_literals if literal.index >= first)
 
     def declares(self, number: NumberView) -> bool:
         """True if the case of a number has variables."""
@@ -232,12 +268,14 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
     def always_known(self) -> bool:
         """True if every frame that gets to its end is a message."""
         messages = [message for group in self.groups for message in group.messages]
-        return self.known_by_identity and not any(message.checks for message in messages)
+        is_known = self.known_by_identity and not self.judges_last
+        return is_known and not any(message.checks for message in messages)
 
     @property
     def tells_by_key(self) -> bool:
         """True if the identity has to be looked at again."""
-        return self.identified and not (self.known_by_identity and len(self.groups) == 1)
+        is_known = self.known_by_identity and not self.judges_last
+        return self.identified and not (is_known and len(self.groups) == 1)
 
     @property
     def is_told_at_once(self) -> bool:

@@ -158,7 +158,7 @@ class FrameView(msgspec.Struct, frozen=True, dict=True):
     def byte_arguments(self) -> tuple[str, ...]:
         """Parameters of the function that makes the frame of a message that is a byte.
 
-        The byte comes first, as the message does in the functions that call it: then nothing is moved.
+        The byte comes first, as the message does in its callers: then nothing is moved.
         """
         others = (f"{item.type} {item.name}" for item in self._parameters)
         return ("uint8_t byte", "uint8_t *frame", "size_t capacity", *others)
