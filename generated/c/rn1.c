@@ -52,24 +52,23 @@ static int8_t rn1_load_s7(const uint8_t *at) {
     return (int8_t)extended;
 }
 
-RN1_INLINE void rn1_store_u14le(uint8_t *at, uint16_t value) {
-    at[0] = (uint8_t)(value & 0x7FU);
-    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
-}
-
-static uint16_t rn1_load_u14le(const uint8_t *at) {
-    return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
+RN1_INLINE void rn1_store_s14le(uint8_t *at, uint16_t value) {
+    const uint16_t own = (uint16_t)(value & 0x3FFFU);
+    at[1] = (uint8_t)((uint16_t)(own << 1) >> 8);
+    at[0] = (uint8_t)(own & 0x7FU);
 }
 
 static int16_t rn1_load_s14le(const uint8_t *at) {
-    const uint16_t extended = (uint16_t)((rn1_load_u14le(at) ^ 0x2000U) - 0x2000U);
-    return (int16_t)extended;
+    const int8_t top = (int8_t)(uint8_t)(at[1] << 1);
+    const int16_t upper = (int16_t)((int16_t)top * 64);
+    const uint16_t joined = (uint16_t)((uint16_t)upper | at[0]);
+    return (int16_t)joined;
 }
 
 static void rn1_store_u16le(uint8_t *at, uint16_t value) {
-    at[0] = (uint8_t)(value & 0x7FU);
-    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
     at[2] = (uint8_t)(value >> 14);
+    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
+    at[0] = (uint8_t)(value & 0x7FU);
 }
 
 static void rn1_copy(void *to, const void *from, size_t size) {
@@ -91,6 +90,15 @@ static uint16_t rn1_all_bits_u16(const uint16_t *numbers, size_t count) {
         all |= numbers[i];
     }
     return all;
+}
+
+RN1_INLINE void rn1_store_u14le(uint8_t *at, uint16_t value) {
+    at[1] = (uint8_t)((uint16_t)(value << 1) >> 8);
+    at[0] = (uint8_t)(value & 0x7FU);
+}
+
+static uint16_t rn1_load_u14le(const uint8_t *at) {
+    return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
 }
 
 static void rn1_load_u14le_run(uint16_t *numbers, const uint8_t *at, size_t count) {
@@ -170,8 +178,8 @@ enum rn1_result rn1_move_manual_decode(struct rn1_move_manual *message, const ui
 
 RN1_INLINE enum rn1_result rn1_move_relative_twostep_validate(
     const struct rn1_move_relative_twostep *message) {
-    if (((uint16_t)((uint16_t)message->angle + 0x2000U) |
-         (uint16_t)((uint16_t)message->forward + 0x2000U)) > 0x3FFFU) {
+    if (((uint8_t)(((uint16_t)message->angle >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->forward >> 8) + 0x20U)) > 0x3FU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -179,8 +187,8 @@ RN1_INLINE enum rn1_result rn1_move_relative_twostep_validate(
 
 RN1_INLINE void rn1_move_relative_twostep_store(const struct rn1_move_relative_twostep *message,
                                                 uint8_t *payload) {
-    rn1_store_u14le(payload, (uint16_t)message->angle);
-    rn1_store_u14le(payload + 2, (uint16_t)message->forward);
+    rn1_store_s14le(payload, (uint16_t)message->angle);
+    rn1_store_s14le(payload + 2, (uint16_t)message->forward);
 }
 
 enum rn1_result rn1_move_relative_twostep_encode(const struct rn1_move_relative_twostep *message,
@@ -229,8 +237,8 @@ enum rn1_result rn1_move_relative_twostep_decode(struct rn1_move_relative_twoste
 
 RN1_INLINE enum rn1_result rn1_move_relative_arc_validate(
     const struct rn1_move_relative_arc *message) {
-    if (((uint16_t)((uint16_t)message->angle + 0x2000U) |
-         (uint16_t)((uint16_t)message->forward + 0x2000U)) > 0x3FFFU) {
+    if (((uint8_t)(((uint16_t)message->angle >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->forward >> 8) + 0x20U)) > 0x3FU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -238,8 +246,8 @@ RN1_INLINE enum rn1_result rn1_move_relative_arc_validate(
 
 RN1_INLINE void rn1_move_relative_arc_store(const struct rn1_move_relative_arc *message,
                                             uint8_t *payload) {
-    rn1_store_u14le(payload, (uint16_t)message->angle);
-    rn1_store_u14le(payload + 2, (uint16_t)message->forward);
+    rn1_store_s14le(payload, (uint16_t)message->angle);
+    rn1_store_s14le(payload + 2, (uint16_t)message->forward);
 }
 
 enum rn1_result rn1_move_relative_arc_encode(const struct rn1_move_relative_arc *message,
@@ -480,9 +488,9 @@ RN1_INLINE enum rn1_result rn1_gyro_validate(const struct rn1_gyro *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if (((uint16_t)((uint16_t)message->int_x + 0x2000U) |
-         (uint16_t)((uint16_t)message->int_y + 0x2000U) |
-         (uint16_t)((uint16_t)message->int_z + 0x2000U)) > 0x3FFFU) {
+    if (((uint8_t)(((uint16_t)message->int_x >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->int_y >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->int_z >> 8) + 0x20U)) > 0x3FU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -490,9 +498,9 @@ RN1_INLINE enum rn1_result rn1_gyro_validate(const struct rn1_gyro *message) {
 
 RN1_INLINE void rn1_gyro_store(const struct rn1_gyro *message, uint8_t *payload) {
     payload[0] = message->status;
-    rn1_store_u14le(payload + 1, (uint16_t)message->int_x);
-    rn1_store_u14le(payload + 3, (uint16_t)message->int_y);
-    rn1_store_u14le(payload + 5, (uint16_t)message->int_z);
+    rn1_store_s14le(payload + 1, (uint16_t)message->int_x);
+    rn1_store_s14le(payload + 3, (uint16_t)message->int_y);
+    rn1_store_s14le(payload + 5, (uint16_t)message->int_z);
 }
 
 enum rn1_result rn1_gyro_encode(const struct rn1_gyro *message, uint8_t *payload, size_t capacity,
@@ -542,9 +550,9 @@ RN1_INLINE enum rn1_result rn1_xcel_validate(const struct rn1_xcel *message) {
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if (((uint16_t)((uint16_t)message->int_x + 0x2000U) |
-         (uint16_t)((uint16_t)message->int_y + 0x2000U) |
-         (uint16_t)((uint16_t)message->int_z + 0x2000U)) > 0x3FFFU) {
+    if (((uint8_t)(((uint16_t)message->int_x >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->int_y >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->int_z >> 8) + 0x20U)) > 0x3FU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -552,9 +560,9 @@ RN1_INLINE enum rn1_result rn1_xcel_validate(const struct rn1_xcel *message) {
 
 RN1_INLINE void rn1_xcel_store(const struct rn1_xcel *message, uint8_t *payload) {
     payload[0] = message->status;
-    rn1_store_u14le(payload + 1, (uint16_t)message->int_x);
-    rn1_store_u14le(payload + 3, (uint16_t)message->int_y);
-    rn1_store_u14le(payload + 5, (uint16_t)message->int_z);
+    rn1_store_s14le(payload + 1, (uint16_t)message->int_x);
+    rn1_store_s14le(payload + 3, (uint16_t)message->int_y);
+    rn1_store_s14le(payload + 5, (uint16_t)message->int_z);
 }
 
 enum rn1_result rn1_xcel_encode(const struct rn1_xcel *message, uint8_t *payload, size_t capacity,
@@ -604,9 +612,9 @@ RN1_INLINE enum rn1_result rn1_compass_validate(const struct rn1_compass *messag
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if (((uint16_t)((uint16_t)message->avg_x + 0x2000U) |
-         (uint16_t)((uint16_t)message->avg_y + 0x2000U) |
-         (uint16_t)((uint16_t)message->avg_z + 0x2000U)) > 0x3FFFU) {
+    if (((uint8_t)(((uint16_t)message->avg_x >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->avg_y >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->avg_z >> 8) + 0x20U)) > 0x3FU) {
         return RN1_ERROR_RANGE;
     }
     return RN1_OK;
@@ -614,9 +622,9 @@ RN1_INLINE enum rn1_result rn1_compass_validate(const struct rn1_compass *messag
 
 RN1_INLINE void rn1_compass_store(const struct rn1_compass *message, uint8_t *payload) {
     payload[0] = message->status;
-    rn1_store_u14le(payload + 1, (uint16_t)message->avg_x);
-    rn1_store_u14le(payload + 3, (uint16_t)message->avg_y);
-    rn1_store_u14le(payload + 5, (uint16_t)message->avg_z);
+    rn1_store_s14le(payload + 1, (uint16_t)message->avg_x);
+    rn1_store_s14le(payload + 3, (uint16_t)message->avg_y);
+    rn1_store_s14le(payload + 5, (uint16_t)message->avg_z);
 }
 
 enum rn1_result rn1_compass_encode(const struct rn1_compass *message, uint8_t *payload,
@@ -667,8 +675,8 @@ RN1_INLINE enum rn1_result rn1_optflow_validate(const struct rn1_optflow *messag
     if (message->status > 127U) {
         return RN1_ERROR_RANGE;
     }
-    if (((uint16_t)((uint16_t)message->dx + 0x2000U) |
-         (uint16_t)((uint16_t)message->dy + 0x2000U)) > 0x3FFFU) {
+    if (((uint8_t)(((uint16_t)message->dx >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->dy >> 8) + 0x20U)) > 0x3FU) {
         return RN1_ERROR_RANGE;
     }
     if (message->q > 127U) {
@@ -679,8 +687,8 @@ RN1_INLINE enum rn1_result rn1_optflow_validate(const struct rn1_optflow *messag
 
 RN1_INLINE void rn1_optflow_store(const struct rn1_optflow *message, uint8_t *payload) {
     payload[0] = message->status;
-    rn1_store_u14le(payload + 1, (uint16_t)message->dx);
-    rn1_store_u14le(payload + 3, (uint16_t)message->dy);
+    rn1_store_s14le(payload + 1, (uint16_t)message->dx);
+    rn1_store_s14le(payload + 3, (uint16_t)message->dy);
     payload[5] = message->q;
 }
 
@@ -860,7 +868,7 @@ RN1_INLINE enum rn1_result rn1_facing_validate(const struct rn1_facing *message)
 RN1_INLINE void rn1_facing_store(const struct rn1_facing *message, uint8_t *payload) {
     payload[0] = message->status;
     rn1_store_u14le(payload + 1, message->heading);
-    rn1_store_u14le(payload + 3, (uint16_t)message->speed);
+    rn1_store_s14le(payload + 3, (uint16_t)message->speed);
 }
 
 enum rn1_result rn1_facing_encode(const struct rn1_facing *message, uint8_t *payload,
@@ -1048,9 +1056,10 @@ static void rn1_brain_send_head(rn1_put put, void *user, size_t payload, uint8_t
     rn1_write(put, user, (uint8_t)start);
 }
 
-RN1_INLINE void rn1_write_u14le(rn1_put put, void *user, uint16_t value) {
-    rn1_write(put, user, (uint8_t)(value & 0x7FU));
-    rn1_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU));
+RN1_INLINE void rn1_write_s14le(rn1_put put, void *user, uint16_t value) {
+    const uint16_t own = (uint16_t)(value & 0x3FFFU);
+    rn1_write(put, user, (uint8_t)(own & 0x7FU));
+    rn1_write(put, user, (uint8_t)((uint16_t)(own << 1) >> 8));
 }
 
 static void rn1_write_u16le(rn1_put put, void *user, uint16_t value) {
@@ -1066,6 +1075,11 @@ static void rn1_write_bytes(rn1_put put, void *user, const void *from, size_t si
     }
 }
 
+RN1_INLINE void rn1_write_u14le(rn1_put put, void *user, uint16_t value) {
+    rn1_write(put, user, (uint8_t)(value & 0x7FU));
+    rn1_write(put, user, (uint8_t)((uint16_t)(value << 1) >> 8));
+}
+
 RN1_INLINE void rn1_move_manual_put(const struct rn1_move_manual *message,
                                     rn1_put put, void *user) {
     rn1_write(put, user, (uint8_t)((uint8_t)message->speed & 0x7FU));
@@ -1074,14 +1088,14 @@ RN1_INLINE void rn1_move_manual_put(const struct rn1_move_manual *message,
 
 RN1_INLINE void rn1_move_relative_twostep_put(const struct rn1_move_relative_twostep *message,
                                               rn1_put put, void *user) {
-    rn1_write_u14le(put, user, (uint16_t)message->angle);
-    rn1_write_u14le(put, user, (uint16_t)message->forward);
+    rn1_write_s14le(put, user, (uint16_t)message->angle);
+    rn1_write_s14le(put, user, (uint16_t)message->forward);
 }
 
 RN1_INLINE void rn1_move_relative_arc_put(const struct rn1_move_relative_arc *message,
                                           rn1_put put, void *user) {
-    rn1_write_u14le(put, user, (uint16_t)message->angle);
-    rn1_write_u14le(put, user, (uint16_t)message->forward);
+    rn1_write_s14le(put, user, (uint16_t)message->angle);
+    rn1_write_s14le(put, user, (uint16_t)message->forward);
 }
 
 RN1_INLINE void rn1_maintenance_put(const struct rn1_maintenance *message,
@@ -1108,29 +1122,29 @@ RN1_INLINE void rn1_maintenance_put(const struct rn1_maintenance *message,
 
 RN1_INLINE void rn1_gyro_put(const struct rn1_gyro *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
-    rn1_write_u14le(put, user, (uint16_t)message->int_x);
-    rn1_write_u14le(put, user, (uint16_t)message->int_y);
-    rn1_write_u14le(put, user, (uint16_t)message->int_z);
+    rn1_write_s14le(put, user, (uint16_t)message->int_x);
+    rn1_write_s14le(put, user, (uint16_t)message->int_y);
+    rn1_write_s14le(put, user, (uint16_t)message->int_z);
 }
 
 RN1_INLINE void rn1_xcel_put(const struct rn1_xcel *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
-    rn1_write_u14le(put, user, (uint16_t)message->int_x);
-    rn1_write_u14le(put, user, (uint16_t)message->int_y);
-    rn1_write_u14le(put, user, (uint16_t)message->int_z);
+    rn1_write_s14le(put, user, (uint16_t)message->int_x);
+    rn1_write_s14le(put, user, (uint16_t)message->int_y);
+    rn1_write_s14le(put, user, (uint16_t)message->int_z);
 }
 
 RN1_INLINE void rn1_compass_put(const struct rn1_compass *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
-    rn1_write_u14le(put, user, (uint16_t)message->avg_x);
-    rn1_write_u14le(put, user, (uint16_t)message->avg_y);
-    rn1_write_u14le(put, user, (uint16_t)message->avg_z);
+    rn1_write_s14le(put, user, (uint16_t)message->avg_x);
+    rn1_write_s14le(put, user, (uint16_t)message->avg_y);
+    rn1_write_s14le(put, user, (uint16_t)message->avg_z);
 }
 
 RN1_INLINE void rn1_optflow_put(const struct rn1_optflow *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
-    rn1_write_u14le(put, user, (uint16_t)message->dx);
-    rn1_write_u14le(put, user, (uint16_t)message->dy);
+    rn1_write_s14le(put, user, (uint16_t)message->dx);
+    rn1_write_s14le(put, user, (uint16_t)message->dy);
     rn1_write(put, user, message->q);
 }
 
@@ -1151,7 +1165,7 @@ RN1_INLINE void rn1_sonar_put(const struct rn1_sonar *message, rn1_put put, void
 RN1_INLINE void rn1_facing_put(const struct rn1_facing *message, rn1_put put, void *user) {
     rn1_write(put, user, message->status);
     rn1_write_u14le(put, user, message->heading);
-    rn1_write_u14le(put, user, (uint16_t)message->speed);
+    rn1_write_s14le(put, user, (uint16_t)message->speed);
 }
 
 size_t rn1_move_manual_frame(const struct rn1_move_manual *message, uint8_t *frame,

@@ -459,7 +459,7 @@ static inline bool rn1_lidar_distances_set_at(uint8_t *payload, size_t index, ui
     }
     uint8_t *at = payload + 1U + 2U * index;
     at[0] = (uint8_t)(value & 0x7FU);
-    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
+    at[1] = (uint8_t)((uint16_t)(value << 1) >> 8);
     return true;
 }
 

@@ -52,18 +52,17 @@ static int8_t rn1_firmware_load_s7(const uint8_t *at) {
     return (int8_t)extended;
 }
 
-RN1_FIRMWARE_INLINE void rn1_firmware_store_u14be(uint8_t *at, uint16_t value) {
-    at[0] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
-    at[1] = (uint8_t)(value & 0x7FU);
-}
-
-static uint16_t rn1_firmware_load_u14be(const uint8_t *at) {
-    return (uint16_t)(at[1] | ((uint16_t)at[0] << 7));
+RN1_FIRMWARE_INLINE void rn1_firmware_store_s14be(uint8_t *at, uint16_t value) {
+    const uint16_t own = (uint16_t)(value & 0x3FFFU);
+    at[0] = (uint8_t)((uint16_t)(own << 1) >> 8);
+    at[1] = (uint8_t)(own & 0x7FU);
 }
 
 static int16_t rn1_firmware_load_s14be(const uint8_t *at) {
-    const uint16_t extended = (uint16_t)((rn1_firmware_load_u14be(at) ^ 0x2000U) - 0x2000U);
-    return (int16_t)extended;
+    const int8_t top = (int8_t)(uint8_t)(at[0] << 1);
+    const int16_t upper = (int16_t)((int16_t)top * 64);
+    const uint16_t joined = (uint16_t)((uint16_t)upper | at[1]);
+    return (int16_t)joined;
 }
 
 static void rn1_firmware_copy(void *to, const void *from, size_t size) {
@@ -75,18 +74,17 @@ static void rn1_firmware_copy(void *to, const void *from, size_t size) {
     }
 }
 
-RN1_FIRMWARE_INLINE void rn1_firmware_store_u14le(uint8_t *at, uint16_t value) {
-    at[0] = (uint8_t)(value & 0x7FU);
-    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
-}
-
-static uint16_t rn1_firmware_load_u14le(const uint8_t *at) {
-    return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
+RN1_FIRMWARE_INLINE void rn1_firmware_store_s14le(uint8_t *at, uint16_t value) {
+    const uint16_t own = (uint16_t)(value & 0x3FFFU);
+    at[1] = (uint8_t)((uint16_t)(own << 1) >> 8);
+    at[0] = (uint8_t)(own & 0x7FU);
 }
 
 static int16_t rn1_firmware_load_s14le(const uint8_t *at) {
-    const uint16_t extended = (uint16_t)((rn1_firmware_load_u14le(at) ^ 0x2000U) - 0x2000U);
-    return (int16_t)extended;
+    const int8_t top = (int8_t)(uint8_t)(at[1] << 1);
+    const int16_t upper = (int16_t)((int16_t)top * 64);
+    const uint16_t joined = (uint16_t)((uint16_t)upper | at[0]);
+    return (int16_t)joined;
 }
 
 static uint16_t rn1_firmware_all_bits_u16(const uint16_t *numbers, size_t count) {
@@ -95,6 +93,15 @@ static uint16_t rn1_firmware_all_bits_u16(const uint16_t *numbers, size_t count)
         all |= numbers[i];
     }
     return all;
+}
+
+RN1_FIRMWARE_INLINE void rn1_firmware_store_u14le(uint8_t *at, uint16_t value) {
+    at[1] = (uint8_t)((uint16_t)(value << 1) >> 8);
+    at[0] = (uint8_t)(value & 0x7FU);
+}
+
+static uint16_t rn1_firmware_load_u14le(const uint8_t *at) {
+    return (uint16_t)(at[0] | ((uint16_t)at[1] << 7));
 }
 
 static void rn1_firmware_load_u14le_run(uint16_t *numbers, const uint8_t *at, size_t count) {
@@ -115,12 +122,22 @@ static void rn1_firmware_load_u14le_run(uint16_t *numbers, const uint8_t *at, si
     }
 }
 
-static void rn1_firmware_store_u35be(uint8_t *at, uint64_t value) {
-    at[0] = (uint8_t)((value >> 28) & 0x7FU);
-    at[1] = (uint8_t)((value >> 21) & 0x7FU);
-    at[2] = (uint8_t)((value >> 14) & 0x7FU);
-    at[3] = (uint8_t)((value >> 7) & 0x7FU);
-    at[4] = (uint8_t)(value & 0x7FU);
+RN1_FIRMWARE_INLINE void rn1_firmware_store_u14be(uint8_t *at, uint16_t value) {
+    at[0] = (uint8_t)((uint16_t)(value << 1) >> 8);
+    at[1] = (uint8_t)(value & 0x7FU);
+}
+
+static uint16_t rn1_firmware_load_u14be(const uint8_t *at) {
+    return (uint16_t)(at[1] | ((uint16_t)at[0] << 7));
+}
+
+static void rn1_firmware_store_s35be(uint8_t *at, uint64_t value) {
+    const uint64_t own = (uint64_t)(value & 0x7FFFFFFFFULL);
+    at[0] = (uint8_t)(own >> 28);
+    at[1] = (uint8_t)((own >> 21) & 0x7FU);
+    at[2] = (uint8_t)((own >> 14) & 0x7FU);
+    at[3] = (uint8_t)((own >> 7) & 0x7FU);
+    at[4] = (uint8_t)(own & 0x7FU);
 }
 
 static uint64_t rn1_firmware_load_u35be(const uint8_t *at) {
@@ -200,8 +217,8 @@ enum rn1_firmware_result rn1_firmware_move_manual_decode(struct rn1_firmware_mov
 
 RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_move_relative_twostep_validate(
     const struct rn1_firmware_move_relative_twostep *message) {
-    if (((uint16_t)((uint16_t)message->angle + 0x2000U) |
-         (uint16_t)((uint16_t)message->forward + 0x2000U)) > 0x3FFFU) {
+    if (((uint8_t)(((uint16_t)message->angle >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->forward >> 8) + 0x20U)) > 0x3FU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -209,8 +226,8 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_move_relative_twostep_
 
 RN1_FIRMWARE_INLINE void rn1_firmware_move_relative_twostep_store(
     const struct rn1_firmware_move_relative_twostep *message, uint8_t *payload) {
-    rn1_firmware_store_u14be(payload, (uint16_t)message->angle);
-    rn1_firmware_store_u14be(payload + 2, (uint16_t)message->forward);
+    rn1_firmware_store_s14be(payload, (uint16_t)message->angle);
+    rn1_firmware_store_s14be(payload + 2, (uint16_t)message->forward);
 }
 
 enum rn1_firmware_result rn1_firmware_move_relative_twostep_encode(
@@ -541,9 +558,9 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_gyro_validate(
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if (((uint16_t)((uint16_t)message->int_x + 0x2000U) |
-         (uint16_t)((uint16_t)message->int_y + 0x2000U) |
-         (uint16_t)((uint16_t)message->int_z + 0x2000U)) > 0x3FFFU) {
+    if (((uint8_t)(((uint16_t)message->int_x >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->int_y >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->int_z >> 8) + 0x20U)) > 0x3FU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -552,9 +569,9 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_gyro_validate(
 RN1_FIRMWARE_INLINE void rn1_firmware_gyro_store(const struct rn1_firmware_gyro *message,
                                                  uint8_t *payload) {
     payload[0] = message->status;
-    rn1_firmware_store_u14le(payload + 1, (uint16_t)message->int_x);
-    rn1_firmware_store_u14le(payload + 3, (uint16_t)message->int_y);
-    rn1_firmware_store_u14le(payload + 5, (uint16_t)message->int_z);
+    rn1_firmware_store_s14le(payload + 1, (uint16_t)message->int_x);
+    rn1_firmware_store_s14le(payload + 3, (uint16_t)message->int_y);
+    rn1_firmware_store_s14le(payload + 5, (uint16_t)message->int_z);
 }
 
 enum rn1_firmware_result rn1_firmware_gyro_encode(const struct rn1_firmware_gyro *message,
@@ -607,9 +624,9 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_xcel_validate(
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if (((uint16_t)((uint16_t)message->int_x + 0x2000U) |
-         (uint16_t)((uint16_t)message->int_y + 0x2000U) |
-         (uint16_t)((uint16_t)message->int_z + 0x2000U)) > 0x3FFFU) {
+    if (((uint8_t)(((uint16_t)message->int_x >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->int_y >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->int_z >> 8) + 0x20U)) > 0x3FU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -618,9 +635,9 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_xcel_validate(
 RN1_FIRMWARE_INLINE void rn1_firmware_xcel_store(const struct rn1_firmware_xcel *message,
                                                  uint8_t *payload) {
     payload[0] = message->status;
-    rn1_firmware_store_u14le(payload + 1, (uint16_t)message->int_x);
-    rn1_firmware_store_u14le(payload + 3, (uint16_t)message->int_y);
-    rn1_firmware_store_u14le(payload + 5, (uint16_t)message->int_z);
+    rn1_firmware_store_s14le(payload + 1, (uint16_t)message->int_x);
+    rn1_firmware_store_s14le(payload + 3, (uint16_t)message->int_y);
+    rn1_firmware_store_s14le(payload + 5, (uint16_t)message->int_z);
 }
 
 enum rn1_firmware_result rn1_firmware_xcel_encode(const struct rn1_firmware_xcel *message,
@@ -673,9 +690,9 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_compass_validate(
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if (((uint16_t)((uint16_t)message->avg_x + 0x2000U) |
-         (uint16_t)((uint16_t)message->avg_y + 0x2000U) |
-         (uint16_t)((uint16_t)message->avg_z + 0x2000U)) > 0x3FFFU) {
+    if (((uint8_t)(((uint16_t)message->avg_x >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->avg_y >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->avg_z >> 8) + 0x20U)) > 0x3FU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -684,9 +701,9 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_compass_validate(
 RN1_FIRMWARE_INLINE void rn1_firmware_compass_store(const struct rn1_firmware_compass *message,
                                                     uint8_t *payload) {
     payload[0] = message->status;
-    rn1_firmware_store_u14le(payload + 1, (uint16_t)message->avg_x);
-    rn1_firmware_store_u14le(payload + 3, (uint16_t)message->avg_y);
-    rn1_firmware_store_u14le(payload + 5, (uint16_t)message->avg_z);
+    rn1_firmware_store_s14le(payload + 1, (uint16_t)message->avg_x);
+    rn1_firmware_store_s14le(payload + 3, (uint16_t)message->avg_y);
+    rn1_firmware_store_s14le(payload + 5, (uint16_t)message->avg_z);
 }
 
 enum rn1_firmware_result rn1_firmware_compass_encode(const struct rn1_firmware_compass *message,
@@ -866,8 +883,8 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_facing_validate(
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if (((uint16_t)((uint16_t)message->heading + 0x2000U) |
-         (uint16_t)((uint16_t)message->speed + 0x2000U)) > 0x3FFFU) {
+    if (((uint8_t)(((uint16_t)message->heading >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->speed >> 8) + 0x20U)) > 0x3FU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -876,8 +893,8 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_facing_validate(
 RN1_FIRMWARE_INLINE void rn1_firmware_facing_store(const struct rn1_firmware_facing *message,
                                                    uint8_t *payload) {
     payload[0] = message->status;
-    rn1_firmware_store_u14le(payload + 1, (uint16_t)message->heading);
-    rn1_firmware_store_u14le(payload + 3, (uint16_t)message->speed);
+    rn1_firmware_store_s14le(payload + 1, (uint16_t)message->heading);
+    rn1_firmware_store_s14le(payload + 3, (uint16_t)message->speed);
 }
 
 enum rn1_firmware_result rn1_firmware_facing_encode(const struct rn1_firmware_facing *message,
@@ -930,8 +947,8 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_optflow_integral_valid
     if (message->status > 127U) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
-    if (((uint16_t)((uint16_t)message->int_x + 0x2000U) |
-         (uint16_t)((uint16_t)message->int_y + 0x2000U)) > 0x3FFFU) {
+    if (((uint8_t)(((uint16_t)message->int_x >> 8) + 0x20U) |
+         (uint8_t)(((uint16_t)message->int_y >> 8) + 0x20U)) > 0x3FU) {
         return RN1_FIRMWARE_ERROR_RANGE;
     }
     return RN1_FIRMWARE_OK;
@@ -940,8 +957,8 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_optflow_integral_valid
 RN1_FIRMWARE_INLINE void rn1_firmware_optflow_integral_store(
     const struct rn1_firmware_optflow_integral *message, uint8_t *payload) {
     payload[0] = message->status;
-    rn1_firmware_store_u14be(payload + 1, (uint16_t)message->int_x);
-    rn1_firmware_store_u14be(payload + 3, (uint16_t)message->int_y);
+    rn1_firmware_store_s14be(payload + 1, (uint16_t)message->int_x);
+    rn1_firmware_store_s14be(payload + 3, (uint16_t)message->int_y);
 }
 
 enum rn1_firmware_result rn1_firmware_optflow_integral_encode(
@@ -1069,10 +1086,10 @@ RN1_FIRMWARE_INLINE enum rn1_firmware_result rn1_firmware_debug_numbers_validate
 
 RN1_FIRMWARE_INLINE void rn1_firmware_debug_numbers_store(
     const struct rn1_firmware_debug_numbers *message, uint8_t *payload) {
-    rn1_firmware_store_u35be(payload, (uint64_t)message->dbg1);
-    rn1_firmware_store_u35be(payload + 5, (uint64_t)message->dbg2);
-    rn1_firmware_store_u35be(payload + 10, (uint64_t)message->dbg3);
-    rn1_firmware_store_u35be(payload + 15, (uint64_t)message->dbg4);
+    rn1_firmware_store_s35be(payload, (uint64_t)message->dbg1);
+    rn1_firmware_store_s35be(payload + 5, (uint64_t)message->dbg2);
+    rn1_firmware_store_s35be(payload + 10, (uint64_t)message->dbg3);
+    rn1_firmware_store_s35be(payload + 15, (uint64_t)message->dbg4);
 }
 
 enum rn1_firmware_result rn1_firmware_debug_numbers_encode(
@@ -1268,10 +1285,11 @@ static void rn1_firmware_brain_send_head(rn1_firmware_put put, void *user, size_
     rn1_firmware_write(put, user, (uint8_t)start);
 }
 
-RN1_FIRMWARE_INLINE void rn1_firmware_write_u14be(rn1_firmware_put put, void *user,
+RN1_FIRMWARE_INLINE void rn1_firmware_write_s14be(rn1_firmware_put put, void *user,
                                                   uint16_t value) {
-    rn1_firmware_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU));
-    rn1_firmware_write(put, user, (uint8_t)(value & 0x7FU));
+    const uint16_t own = (uint16_t)(value & 0x3FFFU);
+    rn1_firmware_write(put, user, (uint8_t)((uint16_t)(own << 1) >> 8));
+    rn1_firmware_write(put, user, (uint8_t)(own & 0x7FU));
 }
 
 static void rn1_firmware_write_bytes(rn1_firmware_put put, void *user, const void *from,
@@ -1282,18 +1300,32 @@ static void rn1_firmware_write_bytes(rn1_firmware_put put, void *user, const voi
     }
 }
 
+RN1_FIRMWARE_INLINE void rn1_firmware_write_s14le(rn1_firmware_put put, void *user,
+                                                  uint16_t value) {
+    const uint16_t own = (uint16_t)(value & 0x3FFFU);
+    rn1_firmware_write(put, user, (uint8_t)(own & 0x7FU));
+    rn1_firmware_write(put, user, (uint8_t)((uint16_t)(own << 1) >> 8));
+}
+
 RN1_FIRMWARE_INLINE void rn1_firmware_write_u14le(rn1_firmware_put put, void *user,
                                                   uint16_t value) {
     rn1_firmware_write(put, user, (uint8_t)(value & 0x7FU));
-    rn1_firmware_write(put, user, (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU));
+    rn1_firmware_write(put, user, (uint8_t)((uint16_t)(value << 1) >> 8));
 }
 
-static void rn1_firmware_write_u35be(rn1_firmware_put put, void *user, uint64_t value) {
-    rn1_firmware_write(put, user, (uint8_t)((value >> 28) & 0x7FU));
-    rn1_firmware_write(put, user, (uint8_t)((value >> 21) & 0x7FU));
-    rn1_firmware_write(put, user, (uint8_t)((value >> 14) & 0x7FU));
-    rn1_firmware_write(put, user, (uint8_t)((value >> 7) & 0x7FU));
+RN1_FIRMWARE_INLINE void rn1_firmware_write_u14be(rn1_firmware_put put, void *user,
+                                                  uint16_t value) {
+    rn1_firmware_write(put, user, (uint8_t)((uint16_t)(value << 1) >> 8));
     rn1_firmware_write(put, user, (uint8_t)(value & 0x7FU));
+}
+
+static void rn1_firmware_write_s35be(rn1_firmware_put put, void *user, uint64_t value) {
+    const uint64_t own = (uint64_t)(value & 0x7FFFFFFFFULL);
+    rn1_firmware_write(put, user, (uint8_t)(own >> 28));
+    rn1_firmware_write(put, user, (uint8_t)((own >> 21) & 0x7FU));
+    rn1_firmware_write(put, user, (uint8_t)((own >> 14) & 0x7FU));
+    rn1_firmware_write(put, user, (uint8_t)((own >> 7) & 0x7FU));
+    rn1_firmware_write(put, user, (uint8_t)(own & 0x7FU));
 }
 
 RN1_FIRMWARE_INLINE void rn1_firmware_move_manual_put(
@@ -1304,8 +1336,8 @@ RN1_FIRMWARE_INLINE void rn1_firmware_move_manual_put(
 
 RN1_FIRMWARE_INLINE void rn1_firmware_move_relative_twostep_put(
     const struct rn1_firmware_move_relative_twostep *message, rn1_firmware_put put, void *user) {
-    rn1_firmware_write_u14be(put, user, (uint16_t)message->angle);
-    rn1_firmware_write_u14be(put, user, (uint16_t)message->forward);
+    rn1_firmware_write_s14be(put, user, (uint16_t)message->angle);
+    rn1_firmware_write_s14be(put, user, (uint16_t)message->forward);
 }
 
 RN1_FIRMWARE_INLINE void rn1_firmware_decrease_phase_angle_put(
@@ -1341,25 +1373,25 @@ RN1_FIRMWARE_INLINE void rn1_firmware_maintenance_put(
 RN1_FIRMWARE_INLINE void rn1_firmware_gyro_put(const struct rn1_firmware_gyro *message,
                                                rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
-    rn1_firmware_write_u14le(put, user, (uint16_t)message->int_x);
-    rn1_firmware_write_u14le(put, user, (uint16_t)message->int_y);
-    rn1_firmware_write_u14le(put, user, (uint16_t)message->int_z);
+    rn1_firmware_write_s14le(put, user, (uint16_t)message->int_x);
+    rn1_firmware_write_s14le(put, user, (uint16_t)message->int_y);
+    rn1_firmware_write_s14le(put, user, (uint16_t)message->int_z);
 }
 
 RN1_FIRMWARE_INLINE void rn1_firmware_xcel_put(const struct rn1_firmware_xcel *message,
                                                rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
-    rn1_firmware_write_u14le(put, user, (uint16_t)message->int_x);
-    rn1_firmware_write_u14le(put, user, (uint16_t)message->int_y);
-    rn1_firmware_write_u14le(put, user, (uint16_t)message->int_z);
+    rn1_firmware_write_s14le(put, user, (uint16_t)message->int_x);
+    rn1_firmware_write_s14le(put, user, (uint16_t)message->int_y);
+    rn1_firmware_write_s14le(put, user, (uint16_t)message->int_z);
 }
 
 RN1_FIRMWARE_INLINE void rn1_firmware_compass_put(const struct rn1_firmware_compass *message,
                                                   rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
-    rn1_firmware_write_u14le(put, user, (uint16_t)message->avg_x);
-    rn1_firmware_write_u14le(put, user, (uint16_t)message->avg_y);
-    rn1_firmware_write_u14le(put, user, (uint16_t)message->avg_z);
+    rn1_firmware_write_s14le(put, user, (uint16_t)message->avg_x);
+    rn1_firmware_write_s14le(put, user, (uint16_t)message->avg_y);
+    rn1_firmware_write_s14le(put, user, (uint16_t)message->avg_z);
 }
 
 RN1_FIRMWARE_INLINE void rn1_firmware_lidar_put(const struct rn1_firmware_lidar *message,
@@ -1381,15 +1413,15 @@ RN1_FIRMWARE_INLINE void rn1_firmware_sonar_put(const struct rn1_firmware_sonar 
 RN1_FIRMWARE_INLINE void rn1_firmware_facing_put(const struct rn1_firmware_facing *message,
                                                  rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
-    rn1_firmware_write_u14le(put, user, (uint16_t)message->heading);
-    rn1_firmware_write_u14le(put, user, (uint16_t)message->speed);
+    rn1_firmware_write_s14le(put, user, (uint16_t)message->heading);
+    rn1_firmware_write_s14le(put, user, (uint16_t)message->speed);
 }
 
 RN1_FIRMWARE_INLINE void rn1_firmware_optflow_integral_put(
     const struct rn1_firmware_optflow_integral *message, rn1_firmware_put put, void *user) {
     rn1_firmware_write(put, user, message->status);
-    rn1_firmware_write_u14be(put, user, (uint16_t)message->int_x);
-    rn1_firmware_write_u14be(put, user, (uint16_t)message->int_y);
+    rn1_firmware_write_s14be(put, user, (uint16_t)message->int_x);
+    rn1_firmware_write_s14be(put, user, (uint16_t)message->int_y);
 }
 
 RN1_FIRMWARE_INLINE void rn1_firmware_motor_controller_message_put(
@@ -1399,10 +1431,10 @@ RN1_FIRMWARE_INLINE void rn1_firmware_motor_controller_message_put(
 
 RN1_FIRMWARE_INLINE void rn1_firmware_debug_numbers_put(
     const struct rn1_firmware_debug_numbers *message, rn1_firmware_put put, void *user) {
-    rn1_firmware_write_u35be(put, user, (uint64_t)message->dbg1);
-    rn1_firmware_write_u35be(put, user, (uint64_t)message->dbg2);
-    rn1_firmware_write_u35be(put, user, (uint64_t)message->dbg3);
-    rn1_firmware_write_u35be(put, user, (uint64_t)message->dbg4);
+    rn1_firmware_write_s35be(put, user, (uint64_t)message->dbg1);
+    rn1_firmware_write_s35be(put, user, (uint64_t)message->dbg2);
+    rn1_firmware_write_s35be(put, user, (uint64_t)message->dbg3);
+    rn1_firmware_write_s35be(put, user, (uint64_t)message->dbg4);
 }
 
 size_t rn1_firmware_move_manual_frame(const struct rn1_firmware_move_manual *message,

@@ -509,7 +509,7 @@ static inline bool rn1_firmware_lidar_distances_set_at(uint8_t *payload, size_t 
     }
     uint8_t *at = payload + 1U + 2U * index;
     at[0] = (uint8_t)(value & 0x7FU);
-    at[1] = (uint8_t)(((uint16_t)(value << 1) >> 8) & 0x7FU);
+    at[1] = (uint8_t)((uint16_t)(value << 1) >> 8);
     return true;
 }
 

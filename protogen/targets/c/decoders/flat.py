@@ -57,7 +57,7 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
     def limit(self) -> str:
         """Value of the counter when all content is there, as far as is known."""
         if self.only_size is None:
-            return "decoder->limit"
+            return "limit" if self.takes_start_alike else "decoder->limit"
         return f"{self.counts_around + self.only_size}U"
 
     @property
@@ -78,7 +78,7 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
     def counted_limit(self) -> str:
         """Value of that counter when all content is there, as far as is known."""
         if self.only_size is None:
-            return "2U * decoder->limit" if self.counts_digits else "decoder->limit"
+            return f"2U * {self.limit}" if self.counts_digits else self.limit
         return f"{self.counted(self.around + self.only_size)}U"
 
     @property
@@ -198,6 +198,16 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
     def keeps_start(self) -> bool:
         """True if something reads the start's bytes again."""
         return not self.plan.start_bytes or self.plan.covers_start
+
+    @property
+    def takes_start_alike(self) -> bool:
+        """True if a start is kept by the statements that keep the bytes behind it.
+
+        Its identity tells the limit; one that nobody asked for has no room, so that it passes by.
+        """
+        is_plain = self.stuffing is None and not self.checks_head and self.handed is None
+        is_byte = self.identity_is_start and not self.plan.start_bytes and not self.plan.end_bytes
+        return is_plain and is_byte and bool(self.skip_start)
 
     @property
     def completes_with_start(self) -> bool:

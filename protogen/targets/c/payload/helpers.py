@@ -211,6 +211,8 @@ class Helpers:
             bits = f"{self.load(type_.unsigned)}(at)"
             result = self.float_type(type_)
             body: Iterable[str] = [f"return {self._reinterpret(type_, from_bits=True)}({bits});"]
+        elif type_.signed and _is_pair(type_):
+            result, body = integer_type(type_), _signed_pair(type_)
         elif type_.signed:
             raw = f"{self.load(type_.unsigned)}(at)" if type_.size > 1 else "at[0]"
             result, body = integer_type(type_), sign_extended(type_, raw)
@@ -230,8 +232,7 @@ class Helpers:
         """True if an array of such numbers is read by a function of its own."""
         if type_.signed or self._is_public:
             return False
-        is_pair = (type_.byte_bits, type_.bits, type_.size) == (7, 14, 2)
-        return is_pair and type_.byte_order == "little"
+        return _is_pair(type_) and type_.byte_order == "little"
 
     def load_run(self, type_: NumberType) -> str:
         """The function that reads an array of numbers of two seven-bit bytes."""
@@ -391,14 +392,46 @@ def _joined(type_: NumberType) -> Iterator[str]:
     yield from joined(type_, "at")
 
 
+def _is_pair(type_: NumberType) -> bool:
+    """True for a number that fills two bytes of seven bits."""
+    return (type_.byte_bits, type_.bits, type_.size) == (7, 14, 2)
+
+
+def _signed_pair(type_: NumberType) -> tuple[str, ...]:
+    """The statements that return it by the sign of its upper byte: shorter than by its own."""
+    low, high = (0, 1) if type_.byte_order == "little" else (1, 0)
+    return (
+        f"const int8_t top = (int8_t)(uint8_t)(at[{high}] << 1);",
+        "const int16_t upper = (int16_t)((int16_t)top * 64);",
+        f"const uint16_t joined = (uint16_t)((uint16_t)upper | at[{low}]);",
+        "return (int16_t)joined;",
+    )
+
+
 def _stored(type_: NumberType) -> Iterator[str]:
-    for place, byte in enumerate(parted(type_, "value")):
-        yield f"at[{place}] = {byte};"
+    yield from _own_bits(type_)
+    stored = [f"at[{place}] = {byte};" for place, byte in enumerate(_own_bytes(type_))]
+    # A mask needs no copy of the number where the byte that has its lowest bits comes last.
+    is_turned = type_.byte_bits < 8 and type_.byte_order == "little"
+    yield from reversed(stored) if is_turned else stored
 
 
 def _written(type_: NumberType, call: str) -> Iterator[str]:
-    for byte in parted(type_, "value"):
+    yield from _own_bits(type_)
+    for byte in _own_bytes(type_):
         yield f"{call}, {byte});"
+
+
+def _own_bits(type_: NumberType) -> Iterator[str]:
+    """A signed number without the bits above its own: one mask instead of one for each byte."""
+    if type_.signed:
+        kind, mask = unsigned_type(type_.bits), hexadecimal((1 << type_.bits) - 1)
+        yield f"const {kind} own = ({kind})(value & {mask});"
+
+
+def _own_bytes(type_: NumberType) -> tuple[str, ...]:
+    """Its bytes in wire order."""
+    return parted(type_.unsigned, "own" if type_.signed else "value")
 
 
 # --- expressions --------------------------------------------------------------------------------
@@ -421,7 +454,7 @@ def widened(type_: NumberType) -> NumberType:
 
 def cut(type_: NumberType) -> NumberType:
     """The layout that a writer needs: of a signed number the bits above its own are cut off."""
-    is_unpadded = is_whole(type_) or type_.bits == type_.byte_bits * type_.size
+    is_unpadded = is_whole(type_) or type_.bits == 8 * type_.size
     return type_ if type_.signed and not is_unpadded else widened(type_)
 
 
@@ -495,6 +528,6 @@ def _mask(type_: NumberType, place: int) -> str | None:
     """Mask of the bits that belong to a byte; None where a cast cuts off the others."""
     left = type_.bits - type_.byte_bits * place
     bits = min(type_.byte_bits, left)
-    if bits == 8 or (bits < type_.byte_bits and not type_.signed):
+    if bits == 8 or (bits == left and not type_.signed):
         return None
     return hexadecimal((1 << bits) - 1)

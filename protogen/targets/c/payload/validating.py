@@ -149,11 +149,16 @@ class Validate(Walk):
 
         It calls nothing: SDCC loses a byte of a message where an expression has two such calls.
         """
-        numbers = list(places)
+        numbers, bits = list(places), span.bits
         if span.signed:
-            kind, above = unsigned_type(span.bits), hexadecimal(1 << (span.bits - 1))
-            numbers = [f"({kind})(({kind}){place} + {above})" for place in places]
-        self._refuse(f"({' | '.join(numbers)}) > {hexadecimal((1 << span.bits) - 1)}")
+            kind = unsigned_type(bits)
+            numbers = [f"({kind}){place}" for place in places]
+            if 8 < bits < 16:  # What the lower byte is changes nothing.
+                kind, bits = "uint8_t", bits - 8
+                numbers = [f"({number} >> 8)" for number in numbers]
+            above = hexadecimal(1 << (bits - 1))
+            numbers = [f"({kind})({number} + {above})" for number in numbers]
+        self._refuse(f"({' | '.join(numbers)}) > {hexadecimal((1 << bits) - 1)}")
 
     def number(self, step: NumberStep, place: str) -> None:
         """A number."""
