@@ -1,7 +1,8 @@
-"""What the comments of a generated header tell who reviews or calls it."""
+"""What a generated header tells who reviews or calls it."""
 
 from __future__ import annotations
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -9,7 +10,8 @@ import pytest
 from tooling import require_tool
 
 from protogen.api import load
-from protogen.targets.c.emit import texts
+from protogen.model.protocol import Protocol
+from protogen.targets.c.emit import emit, texts
 from protogen.targets.c.options import COptions
 
 SCHEMA = """
@@ -47,10 +49,15 @@ messages:
 
 
 @pytest.fixture(scope="module")
-def header(tmp_path_factory: pytest.TempPathFactory) -> str:
+def protocol(tmp_path_factory: pytest.TempPathFactory) -> Protocol:
     path = tmp_path_factory.mktemp("comments") / "boiler.yaml"
     path.write_text(SCHEMA, encoding="utf-8")
-    return texts(load(path), COptions())[0]
+    return load(path)
+
+
+@pytest.fixture(scope="module")
+def header(protocol: Protocol) -> str:
+    return texts(protocol, COptions())[0]
 
 
 @pytest.mark.parametrize(
@@ -85,3 +92,9 @@ def test_gcc_warns_of_an_array_that_is_too_short(call: str, header: str, tmp_pat
     command = [require_tool("gcc"), "-std=c99", "-Wall", "-c", "main.c", "-o", "main.o"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert "-Wstringop-over" in done.stderr
+
+
+def test_decoders_of_messages_alone_declare_nothing_of_other_events(protocol: Protocol) -> None:
+    files = emit([protocol], COptions(events="messages", hpp=True))
+    for header in (file.text for file in files if file.path.suffix in (".h", ".hpp")):
+        assert not re.search("event_kind|reason|BOILER_(UNKNOWN|INVALID|CHECKSUM)", header)
