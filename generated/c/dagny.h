@@ -117,7 +117,7 @@ enum dagny_power_code {
  * no struct, nothing to load, and functions that take none.
  */
 
-/* What the functions below share that read an element of an array. */
+/* What the inline functions below share. */
 
 static inline void dagny_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
@@ -547,7 +547,7 @@ static inline void dagny_reflex_load(struct dagny_reflex *message, const uint8_t
     message->reflex = payload[0];
 }
 
-/** What to do with the reflex; bits 6 to 7 of reflex. */
+/** What to do with the reflex, DAGNY_REFLEX_REFLEX_COMMAND_...; bits 6 to 7 of reflex. */
 #define DAGNY_REFLEX_REFLEX_COMMAND_MASK 0xC0U
 #define DAGNY_REFLEX_REFLEX_COMMAND_SHIFT 6U
 static inline uint8_t dagny_reflex_reflex_command_get(uint8_t raw) {
@@ -594,7 +594,7 @@ DAGNY_API enum dagny_result dagny_power_down_decode(const uint8_t *payload, size
 
 /** Puts the hardware to sleep, wakes it, or asks for its state (lines 46, 77-82). */
 struct dagny_power {
-    /** Power control code (lines 77-82). */
+    /** Power control code, DAGNY_POWER_CODE_... (lines 77-82). */
     uint8_t code;
 };
 #define DAGNY_POWER_INIT \
@@ -707,7 +707,8 @@ static inline bool dagny_command_data_set_at(uint8_t *payload, size_t index, con
  * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
  * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
  * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
- * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * frame's size; 0 where a field has no default that is allowed, and was not set. It may move and stuff
+ * the payload, also where it returns 0: begin each frame anew.
  * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
  */
 

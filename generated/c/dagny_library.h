@@ -105,7 +105,7 @@ enum dagny_library_power_code {
  * no struct, nothing to load, and functions that take none.
  */
 
-/* What the functions below share that read an element of an array. */
+/* What the inline functions below share. */
 
 static inline void dagny_library_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
@@ -178,8 +178,8 @@ struct dagny_library_gps {
     /** Number of bytes of nmea. */
     uint8_t nmea_size;
     /**
-     * The sentence without CR and LF (trainman419/Senior-Project, trainman419/dagny_protocol (facts
-     * only), arduino/gps.cpp).
+     * The sentence without CR and LF, no NUL behind it (trainman419/Senior-Project,
+     * trainman419/dagny_protocol (facts only), arduino/gps.cpp).
      */
     char nmea[126];
 };
@@ -456,7 +456,10 @@ static inline void dagny_library_steering_load(struct dagny_library_steering *me
  * The robot does nothing on 0 and 3, and answers in free text.
  */
 struct dagny_library_power {
-    /** Power control code, an ASCII digit (002_5af75f454b134d02.txt, lines 77-82). */
+    /**
+     * Power control code, an ASCII digit, DAGNY_LIBRARY_POWER_CODE_... (002_5af75f454b134d02.txt,
+     * lines 77-82).
+     */
     uint8_t code;
 };
 #define DAGNY_LIBRARY_POWER_INIT \
@@ -599,7 +602,8 @@ DAGNY_LIBRARY_API enum dagny_library_result dagny_library_shutdown_decode(const 
  * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
  * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
  * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
- * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * frame's size; 0 where a field has no default that is allowed, and was not set. It may move and stuff
+ * the payload, also where it returns 0: begin each frame anew.
  * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
  */
 

@@ -118,7 +118,7 @@ enum matty_gps_mode_mode {
  * no struct, nothing to load, and functions that take none.
  */
 
-/* What the functions below share that read an element of an array. */
+/* What the inline functions below share. */
 
 static inline bool matty_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
@@ -176,7 +176,7 @@ MATTY_API enum matty_result matty_reset_decode(const uint8_t *payload, size_t si
 
 /** Sets the robot's mode (line 18). */
 struct matty_mode {
-    /** The mode to take (line 18). */
+    /** The mode to take, MATTY_ROBOT_MODE_... (line 18). */
     uint8_t mode;
 };
 #define MATTY_MODE_INIT \
@@ -282,7 +282,7 @@ MATTY_API void matty_timing_load(struct matty_timing *message, const uint8_t *pa
 
 /** Sets what is sent of the GPS receiver (line 22). */
 struct matty_gps_mode {
-    /** What is sent (line 22). */
+    /** What is sent, MATTY_GPS_MODE_MODE_... (line 22). */
     uint8_t mode;
 };
 #define MATTY_GPS_MODE_INIT \
@@ -352,9 +352,9 @@ MATTY_API enum matty_result matty_nack_decode(const uint8_t *payload, size_t siz
  * Sent regularly, with the period of the timing message.
  */
 struct matty_status {
-    /** Flags (lines 34-43). */
+    /** Flags, MATTY_STATUS_STATUS_... (lines 34-43). */
     uint8_t status;
-    /** The mode that the robot is in (lines 33-34). */
+    /** The mode that the robot is in, MATTY_ROBOT_MODE_... (lines 33-34). */
     uint8_t mode;
     /** Voltage, mV, 0..65535 (lines 33-34). */
     uint16_t voltage;
@@ -397,7 +397,7 @@ MATTY_API void matty_status_load(struct matty_status *message, const uint8_t *pa
 struct matty_gps {
     /** Number of bytes of nmea. */
     uint8_t nmea_size;
-    /** The whole sentence, from $ to CR LF (lines 47-48). */
+    /** The whole sentence, from $ to CR LF, no NUL behind it (lines 47-48). */
     char nmea[121];
 };
 #define MATTY_GPS_INIT \
@@ -437,7 +437,8 @@ static inline bool matty_gps_nmea_set_at(uint8_t *payload, size_t index, const c
  * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
  * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
  * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
- * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * frame's size; 0 where a field has no default that is allowed, and was not set. It may move and stuff
+ * the payload, also where it returns 0: begin each frame anew.
  * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
  */
 

@@ -130,7 +130,7 @@ enum matty_v4_gps_mode_mode {
  * no struct, nothing to load, and functions that take none.
  */
 
-/* What the functions below share that read an element of an array. */
+/* What the inline functions below share. */
 
 static inline bool matty_v4_is_seven_bit(const void *at, size_t size) {
     const uint8_t *bytes = (const uint8_t *)at;
@@ -164,7 +164,7 @@ static inline void matty_v4_copy(void *to, const void *from, size_t size) {
  * How the robot stops is the argument.
  */
 struct matty_v4_stop {
-    /** How to stop (esp/matty-v4.txt, line 16). */
+    /** How to stop, MATTY_V4_STOP_MODE_... (esp/matty-v4.txt, line 16). */
     uint8_t mode;
 };
 #define MATTY_V4_STOP_INIT \
@@ -202,7 +202,7 @@ MATTY_V4_API enum matty_v4_result matty_v4_reset_decode(const uint8_t *payload, 
 
 /** Sets the robot's mode (004_bc163d01a5f01dc1.txt, line 18). */
 struct matty_v4_mode {
-    /** The mode to take (004_bc163d01a5f01dc1.txt, line 18). */
+    /** The mode to take, MATTY_V4_ROBOT_MODE_... (004_bc163d01a5f01dc1.txt, line 18). */
     uint8_t mode;
 };
 #define MATTY_V4_MODE_INIT \
@@ -320,7 +320,7 @@ MATTY_V4_API void matty_v4_timing_load(struct matty_v4_timing *message, const ui
 
 /** Sets what is sent of the GPS receiver (004_bc163d01a5f01dc1.txt, line 22). */
 struct matty_v4_gps_mode {
-    /** What is sent (004_bc163d01a5f01dc1.txt, line 22). */
+    /** What is sent, MATTY_V4_GPS_MODE_MODE_... (004_bc163d01a5f01dc1.txt, line 22). */
     uint8_t mode;
 };
 #define MATTY_V4_GPS_MODE_INIT \
@@ -444,9 +444,12 @@ MATTY_V4_API enum matty_v4_result matty_v4_nack_decode(const uint8_t *payload, s
  * Sent regularly, with the period of the timing message.
  */
 struct matty_v4_status {
-    /** Flags (004_bc163d01a5f01dc1.txt, lines 34-43). */
+    /** Flags, MATTY_V4_STATUS_STATUS_... (004_bc163d01a5f01dc1.txt, lines 34-43). */
     uint8_t status;
-    /** The mode that the robot is in (004_bc163d01a5f01dc1.txt, lines 33-34). */
+    /**
+     * The mode that the robot is in, MATTY_V4_ROBOT_MODE_... (004_bc163d01a5f01dc1.txt, lines
+     * 33-34).
+     */
     uint8_t mode;
     /** Voltage, mV, 0..65535 (004_bc163d01a5f01dc1.txt, lines 33-34). */
     uint16_t voltage;
@@ -496,7 +499,10 @@ MATTY_V4_API void matty_v4_status_load(struct matty_v4_status *message, const ui
 struct matty_v4_gps {
     /** Number of bytes of nmea. */
     uint8_t nmea_size;
-    /** The whole sentence, from $ to CR LF (004_bc163d01a5f01dc1.txt, lines 47-48). */
+    /**
+     * The whole sentence, from $ to CR LF, no NUL behind it (004_bc163d01a5f01dc1.txt, lines
+     * 47-48).
+     */
     char nmea[121];
 };
 #define MATTY_V4_GPS_INIT \
@@ -563,7 +569,8 @@ MATTY_V4_API void matty_v4_version_load(struct matty_v4_version *message, const 
  * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
  * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
  * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
- * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * frame's size; 0 where a field has no default that is allowed, and was not set. It may move and stuff
+ * the payload, also where it returns 0: begin each frame anew.
  * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
  */
 

@@ -164,7 +164,7 @@ struct rflex_sonar_data_readings {
  * no struct, nothing to load, and functions that take none.
  */
 
-/* What the functions below share that read an element of an array. */
+/* What the inline functions below share. */
 
 static inline uint16_t rflex_load_u16be(const uint8_t *at) {
     return (uint16_t)(at[1] | ((uint16_t)at[0] << 8));
@@ -199,7 +199,7 @@ struct rflex_system_status {
     uint32_t timestamp;
     /** Raw value; the document gives no unit, 0..4294967295 (line 60). */
     uint32_t battery_voltage;
-    /** Brake (line 61). */
+    /** Brake, RFLEX_SYSTEM_STATUS_BRAKE_... (line 61). */
     uint8_t brake;
 };
 #define RFLEX_SYSTEM_STATUS_INIT \
@@ -249,7 +249,7 @@ static inline void rflex_motor_00_load(struct rflex_motor_00 *message, const uin
 
 /** Sets the velocity of one axis (lines 79, 83-89). */
 struct rflex_motor_command {
-    /** Axis (line 84). */
+    /** Axis, RFLEX_AXIS_... (line 84). */
     uint8_t axis;
     /** Magnitude; see the decision motor_units, 0..4294967295 (line 85). */
     uint32_t velocity;
@@ -257,7 +257,7 @@ struct rflex_motor_command {
     uint32_t acceleration;
     /** Magnitude; see the decision motor_units, 0..4294967295 (line 87). */
     uint32_t torque;
-    /** Direction (lines 88-89). */
+    /** Direction, RFLEX_MOTOR_COMMAND_DIRECTION_... (lines 88-89). */
     uint8_t direction;
 };
 #define RFLEX_MOTOR_COMMAND_INIT \
@@ -286,7 +286,7 @@ struct rflex_confirm_motor_command {
     uint32_t unknown;
     /** Timestamp, 0..4294967295 (line 94). */
     uint32_t timestamp;
-    /** Axis (line 95). */
+    /** Axis, RFLEX_AXIS_... (line 95). */
     uint8_t axis;
 };
 #define RFLEX_CONFIRM_MOTOR_COMMAND_INIT \
@@ -372,7 +372,7 @@ struct rflex_read_motor {
     uint32_t unknown;
     /** Timestamp, 0..4294967295 (line 128). */
     uint32_t timestamp;
-    /** Axis (line 129). */
+    /** Axis, RFLEX_AXIS_... (line 129). */
     uint8_t axis;
     /** Position, -2147483648..2147483647 (line 130). */
     int32_t position;
@@ -406,7 +406,7 @@ RFLEX_API void rflex_read_motor_load(struct rflex_read_motor *message, const uin
 struct rflex_start_stop_motor_packets {
     /** See the decision motor_packets_timestamp, 0..4294967295 (line 140). */
     uint32_t timestamp;
-    /** Start stop (line 141). */
+    /** Start stop, RFLEX_START_STOP_MOTOR_PACKETS_START_STOP_... (line 141). */
     uint32_t start_stop;
 };
 #define RFLEX_START_STOP_MOTOR_PACKETS_INIT \
@@ -478,7 +478,7 @@ struct rflex_joystick_data {
     int32_t horizontal;
     /** Vertical position, -2147483648..2147483647 (line 170). */
     int32_t vertical;
-    /** Buttons (line 171). */
+    /** Buttons, RFLEX_JOYSTICK_DATA_BUTTONS_... (line 171). */
     uint8_t buttons;
 };
 #define RFLEX_JOYSTICK_DATA_INIT \
@@ -509,7 +509,7 @@ struct rflex_start_stop_sonar_packets {
     uint32_t unknown_1;
     /** Not said by the document, 0..255 (line 202). */
     uint8_t unknown_2;
-    /** Start stop (line 203). */
+    /** Start stop, RFLEX_START_STOP_SONAR_PACKETS_START_STOP_... (line 203). */
     uint32_t start_stop;
 };
 #define RFLEX_START_STOP_SONAR_PACKETS_INIT \
@@ -731,8 +731,8 @@ struct rflex_changed_bumpers {
     /** Position of the byte that has changed, 0..255 (lines 257-258). */
     uint8_t position;
     /**
-     * New value of a byte of the digital I/O. The names hold for byte 40, the bumpers (lines
-     * 257-258).
+     * New value of a byte of the digital I/O. The names hold for byte 40, the bumpers,
+     * RFLEX_IO_VALUE_... (lines 257-258).
      */
     uint16_t value;
 };
@@ -815,7 +815,8 @@ struct rflex_changed_byte {
     /** Position of the byte that has changed, 0..255 (line 280). */
     uint8_t position;
     /**
-     * New value of a byte of the digital I/O. The names hold for byte 40, the bumpers (line 281).
+     * New value of a byte of the digital I/O. The names hold for byte 40, the bumpers,
+     * RFLEX_IO_VALUE_... (line 281).
      */
     uint16_t value;
 };
@@ -841,7 +842,8 @@ RFLEX_API void rflex_changed_byte_load(struct rflex_changed_byte *message, const
  * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
  * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
  * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
- * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * frame's size; 0 where a field has no default that is allowed, and was not set. It may move and stuff
+ * the payload, also where it returns 0: begin each frame anew.
  * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
  */
 

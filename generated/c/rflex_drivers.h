@@ -169,7 +169,7 @@ struct rflex_drivers_sonar_data_readings {
  * no struct, nothing to load, and functions that take none.
  */
 
-/* What the functions below share that read an element of an array. */
+/* What the inline functions below share. */
 
 static inline void rflex_drivers_copy(void *to, const void *from, size_t size) {
     uint8_t *target = (uint8_t *)to;
@@ -220,7 +220,7 @@ struct rflex_drivers_system_status {
      * 0..4294967295 (003_037af2f07b705118.txt, line 60).
      */
     uint32_t battery_voltage;
-    /** Brake (003_037af2f07b705118.txt, line 61). */
+    /** Brake, RFLEX_DRIVERS_SYSTEM_STATUS_BRAKE_... (003_037af2f07b705118.txt, line 61). */
     uint8_t brake;
 };
 #define RFLEX_DRIVERS_SYSTEM_STATUS_INIT \
@@ -326,7 +326,7 @@ static inline bool rflex_drivers_lcd_dump_pixels_set_at(uint8_t *payload, size_t
 
 /** Asks for the system of an axis (003_037af2f07b705118.txt, lines 67-75). */
 struct rflex_drivers_axis_get_system {
-    /** Axis (rflex-protocol.txt, MOT_AXIS_GET_SYSTEM). */
+    /** Axis, RFLEX_DRIVERS_AXIS_... (rflex-protocol.txt, MOT_AXIS_GET_SYSTEM). */
     uint8_t axis;
 };
 #define RFLEX_DRIVERS_AXIS_GET_SYSTEM_INIT \
@@ -353,7 +353,7 @@ static inline void rflex_drivers_axis_get_system_load(struct rflex_drivers_axis_
 
 /** Sets the velocity of one axis (003_037af2f07b705118.txt, lines 79, 83-89). */
 struct rflex_drivers_motor_command {
-    /** Axis (003_037af2f07b705118.txt, line 84). */
+    /** Axis, RFLEX_DRIVERS_AXIS_... (003_037af2f07b705118.txt, line 84). */
     uint8_t axis;
     /**
      * Magnitude; see the decision motor_units, 0..4294967295 (003_037af2f07b705118.txt, line 85).
@@ -367,7 +367,9 @@ struct rflex_drivers_motor_command {
      * Magnitude; see the decision motor_units, 0..4294967295 (003_037af2f07b705118.txt, line 87).
      */
     uint32_t torque;
-    /** Direction (003_037af2f07b705118.txt, lines 88-89). */
+    /**
+     * Direction, RFLEX_DRIVERS_MOTOR_COMMAND_DIRECTION_... (003_037af2f07b705118.txt, lines 88-89).
+     */
     uint8_t direction;
 };
 #define RFLEX_DRIVERS_MOTOR_COMMAND_INIT \
@@ -399,7 +401,7 @@ struct rflex_drivers_confirm_motor_command {
     uint32_t retval;
     /** Timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 94). */
     uint32_t timestamp;
-    /** Axis (003_037af2f07b705118.txt, line 95). */
+    /** Axis, RFLEX_DRIVERS_AXIS_... (003_037af2f07b705118.txt, line 95). */
     uint8_t axis;
 };
 #define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_INIT \
@@ -509,7 +511,7 @@ struct rflex_drivers_read_motor {
     uint32_t retval;
     /** Timestamp, 0..4294967295 (003_037af2f07b705118.txt, line 128). */
     uint32_t timestamp;
-    /** Axis (003_037af2f07b705118.txt, line 129). */
+    /** Axis, RFLEX_DRIVERS_AXIS_... (003_037af2f07b705118.txt, line 129). */
     uint8_t axis;
     /** Position, -2147483648..2147483647 (003_037af2f07b705118.txt, line 130). */
     int32_t position;
@@ -548,7 +550,10 @@ struct rflex_drivers_start_stop_motor_packets {
      * (rflex-protocol.txt, MOT_SYSTEM_REPORT_REQ).
      */
     uint32_t period;
-    /** Axes that report; none stops the reports (rflex-protocol.txt, MOT_SYSTEM_REPORT_REQ). */
+    /**
+     * Axes that report; none stops the reports, RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_MASK_...
+     * (rflex-protocol.txt, MOT_SYSTEM_REPORT_REQ).
+     */
     uint32_t mask;
 };
 #define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_INIT \
@@ -627,7 +632,7 @@ struct rflex_drivers_joystick_data {
     int32_t horizontal;
     /** Vertical position, -2147483648..2147483647 (003_037af2f07b705118.txt, line 170). */
     int32_t vertical;
-    /** Buttons (003_037af2f07b705118.txt, line 171). */
+    /** Buttons, RFLEX_DRIVERS_JOYSTICK_DATA_BUTTONS_... (003_037af2f07b705118.txt, line 171). */
     uint8_t buttons;
 };
 #define RFLEX_DRIVERS_JOYSTICK_DATA_INIT \
@@ -664,7 +669,7 @@ struct rflex_drivers_start_stop_sonar_packets {
     uint32_t ping_delay;
     /** Between two rounds of all sonars, us, 0..4294967295 (rflex-protocol.txt, SONAR_RUN). */
     uint32_t set_delay;
-    /** Mode (rflex-protocol.txt, SONAR_RUN). */
+    /** Mode, RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_MODE_... (rflex-protocol.txt, SONAR_RUN). */
     uint8_t mode;
 };
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_INIT \
@@ -1022,8 +1027,8 @@ struct rflex_drivers_ir_run {
     /** Not said by the document, 0..4294967295 (rflex_commands.cc, rflex_ir_on). */
     uint32_t unknown_5;
     /**
-     * The code writes these two values and does not name the byte (rflex_commands.cc, rflex_ir_on,
-     * rflex_ir_off).
+     * The code writes these two values and does not name the byte, RFLEX_DRIVERS_IR_RUN_MODE_...
+     * (rflex_commands.cc, rflex_ir_on, rflex_ir_off).
      */
     uint8_t mode;
 };
@@ -1091,7 +1096,8 @@ static inline bool rflex_drivers_ir_report_data_set_at(uint8_t *payload, size_t 
  * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
  * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
  * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
- * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * frame's size; 0 where a field has no default that is allowed, and was not set. It may move and stuff
+ * the payload, also where it returns 0: begin each frame anew.
  * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
  */
 

@@ -252,7 +252,7 @@ RN1_API void rn1_move_relative_arc_load(struct rn1_move_relative_arc *message,
  * 115200 8N1 and nothing on it follows this protocol any more, until the brain resets.
  */
 struct rn1_maintenance {
-    /** What to do (lines 44-56). */
+    /** What to do, RN1_MAINTENANCE_OPERATION_... (lines 44-56). */
     uint8_t operation;
     /** What the operation needs to know (lines 44-56). */
     union {
@@ -287,7 +287,7 @@ RN1_API void rn1_maintenance_load(struct rn1_maintenance *message, const uint8_t
 
 /** Readings of the three-axis gyroscope (lines 61-65). */
 struct rn1_gyro {
-    /** State of the gyroscope (line 62). */
+    /** State of the gyroscope, RN1_GYRO_STATUS_... (line 62). */
     uint8_t status;
     /** Integral of gyro X since the message before, -8192..8191 (line 63). */
     int16_t int_x;
@@ -315,7 +315,7 @@ RN1_API void rn1_gyro_load(struct rn1_gyro *message, const uint8_t *payload);
 
 /** Readings of the three-axis accelerometer (lines 67-71). */
 struct rn1_xcel {
-    /** State of the accelerometer (line 68). */
+    /** State of the accelerometer, RN1_XCEL_STATUS_... (line 68). */
     uint8_t status;
     /** Integral of acceleration X since the message before, -8192..8191 (line 69). */
     int16_t int_x;
@@ -343,7 +343,7 @@ RN1_API void rn1_xcel_load(struct rn1_xcel *message, const uint8_t *payload);
 
 /** Readings of the three-axis compass (lines 73-77). */
 struct rn1_compass {
-    /** State of the compass (line 74). */
+    /** State of the compass, RN1_COMPASS_STATUS_... (line 74). */
     uint8_t status;
     /** Mean of compass X since the message before, -8192..8191 (line 75). */
     int16_t avg_x;
@@ -407,7 +407,7 @@ RN1_API void rn1_optflow_load(struct rn1_optflow *message, const uint8_t *payloa
  * it.
  */
 struct rn1_lidar {
-    /** State of the LIDAR (lines 87-89). */
+    /** State of the LIDAR, RN1_LIDAR_STATUS_... (lines 87-89). */
     uint8_t status;
     /**
      * One distance for each point of the turn, mm, 0..16383, 360 elements, 0 = no_datapoint (line
@@ -476,7 +476,7 @@ static inline bool rn1_lidar_distances_set_at(uint8_t *payload, size_t index, ui
 
 /** The latest distances of up to seven sonars (lines 92-94). */
 struct rn1_sonar {
-    /** The sonars that are enabled (line 93). */
+    /** The sonars that are enabled, RN1_SONAR_STATUS_... (line 93). */
     uint8_t status;
     /** Distances of sonar 0 to sonar 6, mm, 0..16383, 7 elements, 0 = no_datapoint (line 94). */
     uint16_t distances[7];
@@ -536,7 +536,8 @@ RN1_API void rn1_facing_load(struct rn1_facing *message, const uint8_t *payload)
  * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
  * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
  * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
- * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * frame's size; 0 where a field has no default that is allowed, and was not set. It may move and stuff
+ * the payload, also where it returns 0: begin each frame anew.
  */
 
 /** Takes the next byte of a frame. */

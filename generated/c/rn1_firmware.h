@@ -286,7 +286,9 @@ static inline void rn1_firmware_increase_phase_angle_load(
  * resets.
  */
 struct rn1_firmware_maintenance {
-    /** What to do (000_c7d74cf9c866b63b.txt, lines 44-56). */
+    /**
+     * What to do, RN1_FIRMWARE_MAINTENANCE_OPERATION_... (000_c7d74cf9c866b63b.txt, lines 44-56).
+     */
     uint8_t operation;
     /** What the operation needs to know (000_c7d74cf9c866b63b.txt, lines 44-56). */
     union {
@@ -325,7 +327,7 @@ RN1_FIRMWARE_API void rn1_firmware_maintenance_load(struct rn1_firmware_maintena
  * Not integrals, but the latest readings without their two low bits; status is always 1.
  */
 struct rn1_firmware_gyro {
-    /** State of the gyroscope (000_c7d74cf9c866b63b.txt, line 62). */
+    /** State of the gyroscope, RN1_FIRMWARE_GYRO_STATUS_... (000_c7d74cf9c866b63b.txt, line 62). */
     uint8_t status;
     /**
      * Latest 16-bit reading of gyro X divided by 4 and rounded down, -8192..8191 (main.c, line
@@ -367,7 +369,9 @@ RN1_FIRMWARE_API void rn1_firmware_gyro_load(struct rn1_firmware_gyro *message,
  * Not integrals, but the latest readings without their two low bits; status is always 1.
  */
 struct rn1_firmware_xcel {
-    /** State of the accelerometer (000_c7d74cf9c866b63b.txt, line 68). */
+    /**
+     * State of the accelerometer, RN1_FIRMWARE_XCEL_STATUS_... (000_c7d74cf9c866b63b.txt, line 68).
+     */
     uint8_t status;
     /**
      * Latest 16-bit reading of acceleration X divided by 4 and rounded down, -8192..8191 (main.c,
@@ -409,7 +413,9 @@ RN1_FIRMWARE_API void rn1_firmware_xcel_load(struct rn1_firmware_xcel *message,
  * Not means, but the latest readings without their two low bits; status is always 1.
  */
 struct rn1_firmware_compass {
-    /** State of the compass (000_c7d74cf9c866b63b.txt, line 74). */
+    /**
+     * State of the compass, RN1_FIRMWARE_COMPASS_STATUS_... (000_c7d74cf9c866b63b.txt, line 74).
+     */
     uint8_t status;
     /**
      * Latest 16-bit reading of compass X divided by 4 and rounded down, -8192..8191 (main.c, line
@@ -455,7 +461,9 @@ RN1_FIRMWARE_API void rn1_firmware_compass_load(struct rn1_firmware_compass *mes
  * it.
  */
 struct rn1_firmware_lidar {
-    /** State of the LIDAR (000_c7d74cf9c866b63b.txt, lines 87-89). */
+    /**
+     * State of the LIDAR, RN1_FIRMWARE_LIDAR_STATUS_... (000_c7d74cf9c866b63b.txt, lines 87-89).
+     */
     uint8_t status;
     /**
      * One distance for each point of the turn, mm, 0..16383, 360 elements, 0 = no_datapoint
@@ -526,7 +534,10 @@ static inline bool rn1_firmware_lidar_distances_set_at(uint8_t *payload, size_t 
 
 /** The latest distances of the three sonars (main.c, lines 926-937). */
 struct rn1_firmware_sonar {
-    /** The sonars that are enabled; always all three (main.c, line 927). */
+    /**
+     * The sonars that are enabled; always all three, RN1_FIRMWARE_SONAR_STATUS_... (main.c, line
+     * 927).
+     */
     uint8_t status;
     /**
      * Distances of sonar 0 to sonar 2, always whole centimetres, mm, 0..16383, 3 elements, 0 =
@@ -697,7 +708,8 @@ RN1_FIRMWARE_API void rn1_firmware_debug_numbers_load(struct rn1_firmware_debug_
  * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
  * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
  * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
- * frame's size; 0 where a field has no default that is allowed, and was not set.
+ * frame's size; 0 where a field has no default that is allowed, and was not set. It may move and stuff
+ * the payload, also where it returns 0: begin each frame anew.
  */
 
 /** Takes the next byte of a frame. */

@@ -109,7 +109,7 @@ struct uherobot_motors_servos_leds {
     int16_t motor_2;
     /** Positions of servo 1 to servo 8, 0..65535, 8 elements (line 43). */
     uint16_t servos[8];
-    /** One bit for each LED (line 43). */
+    /** One bit for each LED, UHEROBOT_MOTORS_SERVOS_LEDS_LEDS_... (line 43). */
     uint8_t leds;
 };
 #define UHEROBOT_MOTORS_SERVOS_LEDS_INIT \

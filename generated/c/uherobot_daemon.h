@@ -133,8 +133,8 @@ struct uherobot_daemon_motors_servos_leds {
      */
     uint16_t servos[8];
     /**
-     * One bit for each LED; always 0, as nothing in the daemon sets them
-     * (robotboard2interpreter.cpp).
+     * One bit for each LED; always 0, as nothing in the daemon sets them,
+     * UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_LEDS_... (robotboard2interpreter.cpp).
      */
     uint8_t leds;
 };

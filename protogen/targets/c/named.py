@@ -121,8 +121,9 @@ def _bits(record: str, field: Field, kind: str, item: BitField, names: Names) ->
     words = (record, field.name, item.name)
     thing = inside(record, "run of bits", field.name, "bits", item.name)
     first = next(iter(paragraphs(item.about.doc)), descriptions.words(item.name))
+    named = f", {names.values_of(item.enum.name)}" if item.enum else ""
     return BitsView(
-        comments.comment([f"{first.rstrip('.')}; {item.words} of {field.name}."]),
+        comments.comment([f"{first.rstrip('.')}{named}; {item.words} of {field.name}."]),
         Macro(names.claim_macro(thing, *words, "mask"), hexadecimal(item.mask)),
         Macro(names.claim_macro(thing, *words, "shift"), f"{item.low}U"),
         kind,

@@ -61,6 +61,10 @@ class Names:
         """A macro or a named value: `RN1_GYRO_PAYLOAD_SIZE`."""
         return self.others.add(self._joined(words).upper(), thing)
 
+    def values_of(self, name: str) -> str:
+        """The named values of an enum or of flags, for people: `RN1_GYRO_STATUS_...`."""
+        return self._joined((name, "...")).upper()
+
     def claim_type(self, thing: Thing, *words: str) -> str:
         """A typedef, which in C++ no struct may be called like."""
         return self.others.add(self.tags.add(self._joined(words), thing), thing)

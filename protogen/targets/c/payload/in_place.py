@@ -383,6 +383,8 @@ class _Writing:
         doc = (
             f"Writes {name} into a frame that was begun; false, and nothing, if {refused} refused."
         )
+        if isinstance(element, BytesStep):
+            doc += _size_of(element)
         return self._inline(place, doc, element, arguments, body)
 
     def _piece_setter(self, step: BytesStep, place: Place) -> Setter:
@@ -409,7 +411,10 @@ class _Writing:
     ) -> Setter:
         name, kind = self._names_of(place)[1], self._type(value)
         pieces = isinstance(value, BytesStep) and bool(place.amount)
-        given = [f"{kind}{'' if kind.endswith('*') else ' '}value", *["size_t size"] * pieces]
+        if isinstance(value, BytesStep) and not pieces:
+            given = [f"{kind.removesuffix('*')}value[{value.count.greatest}]"]
+        else:
+            given = [f"{kind}{'' if kind.endswith('*') else ' '}value", *["size_t size"] * pieces]
         text = function(f"static inline bool {name}", (*arguments, *given), body)
         return Setter(
             field=place.step.name,
@@ -433,6 +438,13 @@ class _Writing:
             case BytesStep():
                 return "const char *" if isinstance(step.type, Text) else "const uint8_t *"
         raise AssertionError(step)
+
+
+def _size_of(step: BytesStep) -> str:
+    """What a caller has to know of the array that is given."""
+    if isinstance(step.type, Text):
+        return f" All {step.count.greatest} characters are read: NULs follow a shorter text."
+    return f" All {step.count.greatest} bytes are read."
 
 
 def _sum(start: str, offset: int) -> str:

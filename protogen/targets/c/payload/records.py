@@ -91,8 +91,15 @@ class Records:
             lines.add(*comments.comment([f"Number of {what} of {step.name}."], INDENT))
             lines.add(f"{counting_type(held.count.greatest)} {held.count.member};")
         if step.holds_values:
-            lines.add(*comments.comment(comments.of_field(step.field), INDENT))
+            doc = comments.of_field(step.field, self._values_of(step.field))
+            lines.add(*comments.comment(doc, INDENT))
             self._member(lines, step, self._names.member(step.name))
+
+    def _values_of(self, item: Field) -> str:
+        """What the names of its values, or of its flags, begin with; empty if they have none."""
+        integer = item.integer
+        named = integer and (integer.enum or integer.flags)
+        return self._names.values_of(named.name) if named else ""
 
     def _member(self, lines: Lines, step: AnyStep, name: str) -> None:
         """The member of that name, which has the sizes of the arrays around it behind it."""
