@@ -134,7 +134,7 @@ _build = Compiler.build
 
 
 def _build_quickly(compiler: Compiler, source: Path, library: Path) -> None:
-    _build(Compiler(compiler.command, (*compiler.flags, "-O1")), source, library)
+    _build(Compiler(compiler.command, (*compiler.flags, "-O0")), source, library)
 
 
 @pytest.fixture
