@@ -24,11 +24,9 @@ class CrcText(msgspec.Struct, frozen=True):
     """Statement that takes a byte in; `advance` follows for each of its bits."""
     advance: str
     step: tuple[str, ...]
-    """Statements that take a byte at once; those that all machines have, if some have others."""
-    by_words: str
-    """What follows where words are shifted as fast as bytes; empty if nothing does."""
-    by_bytes: tuple[str, ...]
-    """Those that follow elsewhere."""
+    """Statements that take a byte at once."""
+    by_words: tuple[str, ...]
+    """Others for machines that shift words as fast as bytes; empty if there are none."""
     shifts: bool
     """True if the step needs no table, which only hosts have then."""
     table: tuple[str, ...]
@@ -46,14 +44,12 @@ def crc_text(spec: ChecksumSpec, function: str) -> CrcText:
     type_ = unsigned_type(register.bits)
     entering = _into_top("byte", register)
     shifts = plan.shifts
-    wide = shifts if register.bits > 8 else None
     return CrcText(
         bits=register.bits,
         entering=f"sum = ({type_})(sum ^ {entering});",
         advance=_advance(register),
         step=tuple(_by_shifts(register, shifts) if shifts else _by_table(plan, function)),
-        by_words=_by_words(register, wide) if wide else "",
-        by_bytes=tuple(_by_bytes(register, wide)) if wide else (),
+        by_words=tuple(_by_words(register, shifts)) if shifts and register.bits > 8 else (),
         shifts=shifts is not None,
         table=tuple(_table(plan, range(1))),
         block_table=tuple(_table(plan, range(1, BLOCK))),
@@ -108,26 +104,12 @@ def _by_table(plan: CrcPlan, function: str) -> Iterator[str]:
 
 
 def _by_shifts(register: Register, shifts: Shifts) -> Iterator[str]:
+    """One statement for each byte of the register: small machines shift bytes best."""
     yield f"const uint8_t out = (uint8_t)({_byte_of(register, 0)} ^ byte);"
     yield f"const uint8_t factor = (uint8_t)({_xored('out', shifts.quotient)});"
     if register.bits == 8:
         yield f"sum = (uint8_t)({_xored('factor', shifts.product)});"
-
-
-def _by_words(register: Register, shifts: Shifts) -> str:
-    """One statement for the whole register."""
-    type_ = unsigned_type(register.bits)
-    terms = [_into(type_, "factor", shift) for shift in shifts.product if shift > -8]
-    return f"sum = ({type_})({' ^ '.join([_rest(register, 1), *terms])});"
-
-
-def _into(type_: str, byte: str, shift: int) -> str:
-    """The shift of a byte into a register."""
-    return f"(({type_}){byte} << {shift})" if shift > 0 else _shifted(byte, shift)
-
-
-def _by_bytes(register: Register, shifts: Shifts) -> Iterator[str]:
-    """One statement for each byte of the register: small machines shift bytes best."""
+        return
     low, high = (_xored("factor", tuple(s - 8 * i for s in shifts.product)) for i in range(2))
     if register.reflected:
         low = f"(uint8_t)(sum >> 8) ^ {low}"
@@ -136,6 +118,23 @@ def _by_bytes(register: Register, shifts: Shifts) -> Iterator[str]:
     yield f"const uint8_t high = (uint8_t)({high});"
     yield f"const uint8_t low = (uint8_t)({low});"
     yield "sum = (uint16_t)(((uint16_t)high << 8) | low);"
+
+
+def _by_words(register: Register, shifts: Shifts) -> Iterator[str]:
+    """One statement for the whole register. What is above a byte of `out` reaches no factor."""
+    type_ = unsigned_type(register.bits)
+    quotient = " ^ ".join(_moved("out", shift) for shift in shifts.quotient)
+    terms = [_moved("factor", shift) for shift in shifts.product if shift > -8]
+    yield f"const {type_} out = ({type_})({_byte_of(register, 0)} ^ byte);"
+    yield f"const {type_} factor = (uint8_t)({quotient});"
+    yield f"sum = ({type_})({' ^ '.join([_rest(register, 1), *terms])});"
+
+
+def _moved(number: str, shift: int) -> str:
+    """The shift of a number that has room for it."""
+    if not shift:
+        return number
+    return f"({number} {'<<' if shift > 0 else '>>'} {abs(shift)})"
 
 
 def _xored(name: str, shifts: tuple[int, ...]) -> str:
