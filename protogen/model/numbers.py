@@ -6,7 +6,7 @@ import struct
 import sys
 from collections.abc import Mapping
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
 from typing import ClassVar, Literal
 
 import msgspec
@@ -398,6 +398,7 @@ Codec = Number | WrittenNumeral | WrittenFreely
 """What encodes raw values and decodes them."""
 
 
+@cache
 def codec(type_: NumberType) -> Codec:
     """Codec of a number's raw value; of a float it is that of its bits."""
     form = type_.text

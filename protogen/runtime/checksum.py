@@ -309,7 +309,9 @@ def _mirrored(engine: _Engine, width: int) -> _Engine:
 
 def reversed_bits(value: int, width: int) -> int:
     """The number with its bits in the other order."""
-    return int(f"{value:0{width}b}"[::-1], 2)
+    size = width + 7 >> 3
+    reversed_bytes = value.to_bytes(size, "little").translate(_REVERSED_BYTES)
+    return _from_bytes(reversed_bytes, "big") >> 8 * size - width
 
 
-_REVERSED_BYTES = bytes(reversed_bits(byte, 8) for byte in range(256))
+_REVERSED_BYTES = bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from protogen.model.checksums import ChecksumSpec
+from protogen.model.checksums import ChecksumSpec, checksum_of
 from protogen.model.frame import Frame
 from protogen.model.parts import ChecksumPart, checksums_of
 from protogen.passes.proofs.contents import Contents, checksum_bytes, has_virtual, number_bytes
@@ -89,7 +89,11 @@ class Together:
     ) -> int:
         bound = sum(self._place(part.name, item.values).top for item in contents[part.name])
 
+        compute = checksum_of(part.algorithm).compute
+
         def checksum(data: bytes) -> int:
+            if not part.over_wire:
+                return self._worth(part, number_bytes(part, compute(data)))
             plain = dict(_split(covered, contents, data))
             return self._worth(part, checksum_bytes(self._frame, part, plain))
 

@@ -163,7 +163,8 @@ class Content:
 
     def _completes_identity(self, numbers: Sequence[Part]) -> bool:
         """True if the last identity part that is sent is among these."""
-        return any(part in numbers for part in self._layout.sent_identity[-1:])
+        sent = self._layout.sent_identity
+        return bool(sent) and sent[-1] in numbers
 
     def _read_bits(self, part: BitsPart, data: bytes) -> None:
         try:

@@ -173,6 +173,13 @@ class Candidate:
 
     def _search(self, byte: int) -> None:
         """Look for the delimiter; let pass what can't begin it."""
+        if not self._held:
+            for item in self._delimiters:
+                if item[0] == byte:
+                    break
+            else:
+                self._pass(byte)
+                return
         self._held += bytes((byte,))
         if self._held in self._delimiters:
             self._held = b""
