@@ -35,8 +35,8 @@ class Ratio:
 
     @property
     def is_missed(self) -> bool:
-        """True if it is above the aim, or not there."""
-        return not self.value <= self.aim
+        """True if it is above the aim as it is printed, to two places, or not there."""
+        return not round(self.value, 2) <= self.aim
 
 
 def row(cells: Iterable[object]) -> str:
