@@ -11,8 +11,16 @@ import re
 from pathlib import Path
 
 import pytest
-from c_proof.annotations import OPTIONS, annotated, fed
-from c_proof.drivers import Driver, decode_driver, first_driver, known_in, push_driver
+from c_proof.annotations import OPTIONS, annotated, contracted, fed, followed, sums_in
+from c_proof.drivers import (
+    SUMMED,
+    Driver,
+    decode_driver,
+    first_driver,
+    known_in,
+    push_driver,
+    sums_driver,
+)
 from c_proof.eva import MACHINES, Report, analyse
 from c_proof.generated import Generated, generate
 from c_proof.in_place import in_place_driver
@@ -117,6 +125,13 @@ LOADED = ("matty", "uherobot", "uherobot_daemon", "probe")
 does not see that this is what the size of the payload says; they are dispatched behind `decode`."""
 UHEROBOT = ROOT / "schemas" / "uherobot.yaml"
 
+SUMMING = [
+    *(ROOT / "schemas" / f"{name}.yaml" for name in ("dagny", "matty")),
+    *(ROOT / "tests" / "framings" / f"{name}.yaml" for name in ("folded_sums", "forms")),
+    HDLC,
+    PROBE,
+]
+"""One for each way in which a checksum takes a byte, but for Fletcher's."""
 SMALL = [
     *sorted((ROOT / "tests" / "c_proof" / "schemas").glob("*.yaml")),
     ROOT / "tests" / "framings" / "terminated_alone.yaml",
@@ -133,12 +148,48 @@ def decode_driver_of(made: Generated) -> Driver:
 
 def prove(made: Generated, driver: Driver, machine: str = WIDE, *, first: bool = False) -> Report:
     """Analyse a driver of generated code: all of it, or up to its first alarm."""
+    assert made.source is not None
+    plain = made.source.read_text(encoding="utf-8")
+    made.source.write_text(contracted(plain), encoding="utf-8")
+    sums = sums_in(plain)
+    options = (*driver.options, *([f"-eva-use-spec={','.join(sums)}"] if sums else []))
+    return prove_as_it_is(made, replace(driver, options=options), machine, first=first)
+
+
+def prove_as_it_is(
+    made: Generated, driver: Driver, machine: str = WIDE, *, first: bool = False
+) -> Report:
+    """Analyse a driver, and all functions that it calls."""
     source = made.folder / "driver.c"
     source.write_text(driver.text, encoding="utf-8")
     assert made.source is not None
     generated = made.source.read_text(encoding="utf-8")
     options = known_in(f"{driver.text}{generated}", driver.options)
     return analyse(source, made.folder, machine, *options, first=first)
+
+
+def prove_sums(made: Generated, machine: str = WIDE, *, first: bool = False) -> Report:
+    """Analyse what runs checksums over bytes."""
+    assert made.source is not None
+    plain = made.source.read_text(encoding="utf-8")
+    made.source.write_text(followed(plain, SUMMED), encoding="utf-8")
+    driver = sums_driver(made.protocol, sums_in(plain))
+    return prove_as_it_is(made, driver, machine, first=first)
+
+
+@pytest.mark.parametrize("path", SUMMING, ids=name_of)
+@pytest.mark.parametrize("machine", MACHINES)
+def test_no_bytes_harm_what_sums_them_up(path: Path, machine: str, tmp_path: Path) -> None:
+    report = prove_sums(generate(protocol_of(path), tmp_path), machine)
+    assert (report.alarms, report.found) == (0, ())
+
+
+def test_a_sum_of_bytes_too_far_away_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(MATTY), tmp_path)
+    assert made.source is not None
+    changed(made.source, r"data\+\+;", "data = &data[2];")
+    report = prove_sums(made, first=True)
+    assert report.alarms > 0
 
 
 @pytest.mark.parametrize(("path", "machine"), DECODES, ids=name_of)

@@ -36,6 +36,15 @@ _PAYLOAD_KNOWN = re.compile(
 """Where a frame's payload has a size, which it keeps while its event is filled."""
 _ROOM = re.compile(r"^( +)if \(\(uint8_t\)\(at - 1U\) >= (\d+)U\) \{\n", re.MULTILINE)
 """A place that is neither nought nor behind the buffer, which one comparison tells."""
+_SUM = re.compile(
+    r"^static \w+ (\w+_run)\(\w+ sum, const uint8_t \*data,\s+size_t size\) \{\n"
+    r"(?:.*\n)*?( +)(?=for \(; size > 0U; size--\))",
+    re.MULTILINE,
+)
+_CONTRACT = """\
+/*@ requires \\valid_read(data + (0 .. size - 1)) && \\initialized(data + (0 .. size - 1));
+    assigns \\result \\from sum, data[0 .. size - 1]; */
+"""
 _FIXED = re.compile(r"payload\[\d+\]")
 
 
@@ -44,6 +53,25 @@ def annotated(source: str) -> str:
     source = _CHECK.sub(lambda check: _annotated_check(check.group()), source)
     # A range can't leave out a byte in its middle, but those below and above it can do so.
     return _SEARCH.sub(lambda m: m.group() + _split(m[1] + "    ", "bytes[length] < end"), source)
+
+
+def sums_in(source: str) -> list[str]:
+    """The functions that run a checksum over bytes."""
+    return [found[1] for found in _SUM.finditer(source)]
+
+
+def contracted(source: str) -> str:
+    """Generated C with what functions of checksums need, which is proved of them alone.
+
+    A pointer and a size meet in them, which EVA knows only while it follows each byte: not at each
+    call, for which it looks at their contract.
+    """
+    return _SUM.sub(lambda found: _CONTRACT + found[0], source)
+
+
+def followed(source: str, most: int) -> str:
+    """The same functions with a comment that has EVA follow so many bytes."""
+    return _SUM.sub(lambda found: f"{found[0]}//@ loop unroll {most};\n{found[2]}", source)
 
 
 def fed(source: str, header: str) -> str:

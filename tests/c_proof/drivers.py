@@ -50,6 +50,15 @@ HEAD = """#define {upper}_FAST_FEED 0 /* memcpy, which only `feed` needs; fuzzed
 static volatile int any;
 static volatile uint8_t sink;
 """
+SUMMED = 300
+"""Bytes that functions of checksums are followed over."""
+_SUM = """
+static void prove_{function}(void) {{
+    uint8_t bytes[{most}];
+    Frama_C_make_unknown((char *)bytes, sizeof bytes);
+    sink = (uint8_t){function}((uint8_t)any, bytes, (size_t)Frama_C_interval(0, {most}));
+}}
+"""
 _TAKE = """
 static void take_{prefix}(void *user, const struct {prefix}_event *event) {{
     (void)user;
@@ -250,6 +259,13 @@ def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
         *((f"-eva-slevel-function={copy}:0",) if f"{copy}(" in source else ()),
     )
     return replace(program(parts, proofs), options=options)
+
+
+def sums_driver(protocol: Protocol, functions: Sequence[str]) -> Driver:
+    """Functions of checksums, over any bytes of any number up to `SUMMED`."""
+    head = HEAD.format(name=protocol.name, upper=protocol.name.upper())
+    parts = [_SUM.format(function=function, most=SUMMED) for function in functions]
+    return program([head, *parts], functions)
 
 
 def push_driver(
