@@ -60,7 +60,7 @@ DAGNY_LIBRARY_INLINE void dagny_library_copy_whole(uint8_t *to, const uint8_t *f
 }
 #endif
 
-DAGNY_LIBRARY_INLINE void dagny_library_store_u16le(uint8_t *at, uint16_t value) {
+DAGNY_LIBRARY_INLINE void dagny_library_store_u16le(uint8_t *at, uint_fast16_t value) {
     at[0] = (uint8_t)value;
     at[1] = (uint8_t)(value >> 8);
 }
@@ -199,9 +199,9 @@ DAGNY_LIBRARY_INLINE void dagny_library_odometry_store(const struct dagny_librar
     dagny_library_store_u16le(payload, message->right_count);
     dagny_library_store_u16le(payload + 2, message->left_count);
     dagny_library_store_u16le(payload + 4, message->quad_count);
-    dagny_library_store_u16le(payload + 6, (uint16_t)message->right_speed);
-    dagny_library_store_u16le(payload + 8, (uint16_t)message->left_speed);
-    dagny_library_store_u16le(payload + 10, (uint16_t)message->quad_speed);
+    dagny_library_store_u16le(payload + 6, (uint_fast16_t)message->right_speed);
+    dagny_library_store_u16le(payload + 8, (uint_fast16_t)message->left_speed);
+    dagny_library_store_u16le(payload + 10, (uint_fast16_t)message->quad_speed);
     payload[12] = (uint8_t)message->steer;
 #endif
 }
@@ -279,8 +279,8 @@ enum dagny_library_result dagny_library_battery_decode(struct dagny_library_batt
 
 DAGNY_LIBRARY_INLINE void dagny_library_compass_store(const struct dagny_library_compass *message,
                                                       uint8_t *payload) {
-    dagny_library_store_u16le(payload, (uint16_t)message->x);
-    dagny_library_store_u16le(payload + 2, (uint16_t)message->y);
+    dagny_library_store_u16le(payload, (uint_fast16_t)message->x);
+    dagny_library_store_u16le(payload + 2, (uint_fast16_t)message->y);
 }
 
 enum dagny_library_result dagny_library_compass_encode(const struct dagny_library_compass *message,

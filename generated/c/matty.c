@@ -75,7 +75,7 @@ MATTY_INLINE void matty_copy_whole(uint8_t *to, const uint8_t *from, size_t size
 }
 #endif
 
-MATTY_INLINE void matty_store_u16le(uint8_t *at, uint16_t value) {
+MATTY_INLINE void matty_store_u16le(uint8_t *at, uint_fast16_t value) {
     at[0] = (uint8_t)value;
     at[1] = (uint8_t)(value >> 8);
 }
@@ -154,8 +154,8 @@ enum matty_result matty_mode_decode(struct matty_mode *message, const uint8_t *p
 /* --- go --------------------------------------------------------------------------------------- */
 
 MATTY_INLINE void matty_go_store(const struct matty_go *message, uint8_t *payload) {
-    matty_store_u16le(payload, (uint16_t)message->speed);
-    matty_store_u16le(payload + 2, (uint16_t)message->steer);
+    matty_store_u16le(payload, (uint_fast16_t)message->speed);
+    matty_store_u16le(payload + 2, (uint_fast16_t)message->steer);
 }
 
 enum matty_result matty_go_encode(const struct matty_go *message, uint8_t *payload, size_t capacity,
@@ -184,8 +184,8 @@ enum matty_result matty_go_decode(struct matty_go *message, const uint8_t *paylo
 /* --- limits ----------------------------------------------------------------------------------- */
 
 MATTY_INLINE void matty_limits_store(const struct matty_limits *message, uint8_t *payload) {
-    matty_store_u16le(payload, (uint16_t)message->max_speed);
-    matty_store_u16le(payload + 2, (uint16_t)message->max_steer);
+    matty_store_u16le(payload, (uint_fast16_t)message->max_speed);
+    matty_store_u16le(payload + 2, (uint_fast16_t)message->max_steer);
 }
 
 enum matty_result matty_limits_encode(const struct matty_limits *message, uint8_t *payload,
@@ -321,8 +321,8 @@ MATTY_INLINE void matty_status_store(const struct matty_status *message, uint8_t
     payload[1] = message->mode;
     matty_store_u16le(payload + 2, message->voltage);
     matty_store_u16le(payload + 4, message->current);
-    matty_store_u16le(payload + 6, (uint16_t)message->speed);
-    matty_store_u16le(payload + 8, (uint16_t)message->angle);
+    matty_store_u16le(payload + 6, (uint_fast16_t)message->speed);
+    matty_store_u16le(payload + 8, (uint_fast16_t)message->angle);
     matty_store_u16le(payload + 10, message->encoder0);
     matty_store_u16le(payload + 12, message->encoder1);
     matty_store_u16le(payload + 14, message->encoder2);

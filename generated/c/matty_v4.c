@@ -75,7 +75,7 @@ MATTY_V4_INLINE void matty_v4_copy_whole(uint8_t *to, const uint8_t *from, size_
 }
 #endif
 
-MATTY_V4_INLINE void matty_v4_store_u16le(uint8_t *at, uint16_t value) {
+MATTY_V4_INLINE void matty_v4_store_u16le(uint8_t *at, uint_fast16_t value) {
     at[0] = (uint8_t)value;
     at[1] = (uint8_t)(value >> 8);
 }
@@ -168,8 +168,8 @@ enum matty_v4_result matty_v4_mode_decode(struct matty_v4_mode *message, const u
 /* --- go --------------------------------------------------------------------------------------- */
 
 MATTY_V4_INLINE void matty_v4_go_store(const struct matty_v4_go *message, uint8_t *payload) {
-    matty_v4_store_u16le(payload, (uint16_t)message->speed);
-    matty_v4_store_u16le(payload + 2, (uint16_t)message->steer);
+    matty_v4_store_u16le(payload, (uint_fast16_t)message->speed);
+    matty_v4_store_u16le(payload + 2, (uint_fast16_t)message->steer);
 }
 
 enum matty_v4_result matty_v4_go_encode(const struct matty_v4_go *message, uint8_t *payload,
@@ -200,8 +200,8 @@ enum matty_v4_result matty_v4_go_decode(struct matty_v4_go *message, const uint8
 
 MATTY_V4_INLINE void matty_v4_limits_store(const struct matty_v4_limits *message,
                                            uint8_t *payload) {
-    matty_v4_store_u16le(payload, (uint16_t)message->max_speed);
-    matty_v4_store_u16le(payload + 2, (uint16_t)message->max_steer);
+    matty_v4_store_u16le(payload, (uint_fast16_t)message->max_speed);
+    matty_v4_store_u16le(payload + 2, (uint_fast16_t)message->max_steer);
 }
 
 enum matty_v4_result matty_v4_limits_encode(const struct matty_v4_limits *message, uint8_t *payload,
@@ -404,15 +404,15 @@ MATTY_V4_INLINE void matty_v4_status_store(const struct matty_v4_status *message
     payload[1] = message->mode;
     matty_v4_store_u16le(payload + 2, message->voltage);
     matty_v4_store_u16le(payload + 4, message->current);
-    matty_v4_store_u16le(payload + 6, (uint16_t)message->speed);
-    matty_v4_store_u16le(payload + 8, (uint16_t)message->angle);
+    matty_v4_store_u16le(payload + 6, (uint_fast16_t)message->speed);
+    matty_v4_store_u16le(payload + 8, (uint_fast16_t)message->angle);
     matty_v4_store_u16le(payload + 10, message->encoder0);
     matty_v4_store_u16le(payload + 12, message->encoder1);
     matty_v4_store_u16le(payload + 14, message->encoder2);
     matty_v4_store_u16le(payload + 16, message->encoder3);
-    matty_v4_store_u16le(payload + 18, (uint16_t)message->roll);
-    matty_v4_store_u16le(payload + 20, (uint16_t)message->pitch);
-    matty_v4_store_u16le(payload + 22, (uint16_t)message->yaw);
+    matty_v4_store_u16le(payload + 18, (uint_fast16_t)message->roll);
+    matty_v4_store_u16le(payload + 20, (uint_fast16_t)message->pitch);
+    matty_v4_store_u16le(payload + 22, (uint_fast16_t)message->yaw);
 #endif
 }
 

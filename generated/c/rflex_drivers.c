@@ -50,7 +50,7 @@ static uint32_t rflex_drivers_load_u32be(const uint8_t *at) {
                       ((uint32_t)at[0] << 24));
 }
 
-RFLEX_DRIVERS_INLINE void rflex_drivers_store_u16be(uint8_t *at, uint16_t value) {
+RFLEX_DRIVERS_INLINE void rflex_drivers_store_u16be(uint8_t *at, uint_fast16_t value) {
     at[0] = (uint8_t)(value >> 8);
     at[1] = (uint8_t)value;
 }

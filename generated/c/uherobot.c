@@ -19,7 +19,7 @@
 #define UHEROBOT_APART UHEROBOT_SHARED
 #endif
 
-UHEROBOT_INLINE void uherobot_store_u16be(uint8_t *at, uint16_t value) {
+UHEROBOT_INLINE void uherobot_store_u16be(uint8_t *at, uint_fast16_t value) {
     at[0] = (uint8_t)(value >> 8);
     at[1] = (uint8_t)value;
 }
@@ -32,8 +32,8 @@ static uint16_t uherobot_load_u16be(const uint8_t *at) {
 
 UHEROBOT_INLINE void uherobot_motors_servos_leds_store(
     const struct uherobot_motors_servos_leds *message, uint8_t *payload) {
-    uherobot_store_u16be(payload, (uint16_t)message->motor_1);
-    uherobot_store_u16be(payload + 2, (uint16_t)message->motor_2);
+    uherobot_store_u16be(payload, (uint_fast16_t)message->motor_1);
+    uherobot_store_u16be(payload + 2, (uint_fast16_t)message->motor_2);
     for (size_t i = 0; i < 8U; i++) {
         uherobot_store_u16be(payload + 4U + 2U * i, message->servos[i]);
     }
@@ -74,8 +74,8 @@ enum uherobot_result uherobot_motors_servos_leds_decode(struct uherobot_motors_s
 
 UHEROBOT_INLINE void uherobot_motors_two_servos_store(
     const struct uherobot_motors_two_servos *message, uint8_t *payload) {
-    uherobot_store_u16be(payload, (uint16_t)message->motor_1);
-    uherobot_store_u16be(payload + 2, (uint16_t)message->motor_2);
+    uherobot_store_u16be(payload, (uint_fast16_t)message->motor_1);
+    uherobot_store_u16be(payload + 2, (uint_fast16_t)message->motor_2);
     for (size_t i = 0; i < 2U; i++) {
         uherobot_store_u16be(payload + 4U + 2U * i, message->servos[i]);
     }
@@ -114,8 +114,8 @@ enum uherobot_result uherobot_motors_two_servos_decode(struct uherobot_motors_tw
 
 UHEROBOT_INLINE void uherobot_motor_test_store(const struct uherobot_motor_test *message,
                                                uint8_t *payload) {
-    uherobot_store_u16be(payload, (uint16_t)message->motor_1);
-    uherobot_store_u16be(payload + 2, (uint16_t)message->motor_2);
+    uherobot_store_u16be(payload, (uint_fast16_t)message->motor_1);
+    uherobot_store_u16be(payload + 2, (uint_fast16_t)message->motor_2);
 }
 
 enum uherobot_result uherobot_motor_test_encode(const struct uherobot_motor_test *message,
@@ -146,9 +146,9 @@ enum uherobot_result uherobot_motor_test_decode(struct uherobot_motor_test *mess
 
 UHEROBOT_INLINE void uherobot_status_store(const struct uherobot_status *message,
                                            uint8_t *payload) {
-    uherobot_store_u16be(payload, (uint16_t)message->voltage);
-    uherobot_store_u16be(payload + 2, (uint16_t)message->current);
-    uherobot_store_u16be(payload + 4, (uint16_t)message->temperature);
+    uherobot_store_u16be(payload, (uint_fast16_t)message->voltage);
+    uherobot_store_u16be(payload + 2, (uint_fast16_t)message->current);
+    uherobot_store_u16be(payload + 4, (uint_fast16_t)message->temperature);
 }
 
 enum uherobot_result uherobot_status_encode(const struct uherobot_status *message, uint8_t *payload,

@@ -19,7 +19,7 @@
 #define UHEROBOT_DAEMON_APART UHEROBOT_DAEMON_SHARED
 #endif
 
-UHEROBOT_DAEMON_INLINE void uherobot_daemon_store_u16be(uint8_t *at, uint16_t value) {
+UHEROBOT_DAEMON_INLINE void uherobot_daemon_store_u16be(uint8_t *at, uint_fast16_t value) {
     at[0] = (uint8_t)(value >> 8);
     at[1] = (uint8_t)value;
 }
@@ -48,8 +48,8 @@ UHEROBOT_DAEMON_INLINE enum uherobot_daemon_result uherobot_daemon_motors_servos
 
 UHEROBOT_DAEMON_INLINE void uherobot_daemon_motors_servos_leds_store(
     const struct uherobot_daemon_motors_servos_leds *message, uint8_t *payload) {
-    uherobot_daemon_store_u16be(payload, (uint16_t)message->right_motor);
-    uherobot_daemon_store_u16be(payload + 2, (uint16_t)message->left_motor);
+    uherobot_daemon_store_u16be(payload, (uint_fast16_t)message->right_motor);
+    uherobot_daemon_store_u16be(payload + 2, (uint_fast16_t)message->left_motor);
     for (size_t i = 0; i < 8U; i++) {
         uherobot_daemon_store_u16be(payload + 4U + 2U * i, message->servos[i]);
     }
@@ -94,8 +94,8 @@ enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_decode(
 
 UHEROBOT_DAEMON_INLINE void uherobot_daemon_status_store(
     const struct uherobot_daemon_status *message, uint8_t *payload) {
-    uherobot_daemon_store_u16be(payload, (uint16_t)message->reserved);
-    uherobot_daemon_store_u16be(payload + 2, (uint16_t)message->pcb_temperature);
+    uherobot_daemon_store_u16be(payload, (uint_fast16_t)message->reserved);
+    uherobot_daemon_store_u16be(payload + 2, (uint_fast16_t)message->pcb_temperature);
     uherobot_daemon_store_u16be(payload + 4, message->cpu_current);
     uherobot_daemon_store_u16be(payload + 6, message->cpu_voltage);
     uherobot_daemon_store_u16be(payload + 8, message->motor_current);

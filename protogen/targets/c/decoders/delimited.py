@@ -183,6 +183,14 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
         return f"({self.counter})(at - 1U) >= {self.lead + self.buffer_size - 1}U"
 
     @property
+    def ends_when_full(self) -> bool:
+        """True if no byte but an end is due at one number of digits, and no end at another.
+
+        An end is no digit, so that it gives up a frame that is too short, as all else does.
+        """
+        return self.gives_up_first and self.only_size is not None
+
+    @property
     def least(self) -> int:
         """The number of bytes that are counted of a frame with an empty payload."""
         return self.in_front + self.counts_around + self.behind

@@ -299,7 +299,7 @@ class Helpers:
     def store(self, type_: NumberType) -> str:
         """The function that writes an unsigned number."""
         layout = cut(type_)
-        arguments = ("uint8_t *at", f"{unsigned_type(type_.bits)} value")
+        arguments = ("uint8_t *at", f"{stored_type(type_)} value")
         body = _stored(layout)
         name, is_short = f"store_{layout_name(layout)}", layout.size <= _SHORT
         return self.helper(name, "void", arguments, body, is_short=is_short)
@@ -435,6 +435,17 @@ def _own_bytes(type_: NumberType) -> tuple[str, ...]:
 
 
 # --- expressions --------------------------------------------------------------------------------
+
+
+def stored_type(type_: NumberType) -> str:
+    """The type of a number that is written.
+
+    Of 16 bits it is that of a register, where only the bytes are cut out that are written: machines
+    with wider registers would make a number with a sign one without, and then cut it again.
+    """
+    layout = cut(type_)
+    is_short = layout.bits == 16 and layout.byte_bits == 8
+    return "uint_fast16_t" if is_short else unsigned_type(type_.bits)
 
 
 def is_plain(type_: NumberType) -> bool:

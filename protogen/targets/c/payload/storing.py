@@ -22,7 +22,7 @@ from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.between import separator_of
 from protogen.targets.c.payload.filled_packing import FilledRun
 from protogen.targets.c.payload.free_numerals import FreeDigits
-from protogen.targets.c.payload.helpers import Helpers, is_plain, parted
+from protogen.targets.c.payload.helpers import Helpers, is_plain, parted, stored_type
 from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, bytes_of
 from protogen.targets.c.payload.placed import PlacedWalk
@@ -57,7 +57,7 @@ class _Output(Walk):
         raise NotImplementedError
 
     def _number(self, type_: NumberType, value: str) -> None:
-        """Put an unsigned number of several bytes."""
+        """Put a number of several bytes."""
         raise NotImplementedError
 
     def _bytes(self, place: str, count: int | str) -> None:
@@ -94,7 +94,7 @@ class _Output(Walk):
         elif type_.size == 1:
             self._byte(_byte_of(type_, place))
         else:
-            self._number(type_, _raw_of(type_, place))
+            self._number(type_, place)
 
     def _text(self, digits: FreeDigits, step: IntegerStep, value: str) -> None:
         """Put what stands for a number, behind the separator; one that is absent has no text."""
@@ -151,7 +151,8 @@ class Store(_Output, PlacedWalk):
         self.skip(1)
 
     def _number(self, type_: NumberType, value: str) -> None:
-        self.lines.add(f"{self.helpers.store(type_)}({self.address()}, {value});")
+        raw = f"({stored_type(type_)}){value}" if type_.signed else value
+        self.lines.add(f"{self.helpers.store(type_)}({self.address()}, {raw});")
         self.skip(type_.size)
 
     def _digits(self, digits: Digits, value: str) -> None:
@@ -200,7 +201,8 @@ class Put(_Output):
         self.lines.add(f"{self._write}({self._writing}, {value});")
 
     def _number(self, type_: NumberType, value: str) -> None:
-        self.lines.add(f"{self.helpers.write(type_)}({self._writing}, {value});")
+        raw = _raw_of(type_, value)
+        self.lines.add(f"{self.helpers.write(type_)}({self._writing}, {raw});")
 
     def _digits(self, digits: Digits, value: str) -> None:
         write = digits.write(self.helpers)
