@@ -12,6 +12,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from c_proof.received import SHORT
 from protogen.model.protocol import Protocol
 
 NEEDS = {
@@ -102,9 +103,13 @@ class Contracts:
             given = _PARAMETER.findall(body[: body.index("{")])
             names = [own] if own else []
             names += [
-                local[2] for local in _LOCAL.finditer(before) if _is_open(before[local.end() :], local)
+                local[2]
+                for local in _LOCAL.finditer(before)
+                if _is_open(before[local.end() :], local)
             ]
-            names += [name for name in given if re.search(rf"\b{name}(?: [-+|&^]?= |\+\+|--)", body)]
+            names += [
+                name for name in given if re.search(rf"\b{name}(?: [-+|&^]?= |\+\+|--)", body)
+            ]
             text = " ".join(f"loop {clause};" for clause in clauses)
             text += f" loop assigns {', '.join(dict.fromkeys([*names, *assigns]))};"
             return f"{loop[1]}//@ {text}\n{loop.group()}"
@@ -130,7 +135,7 @@ def needs(protocol: Protocol, header: str) -> dict[str, str]:
     return found
 
 
-def events_hold(protocol: Protocol, header: str, source: str) -> Contracts:
+def contracted(protocol: Protocol, header: str, source: str) -> Contracts:
     """Contracts that say: an event of a message has a payload that `load` can read."""
     name, upper = protocol.name, protocol.name.upper()
     made = Contracts(header, portable(source))
@@ -138,10 +143,14 @@ def events_hold(protocol: Protocol, header: str, source: str) -> Contracts:
     for found in _CHECK.findall(source):
         message = found.removeprefix(f"{name}_")
         if made.has(f"{found}_check"):
+            fits = f"{message}_fits(payload, size)"
+            # `dispatch` is analysed with payloads that fit. Long ones are left to `decode`, which
+            # has to take them all.
+            implies = "<==>" if _varies(made, found) > SHORT else "==>"
             made.put(
                 f"{found}_check",
                 r"assigns \nothing",
-                rf"ensures 0 <= \result < 255 && (\result == {upper}_OK ==> {message}_fits(payload, size))",
+                rf"ensures 0 <= \result < 255 && (\result == {upper}_OK {implies} {fits})",
             )
     for prefix in _SENDER.findall(source):
         if f"{prefix}_handler" in header:
@@ -154,6 +163,17 @@ def events_hold(protocol: Protocol, header: str, source: str) -> Contracts:
     made.declare("".join(_WORDS.format(size=size, last=size - 1) for size in (4, 8)))
     made.declare(_predicates(asked, upper))
     return made
+
+
+def _varies(made: Contracts, prefix: str) -> int:
+    """Size of a message's longest payload, if others are shorter."""
+    flat = re.sub(r"\\\n", " ", made.header)
+    [(least, most)] = [
+        (int(least), int(most))
+        for name, least, most in _SIZES.findall(flat)
+        if name == prefix.upper()
+    ]
+    return most if least < most else 0
 
 
 def _handled(made: Contracts, prefix: str, upper: str) -> None:
@@ -175,7 +195,9 @@ def _handled(made: Contracts, prefix: str, upper: str) -> None:
     made.put_safe(feed, valid, rf"{bytes_} && \separated(decoder, data + (0 .. size - 1))")
     kept = rf"index <= size && \valid(decoder) && {bytes_.removeprefix('requires ')}"
     kept = f"{kept} && \\separated(decoder, data + (0 .. size - 1))"
-    made.change(feed, _LOOP.sub(lambda m: f"{m[1]}//@ loop invariant {kept};\n{m[0]}", made.body(feed)))
+    made.change(
+        feed, _LOOP.sub(lambda m: f"{m[1]}//@ loop invariant {kept};\n{m[0]}", made.body(feed))
+    )
     complete = f"{prefix}_complete"
     behind = [int(place) for place in _BEHIND.findall(made.body(complete))]
     room = _room(made, prefix)
@@ -200,7 +222,9 @@ def _delivers(made: Contracts, function: str, call: str) -> None:
 
 def _room(made: Contracts, prefix: str) -> int:
     """Bytes in a decoder's buffer."""
-    found = re.search(rf"struct {prefix}_decoder \{{\n(?:(?!\}};).*\n)*? +uint8_t buffer\[(\d+)\];", made.header)
+    found = re.search(
+        rf"struct {prefix}_decoder \{{\n(?:(?!\}};).*\n)*? +uint8_t buffer\[(\d+)\];", made.header
+    )
     assert found
     return int(found[1])
 
@@ -210,9 +234,19 @@ def _whole(made: Contracts, prefix: str, valid: str, changes: str, room: int) ->
     data = r"\valid_read(data + (0 .. size - 1))"
     buffer = f"decoder->buffer[0 .. {room - 1}]"
     most = 0
-    if made.has(f"{prefix}_unstuff_to"):
-        [limit] = _LIMIT.findall(made.body(f"{prefix}_measure_head")) or ["255"]
+    if made.has(f"{prefix}_measure_head"):
+        head = made.body(f"{prefix}_measure_head")
+        [limit] = _LIMIT.findall(head) or ["255"]
         most = int(limit)
+        last = max(map(int, re.findall(r"content\[(\d+)\]", head)))
+        made.put_safe(
+            f"{prefix}_measure_head",
+            rf"requires \valid(payload) && \valid_read(content + (0 .. {last}))",
+            r"requires \separated(payload, content + (0 .. 0))",
+            "assigns *payload",
+            rf"ensures \result ==> *payload <= {most}",
+        )
+    if made.has(f"{prefix}_unstuff_to"):
         changes = f"{changes}, {buffer}"
         made.put_safe(
             f"{prefix}_unstuff_one",
@@ -223,18 +257,12 @@ def _whole(made: Contracts, prefix: str, valid: str, changes: str, room: int) ->
         made.put_safe(
             f"{prefix}_unstuff_to",
             f"requires 0 < from && from <= size && at <= need && need <= {room}",
-            rf"{valid} && {data} && \separated(decoder, data + (0 .. size - 1))",
+            rf"requires \valid(decoder) && {data} && \separated(decoder, data + (0 .. size - 1))",
             f"assigns {buffer}",
             r"ensures \result <= size",
         )
         inside = "invariant 0 < from && from <= size && at <= need"
         made.loops(f"{prefix}_unstuff_to", inside, assigns=[buffer])
-        made.put_safe(
-            f"{prefix}_measure_head",
-            rf"requires \valid(payload) && \valid_read(content + (0 .. 5))",
-            "assigns *payload",
-            rf"ensures \result ==> *payload <= {most}",
-        )
     if made.has(f"{prefix}_hand_over"):
         made.put_safe(
             f"{prefix}_hand_over",
@@ -243,7 +271,9 @@ def _whole(made: Contracts, prefix: str, valid: str, changes: str, room: int) ->
             r"ensures \result == 0 || \result == wire",
         )
     apart = rf"{data} && size > 0 && \separated(decoder, data + (0 .. size - 1))"
-    made.put_safe(f"{prefix}_take_whole", f"{valid} && {apart}", changes, r"ensures \result <= size")
+    made.put_safe(
+        f"{prefix}_take_whole", f"{valid} && {apart}", changes, r"ensures \result <= size"
+    )
 
 
 def _polled(made: Contracts, prefix: str, upper: str) -> None:
@@ -275,7 +305,9 @@ def _polled(made: Contracts, prefix: str, upper: str) -> None:
     reads_size = "buffer" in size
     told = size.replace("decoder->buffer", "content")
     if made.has(f"{prefix}_head_fits") and reads_size:
-        made.put(f"{prefix}_head_fits", r"assigns \nothing", rf"ensures \result ==> payload == {told}")
+        made.put(
+            f"{prefix}_head_fits", r"assigns \nothing", rf"ensures \result ==> payload == {told}"
+        )
     if made.has(f"{prefix}_identify"):
         _judged(made, prefix, upper, at)
     else:
@@ -293,13 +325,15 @@ def _polled(made: Contracts, prefix: str, upper: str) -> None:
             made.loops(function, f"invariant holds(message, {shown})", assigns=["*decoder"])
     if made.has(f"{prefix}_take_whole"):
         room = _room(made, prefix)
-        _whole(made, prefix, f"{valid} && {apart.removeprefix('requires ')}", "assigns *event", room)
+        whole = rf"{valid} && {apart.removeprefix('requires ')}"
+        whole += r" && \separated(event, data + (0 .. size - 1))"
+        _whole(made, prefix, whole, "assigns *event", room)
         made.promise(f"{prefix}_take_whole", f"ensures {event}")
     feed = f"{prefix}_decoder_feed"
     bytes_ = r"requires \valid_read(data + (0 .. size - 1))"
     apart_ = r"\separated(decoder, event, data + (0 .. size - 1))"
-    promise = f"ensures {event} && \\result <= size"
-    made.put_safe(feed, valid, apart, f"{bytes_} && {apart_}", f"{changes}, *event", promise)
+    promises = (f"ensures {event}", r"ensures \result <= size")
+    made.put_safe(feed, valid, apart, f"{bytes_} && {apart_}", f"{changes}, *event", *promises)
     invariants = [f"invariant holds(message, {shown}) && index <= size"]
     invariants += [f"invariant event->message == {none}"]
     made.loops(feed, *invariants, assigns=["*decoder", "*event"])
@@ -308,7 +342,9 @@ def _polled(made: Contracts, prefix: str, upper: str) -> None:
 def _shown(made: Contracts, prefix: str) -> tuple[str, str]:
     """Where an event's payload is in the buffer, and the size that it is said to have."""
     [at] = _PAYLOAD_AT.findall(made.body(f"{prefix}_show"))
-    call = re.search(r"_show\(decoder->buffer, (.*), event\);", made.body(f"{prefix}_decoder_event"))
+    call = re.search(
+        r"_show\(decoder->buffer, (.*), event\);", made.body(f"{prefix}_decoder_event")
+    )
     [size] = _PAYLOAD_SIZE.findall(made.body(f"{prefix}_show"))
     return at, call[1] if call else size.replace("content", "decoder->buffer")
 
@@ -327,7 +363,9 @@ def _judged(made: Contracts, prefix: str, upper: str, at: str) -> None:
         rf"ensures \result == {upper}_FINE ==> holds(*message, payload, size)",
     )
     kept = f"holds(decoder->message, decoder->buffer + {at}, decoder->payload)"
-    step = re.compile(rf"^static (uint8_t|void|bool) ({prefix}_\w+)\(struct {prefix}_decoder \*", re.M)
+    step = re.compile(
+        rf"^static (uint8_t|void|bool) ({prefix}_\w+)\(struct {prefix}_decoder \*", re.M
+    )
     for returned, name in step.findall(made.source):
         if name in made.functions:
             continue
@@ -351,10 +389,16 @@ def _purify(made: Contracts, function: str) -> None:
         if "*" in re.sub(r"const \w+ \*|const struct \w+ \*", "", head) or " put" in head:
             continue
         if re.search(r"const uint8_t \*data, size_t size\)", head):
-            made.put_safe(called, r"requires \valid_read(data + (0 .. size - 1))", r"assigns \nothing")
+            made.put_safe(
+                called, r"requires \valid_read(data + (0 .. size - 1))", r"assigns \nothing"
+            )
             made.loops(called, "invariant index <= size")
             inner = "loop invariant index <= end && end <= size && (end - index) % 8 == 0;"
-            body = re.sub(r"loop invariant index <= size;(.*\n.*index < end;)", rf"{inner}\1", made.body(called))
+            body = re.sub(
+                r"loop invariant index <= size;(.*\n.*index < end;)",
+                rf"{inner}\1",
+                made.body(called),
+            )
             made.change(called, body)
         else:
             made.put(called, r"assigns \nothing")
