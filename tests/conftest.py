@@ -28,6 +28,7 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
 
 SLOW = (
     "test_c_proof.py",
+    "test_c_contracts.py",
     "test_c_bounded.py",
     "test_c_bounded_forms.py",
     "test_schema_fuzzing.py",

@@ -50,6 +50,7 @@ ONLY = {
     "test_bench_python.py": r"\[0-|in_order|reference",
     "test_c_bounded.py": r"^$",
     "test_c_bounded_forms.py": r"^$",
+    "test_c_contracts.py": r"^$",
     "test_c_fuzz.py": r"^$",
     "test_c_proof.py": r"^$",
     "test_c_schemas.py": r"\[0\]",

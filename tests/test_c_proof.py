@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from c_proof.annotations import OPTIONS, annotated, contracted, fed, followed, sums_in
+from c_proof.contracts import needs
 from c_proof.drivers import (
     SUMMED,
     Driver,
@@ -123,6 +124,8 @@ way in which a decoder that is polled is printed."""
 LOADED = ("matty", "uherobot", "uherobot_daemon", "probe")
 """Those whose events are dispatched. In others that copies arrays of any number of elements: EVA
 does not see that this is what the size of the payload says; they are dispatched behind `decode`."""
+CONTRACTED = {path.stem for path in (*DOCUMENTS, *DIALECTS)}
+"""Protocols whose contracts say what `load` asks of a payload (`test_c_contracts.py`)."""
 UHEROBOT = ROOT / "schemas" / "uherobot.yaml"
 
 SUMMING = [
@@ -142,8 +145,9 @@ SMALL = [
 def decode_driver_of(made: Generated) -> Driver:
     """The driver of all `decode` functions, as they are now."""
     assert made.source is not None
-    texts = (path.read_text(encoding="utf-8") for path in (made.header, made.source))
-    return decode_driver(made.protocol, *texts)
+    header, source = (path.read_text(encoding="utf-8") for path in (made.header, made.source))
+    asked = needs(made.protocol, header) if made.protocol.name in CONTRACTED else {}
+    return decode_driver(made.protocol, header, source, asked)
 
 
 def prove(made: Generated, driver: Driver, machine: str = WIDE, *, first: bool = False) -> Report:

@@ -34,6 +34,7 @@ _CALLS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("qemu-s390x", "qemu-system-arm"), ("--version",)),
     "chromium": ("--version",),
     "frama-c": ("-version",),
+    **dict.fromkeys(("why3", "z3"), ("--version",)),
 }
 """Arguments with which a program in working order exits with 0."""
 

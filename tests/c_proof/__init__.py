@@ -1,1 +1,1 @@
-"""Proofs with Frama-C's EVA that generated C is safe for every input."""
+"""Proofs with Frama-C's EVA and WP that generated C is safe for every input."""

@@ -7,10 +7,10 @@ decide on the layout of others is asked of the model.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from c_proof.received import uses
+from c_proof.received import events, reads
 from protogen.copying import replace
 from protogen.model.expressions import names_in
 from protogen.model.messages import Message
@@ -174,9 +174,10 @@ static void prove_{prefix}_decode_of(size_t size) {{
     const uint8_t *const payload = &bytes[sizeof bytes - size];
     {message}
     Frama_C_make_unknown((char *)bytes, sizeof bytes);
-{splits}    if ({prefix}_decode({given}payload, size{held}) == 0) {{
-{uses}    }}
-}}
+{splits}    const bool taken = {prefix}_decode({given}payload, size{held}) == 0;
+    if (taken) {{
+{reads}    }}
+{events}}}
 
 static void prove_{prefix}_decode(void) {{
     //@ loop unroll {steps};
@@ -225,10 +226,11 @@ class Driver:
     """Statements that EVA has to be told."""
 
 
-def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
+def decode_driver(protocol: Protocol, header: str, source: str, asked: Mapping[str, str]) -> Driver:
     """Every payload of up to a byte more than the greatest, for each message's `decode`.
 
-    Those that it takes are dispatched, and their elements are read.
+    Elements of those that it takes are read. Those are dispatched of which no more is `asked`; of
+    messages of which nothing is known those that it takes.
     """
     flat = re.sub(r"\s+", " ", header)
     greatest = {name: int(size) for name, size in _GREATEST.findall(flat)}
@@ -245,7 +247,11 @@ def decode_driver(protocol: Protocol, header: str, source: str) -> Driver:
         )
         given = {"prefix": prefix, "room": room, "steps": room + 2}
         is_read = struct and prefix in messages
-        given["uses"] = uses(protocol, messages[prefix], prefix, flat) if is_read else ""
+        given["reads"] = reads(protocol, messages[prefix], prefix, flat) if is_read else ""
+        given["events"] = ""
+        if is_read:
+            message = messages[prefix]
+            given["events"] = events(protocol, message, flat, asked.get(message.name))
         given["held"] = "".join(f", held_{index}" for index in range(len(types)))
         given["message"] = f"struct {struct} message;" if struct else ""
         given["given"] = "&message, " if struct else ""

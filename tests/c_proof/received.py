@@ -1,9 +1,9 @@
 """What users do with a payload that was received, for EVA: read its elements, and dispatch it.
 
-An event has a message just where `decode` takes its payload. So `dispatch` gets each payload that
-`decode` takes, and what reads an element straight out of it any index below the number of elements,
-as its comment asks. Longer payloads are not dispatched: that would only take the time of `load`
-once more, which `decode` calls for all of them.
+What reads an element straight out of a payload gets any index below the number of elements, as its
+comment asks. `dispatch` gets each payload of which its contract asks no more (`contracts.py`), or
+each that `decode` takes. Longer payloads whose size varies are not dispatched: that would only take
+the time of `load` once more, which `decode` calls for all of them.
 """
 
 from __future__ import annotations
@@ -31,26 +31,21 @@ _STRUCT = """            struct {struct} element;
             {function}(payload, index, &element);
 """
 SHORT = 64
-"""The longest payloads that are dispatched."""
-_EVENT = """        if (size <= {short}) {{
-            struct {sender}_event event;
-            Frama_C_make_unknown((char *)&event, sizeof event);
-            event.message = {constant};
-            event.payload = payload;
-            event.payload_size = size;
-            {sender}_dispatch(NULL, &event);
-        }}
+"""The longest payloads of varying size that are dispatched."""
+_EVENT = """    if ({asked}) {{
+        struct {sender}_event event;
+        Frama_C_make_unknown((char *)&event, sizeof event);
+        event.message = {constant};
+        event.payload = payload;
+        event.payload_size = size;
+        {sender}_dispatch(NULL, &event);
+    }}
 """
 
 
-def uses(protocol: Protocol, message: Message, prefix: str, flat_header: str) -> str:
-    """The statements behind a `decode` that has succeeded."""
-    return _reads(protocol, message, prefix, flat_header) + _events(protocol, message, flat_header)
-
-
-def _reads(protocol: Protocol, message: Message, prefix: str, flat_header: str) -> str:
+def reads(protocol: Protocol, message: Message, prefix: str, flat_header: str) -> str:
     structs, names = dict(_ACCESSOR.findall(flat_header)), names_of(protocol)
-    statements = []
+    statements: list[str] = []
     for number, field in enumerate(message.fields):
         function = f"{prefix}_{field.name}"
         if function in structs:
@@ -61,14 +56,19 @@ def _reads(protocol: Protocol, message: Message, prefix: str, flat_header: str) 
     return "".join(statements)
 
 
-def _events(protocol: Protocol, message: Message, flat_header: str) -> str:
-    """Dispatching, unless numbers of the frame say how long the payload is."""
+def events(protocol: Protocol, message: Message, flat_header: str, asked: str | None) -> str:
+    """Dispatching of payloads, unless numbers of the frame say how long they are.
+
+    It gets those of which no more is asked than this; or, without that, those that were taken.
+    """
     senders = names_of(protocol).senders
     constant = f"{protocol.name}_message_{message.name}".upper()
     if any(field.part for field in message.fields) or f" {constant}" not in flat_header:
         return ""
+    short = "" if message.sizes.fixed is not None else f" && size <= {SHORT}"
+    asked = f"({asked or 'taken'}){short}"
     return "".join(
-        _EVENT.format(sender=senders[sender.name], constant=constant, short=SHORT)
+        _EVENT.format(sender=senders[sender.name], constant=constant, asked=asked)
         for sender in protocol.senders
         if sender.sends(message) and f" {senders[sender.name]}_dispatch(" in flat_header
     )
