@@ -39,8 +39,8 @@
 #endif
 
 /*
- * Where numbers lie in memory as on the wire, a message of several is copied as a whole, which takes
- * less flash than one by one. Define MATTY_AS_IN_MEMORY as 1 or 0 to choose.
+ * Where numbers lie in memory as on the wire, a message of several is copied as a whole, which
+ * takes less flash than one by one. Define MATTY_AS_IN_MEMORY as 1 or 0 to choose.
  */
 #ifndef MATTY_AS_IN_MEMORY
 #if defined(__BYTE_ORDER__) && UINTPTR_MAX <= 0xFFFFFFFF

@@ -114,8 +114,8 @@ enum matty_gps_mode_mode {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
- * no struct, nothing to load, and functions that take none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields
+ * has no struct, nothing to load, and functions that take none.
  */
 
 /* What the inline functions below share. */
@@ -428,18 +428,18 @@ static inline bool matty_gps_nmea_set_at(uint8_t *payload, size_t index, const c
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
- * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
- * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
- * payload less does, but the buffer has to take the most that its bytes can need.
- * `send` hands the same bytes to a function, one after another, and needs no buffer.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns
+ * how many bytes the frame has; 0 where it wrote none, as the buffer is too short or something
+ * can't be sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for
+ * a shorter payload less does, but the buffer has to take the most that its bytes can need. `send`
+ * hands the same bytes to a function, one after another, and needs no buffer.
  *
- * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
- * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
- * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
- * frame's size; 0 where a field has no default that is allowed, and was not set. It may move and stuff
- * the payload, also where it returns 0: begin each frame anew.
- * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
+ * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer
+ * of ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter.
+ * `..._set` and `..._set_at` write fields and elements there, and `end` makes it a frame. It
+ * returns the frame's size; 0 where a field has no default that is allowed, and was not set. It may
+ * move and stuff the payload, also where it returns 0: begin each frame anew. Where the number of
+ * elements varies, there is room for the most, and `end` takes how many are sent.
  */
 
 /** Takes the next byte of a frame. */
@@ -449,10 +449,11 @@ typedef void (*matty_put)(void *user, uint8_t byte);
 typedef bool (*matty_offer)(void *user, uint8_t byte);
 
 /**
- * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
- * matty_transmit to a `send`, then ask matty_transmitted. As long as that is false, call the same
- * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
- * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it
+ * with matty_transmit to a `send`, then ask matty_transmitted. As long as that is false, call the
+ * same `send` later, with the same message and arguments: it goes on with the byte that was
+ * refused. Each call goes over the frame from its start, as all that is kept of it is how many
+ * bytes are gone.
  */
 struct matty_transmission {
     matty_offer offer;
@@ -871,10 +872,10 @@ MATTY_API const char *matty_robot_mode_name(uint8_t value);
 MATTY_API const char *matty_gps_mode_mode_name(uint8_t value);
 
 /*
- * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
- * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
- * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
- * no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be
+ * sent, as "points[].x". "?" says that the payload as a whole has too few or too many bytes, and
+ * NULL that the message is right: then it is the buffer, or a part of the frame. A message that can
+ * always be sent has no such function.
  */
 MATTY_API const char *matty_gps_refused(const struct matty_gps *message);
 

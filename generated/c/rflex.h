@@ -160,8 +160,8 @@ struct rflex_sonar_data_readings {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
- * no struct, nothing to load, and functions that take none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields
+ * has no struct, nothing to load, and functions that take none.
  */
 
 /* What the inline functions below share. */
@@ -833,18 +833,18 @@ RFLEX_API void rflex_changed_byte_load(struct rflex_changed_byte *message, const
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
- * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
- * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
- * payload less does, but the buffer has to take the most that its bytes can need.
- * `send` hands the same bytes to a function, one after another, and needs no buffer.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns
+ * how many bytes the frame has; 0 where it wrote none, as the buffer is too short or something
+ * can't be sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for
+ * a shorter payload less does, but the buffer has to take the most that its bytes can need. `send`
+ * hands the same bytes to a function, one after another, and needs no buffer.
  *
- * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
- * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
- * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
- * frame's size; 0 where a field has no default that is allowed, and was not set. It may move and stuff
- * the payload, also where it returns 0: begin each frame anew.
- * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
+ * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer
+ * of ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter.
+ * `..._set` and `..._set_at` write fields and elements there, and `end` makes it a frame. It
+ * returns the frame's size; 0 where a field has no default that is allowed, and was not set. It may
+ * move and stuff the payload, also where it returns 0: begin each frame anew. Where the number of
+ * elements varies, there is room for the most, and `end` takes how many are sent.
  */
 
 /** Takes the next byte of a frame. */
@@ -854,10 +854,11 @@ typedef void (*rflex_put)(void *user, uint8_t byte);
 typedef bool (*rflex_offer)(void *user, uint8_t byte);
 
 /**
- * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
- * rflex_transmit to a `send`, then ask rflex_transmitted. As long as that is false, call the same
- * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
- * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it
+ * with rflex_transmit to a `send`, then ask rflex_transmitted. As long as that is false, call the
+ * same `send` later, with the same message and arguments: it goes on with the byte that was
+ * refused. Each call goes over the frame from its start, as all that is kept of it is how many
+ * bytes are gone.
  */
 struct rflex_transmission {
     rflex_offer offer;
@@ -1456,10 +1457,10 @@ RFLEX_API const char *rflex_start_stop_motor_packets_start_stop_name(uint8_t val
 RFLEX_API const char *rflex_start_stop_sonar_packets_start_stop_name(uint8_t value);
 
 /*
- * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
- * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
- * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
- * no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be
+ * sent, as "points[].x". "?" says that the payload as a whole has too few or too many bytes, and
+ * NULL that the message is right: then it is the buffer, or a part of the frame. A message that can
+ * always be sent has no such function.
  */
 RFLEX_API const char *rflex_sonar_data_refused(const struct rflex_sonar_data *message);
 

@@ -165,8 +165,8 @@ struct rflex_drivers_sonar_data_readings {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
- * no struct, nothing to load, and functions that take none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields
+ * has no struct, nothing to load, and functions that take none.
  */
 
 /* What the inline functions below share. */
@@ -1087,18 +1087,18 @@ static inline bool rflex_drivers_ir_report_data_set_at(uint8_t *payload, size_t 
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
- * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
- * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
- * payload less does, but the buffer has to take the most that its bytes can need.
- * `send` hands the same bytes to a function, one after another, and needs no buffer.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns
+ * how many bytes the frame has; 0 where it wrote none, as the buffer is too short or something
+ * can't be sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for
+ * a shorter payload less does, but the buffer has to take the most that its bytes can need. `send`
+ * hands the same bytes to a function, one after another, and needs no buffer.
  *
- * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer of
- * ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter. `..._set`
- * and `..._set_at` write fields and elements there, and `end` makes it a frame. It returns the
- * frame's size; 0 where a field has no default that is allowed, and was not set. It may move and stuff
- * the payload, also where it returns 0: begin each frame anew.
- * Where the number of elements varies, there is room for the most, and `end` takes how many are sent.
+ * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer
+ * of ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter.
+ * `..._set` and `..._set_at` write fields and elements there, and `end` makes it a frame. It
+ * returns the frame's size; 0 where a field has no default that is allowed, and was not set. It may
+ * move and stuff the payload, also where it returns 0: begin each frame anew. Where the number of
+ * elements varies, there is room for the most, and `end` takes how many are sent.
  */
 
 /** Takes the next byte of a frame. */
@@ -1108,10 +1108,11 @@ typedef void (*rflex_drivers_put)(void *user, uint8_t byte);
 typedef bool (*rflex_drivers_offer)(void *user, uint8_t byte);
 
 /**
- * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
- * rflex_drivers_transmit to a `send`, then ask rflex_drivers_transmitted. As long as that is false, call the same
- * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
- * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it
+ * with rflex_drivers_transmit to a `send`, then ask rflex_drivers_transmitted. As long as that is
+ * false, call the same `send` later, with the same message and arguments: it goes on with the byte
+ * that was refused. Each call goes over the frame from its start, as all that is kept of it is how
+ * many bytes are gone.
  */
 struct rflex_drivers_transmission {
     rflex_drivers_offer offer;
@@ -1122,7 +1123,9 @@ struct rflex_drivers_transmission {
     size_t seen;
 };
 
-/** The `put` for a `send` that may be refused bytes; `user` is a struct rflex_drivers_transmission. */
+/**
+ * The `put` for a `send` that may be refused bytes; `user` is a struct rflex_drivers_transmission.
+ */
 static inline void rflex_drivers_transmit(void *user, uint8_t byte) {
     struct rflex_drivers_transmission *const frame = (struct rflex_drivers_transmission *)user;
     if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
@@ -1804,7 +1807,8 @@ RFLEX_DRIVERS_API void rflex_drivers_flex_dispatch(void *user,
 /* --- names, for logs -------------------------------------------------------------------------- */
 
 /*
- * They are there where RFLEX_DRIVERS_NAMES is defined, for all sources alike. What has no name is "?".
+ * They are there where RFLEX_DRIVERS_NAMES is defined, for all sources alike. What has no name is
+ * "?".
  */
 
 RFLEX_DRIVERS_API const char *rflex_drivers_message_name(enum rflex_drivers_message message);
@@ -1817,10 +1821,10 @@ RFLEX_DRIVERS_API const char *rflex_drivers_start_stop_sonar_packets_mode_name(u
 RFLEX_DRIVERS_API const char *rflex_drivers_ir_run_mode_name(uint8_t value);
 
 /*
- * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
- * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
- * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
- * no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be
+ * sent, as "points[].x". "?" says that the payload as a whole has too few or too many bytes, and
+ * NULL that the message is right: then it is the buffer, or a part of the frame. A message that can
+ * always be sent has no such function.
  */
 RFLEX_DRIVERS_API const char *rflex_drivers_lcd_dump_refused(
     const struct rflex_drivers_lcd_dump *message);

@@ -89,8 +89,8 @@ enum uherobot_message {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
- * no struct, nothing to load, and functions that take none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields
+ * has no struct, nothing to load, and functions that take none.
  */
 
 /* --- motors_servos_leds ----------------------------------------------------------------------- */
@@ -229,11 +229,11 @@ UHEROBOT_API void uherobot_status_load(struct uherobot_status *message, const ui
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
- * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
- * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
- * payload less does, but the buffer has to take the most that its bytes can need.
- * `send` hands the same bytes to a function, one after another, and needs no buffer.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns
+ * how many bytes the frame has; 0 where it wrote none, as the buffer is too short or something
+ * can't be sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for
+ * a shorter payload less does, but the buffer has to take the most that its bytes can need. `send`
+ * hands the same bytes to a function, one after another, and needs no buffer.
  */
 
 /** Takes the next byte of a frame. */
@@ -243,10 +243,11 @@ typedef void (*uherobot_put)(void *user, uint8_t byte);
 typedef bool (*uherobot_offer)(void *user, uint8_t byte);
 
 /**
- * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
- * uherobot_transmit to a `send`, then ask uherobot_transmitted. As long as that is false, call the same
- * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
- * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it
+ * with uherobot_transmit to a `send`, then ask uherobot_transmitted. As long as that is false, call
+ * the same `send` later, with the same message and arguments: it goes on with the byte that was
+ * refused. Each call goes over the frame from its start, as all that is kept of it is how many
+ * bytes are gone.
  */
 struct uherobot_transmission {
     uherobot_offer offer;

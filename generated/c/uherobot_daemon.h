@@ -93,8 +93,8 @@ enum uherobot_daemon_message {
  * just `size` bytes; it keeps values that are out of range or have no name. Both write nothing at
  * all where they fail. `load` is `decode` without its checks, for a payload that an event of that
  * message brings, which the decoder has checked, and for nothing else. A struct may begin as its
- * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields has
- * no struct, nothing to load, and functions that take none.
+ * ..._INIT: the defaults of its fields, and zeros where they have none. A message without fields
+ * has no struct, nothing to load, and functions that take none.
  */
 
 /* --- motors_servos_leds ----------------------------------------------------------------------- */
@@ -207,11 +207,11 @@ UHEROBOT_DAEMON_API void uherobot_daemon_status_load(struct uherobot_daemon_stat
 /* --- frames ----------------------------------------------------------------------------------- */
 
 /*
- * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns how
- * many bytes the frame has; 0 where it wrote none, as the buffer is too short or something can't be
- * sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for a shorter
- * payload less does, but the buffer has to take the most that its bytes can need.
- * `send` hands the same bytes to a function, one after another, and needs no buffer.
+ * `frame` puts a whole frame into a buffer: delimiters, parts, checksums and stuffing. It returns
+ * how many bytes the frame has; 0 where it wrote none, as the buffer is too short or something
+ * can't be sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for
+ * a shorter payload less does, but the buffer has to take the most that its bytes can need. `send`
+ * hands the same bytes to a function, one after another, and needs no buffer.
  */
 
 /** Takes the next byte of a frame. */
@@ -221,10 +221,11 @@ typedef void (*uherobot_daemon_put)(void *user, uint8_t byte);
 typedef bool (*uherobot_daemon_offer)(void *user, uint8_t byte);
 
 /**
- * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it with
- * uherobot_daemon_transmit to a `send`, then ask uherobot_daemon_transmitted. As long as that is false, call the same
- * `send` later, with the same message and arguments: it goes on with the byte that was refused. Each
- * call goes over the frame from its start, as all that is kept of it is how many bytes are gone.
+ * A frame that goes out in pieces, as `offer` has room; at first `sent` and `seen` are 0. Give it
+ * with uherobot_daemon_transmit to a `send`, then ask uherobot_daemon_transmitted. As long as that
+ * is false, call the same `send` later, with the same message and arguments: it goes on with the
+ * byte that was refused. Each call goes over the frame from its start, as all that is kept of it is
+ * how many bytes are gone.
  */
 struct uherobot_daemon_transmission {
     uherobot_daemon_offer offer;
@@ -235,7 +236,10 @@ struct uherobot_daemon_transmission {
     size_t seen;
 };
 
-/** The `put` for a `send` that may be refused bytes; `user` is a struct uherobot_daemon_transmission. */
+/**
+ * The `put` for a `send` that may be refused bytes; `user` is a struct
+ * uherobot_daemon_transmission.
+ */
 static inline void uherobot_daemon_transmit(void *user, uint8_t byte) {
     struct uherobot_daemon_transmission *const frame = (struct uherobot_daemon_transmission *)user;
     if (frame->seen == frame->sent && frame->offer(frame->user, byte)) {
@@ -524,8 +528,8 @@ UHEROBOT_DAEMON_API void uherobot_daemon_board_decoder_flush(
  * A `dispatch` function takes a decoder's event, decodes its message and calls the message's own
  * function with it. Define those that you need; the others do nothing. They are weak where the
  * compiler knows weak functions. For another one, and where yours stand in the source that includes
- * this one's source, define UHEROBOT_DAEMON_NO_WEAK and all of them, or leave out the dispatching by
- * defining UHEROBOT_DAEMON_NO_HANDLERS for the source.
+ * this one's source, define UHEROBOT_DAEMON_NO_WEAK and all of them, or leave out the dispatching
+ * by defining UHEROBOT_DAEMON_NO_HANDLERS for the source.
  */
 
 /** motors_servos_leds came from daemon. */
@@ -552,7 +556,8 @@ UHEROBOT_DAEMON_API void uherobot_daemon_board_dispatch(
 /* --- names, for logs -------------------------------------------------------------------------- */
 
 /*
- * They are there where UHEROBOT_DAEMON_NAMES is defined, for all sources alike. What has no name is "?".
+ * They are there where UHEROBOT_DAEMON_NAMES is defined, for all sources alike. What has no name is
+ * "?".
  */
 
 UHEROBOT_DAEMON_API const char *uherobot_daemon_message_name(enum uherobot_daemon_message message);
@@ -560,10 +565,10 @@ UHEROBOT_DAEMON_API const char *uherobot_daemon_result_name(enum uherobot_daemon
 UHEROBOT_DAEMON_API const char *uherobot_daemon_reason_name(enum uherobot_daemon_reason reason);
 
 /*
- * Of a message that was refused: the first member whose value, or number of elements, can't be sent, as
- * "points[].x". "?" says that the payload as a whole has too few or too many bytes, and NULL that the
- * message is right: then it is the buffer, or a part of the frame. A message that can always be sent has
- * no such function.
+ * Of a message that was refused: the first member whose value, or number of elements, can't be
+ * sent, as "points[].x". "?" says that the payload as a whole has too few or too many bytes, and
+ * NULL that the message is right: then it is the buffer, or a part of the frame. A message that can
+ * always be sent has no such function.
  */
 UHEROBOT_DAEMON_API const char *uherobot_daemon_motors_servos_leds_refused(
     const struct uherobot_daemon_motors_servos_leds *message);

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import msgspec
 
 from protogen.targets.c.lines import WIDTH, prototype
+from protogen.targets.folding import block_comment, folded
 
 _OPENING, _CLOSING = "([{", ")]}"
 _HEAD = re.compile(r"(?P<function>\w[\w *]*)\((?P<arguments>[^()]+)\)(?P<end>;| \{)$")
@@ -18,6 +19,15 @@ _OPERATOR = re.compile(r"(?:&&| \||\|\|)$")
 """Operators behind which a line is broken."""
 _CONDITION = re.compile(r"(?:&&|\|\|)$")
 """Operators behind which it is broken even where what stands in front is too long."""
+
+
+_STARRED = re.compile(r" *\* (?=\S)(?!.*\*/)")
+"""A line of a comment in front of its last one; not one of an example, which is indented."""
+_OPENED = re.compile(r"(?P<indent> *)/\*\*? (?=\S)(?!.*\*/.)")
+"""The first line of a comment that begins there, and has nothing behind it."""
+
+_END = "\N{NO-BREAK SPACE}*/"
+"""The end of a comment, which stays behind its last word."""
 
 
 class _Break(msgspec.Struct, frozen=True):
@@ -36,11 +46,11 @@ class _Break(msgspec.Struct, frozen=True):
 
 
 def wrapped(text: str) -> str:
-    """The text with every line of code on at most so many columns, where that can be.
+    """The text with every line on at most so many columns, where that can be.
 
     A macro that goes on below is left as it is.
     """
-    lines = text.split("\n")
+    lines = list(_folded_comments(text.split("\n")))
     before = ["", *lines]
     return "\n".join(
         [
@@ -48,6 +58,40 @@ def wrapped(text: str) -> str:
             for above, line in zip(before, lines, strict=False)
         ]
     )
+
+
+def _folded_comments(lines: list[str]) -> Iterator[str]:
+    """The lines, with those of a comment's paragraph anew where one of them is too long."""
+    end = 0
+    while end < len(lines):
+        start, line = end, lines[end]
+        end += 1
+        starred, opened = _STARRED.match(line), _OPENED.match(line)
+        if starred:
+            while _STARRED.match(lines[end]) and lines[end].startswith(starred[0]):
+                end += 1
+        elif opened:
+            while not lines[end - 1].endswith("*/"):
+                end += 1
+        paragraph = lines[start:end]
+        if max(map(len, paragraph)) <= WIDTH or not (starred or opened):
+            yield from paragraph
+        elif starred:
+            text = " ".join(item.removeprefix(starred[0]) for item in paragraph)
+            yield from _folded(text, starred[0], starred[0])
+        elif opened:
+            indent, text = opened["indent"], " ".join(map(str.strip, paragraph))
+            if text.startswith("/** "):
+                doc = block_comment([text[len("/** ") : -len(" */")]], WIDTH - len(indent))
+                yield from (f"{indent}{item}" for item in doc)
+            else:
+                text = text[len("/* ") : -len(" */")] + _END
+                yield from _folded(text, f"{indent}/* ", f"{indent}   ")
+
+
+def _folded(text: str, lead: str, behind: str) -> Iterator[str]:
+    for number, line in enumerate(folded(text, WIDTH - len(lead), at_hyphens=False)):
+        yield f"{behind if number else lead}{line}".replace(_END, " */")
 
 
 def _broken(line: str) -> str:

@@ -112,9 +112,14 @@ class Validate(Walk):
         self._error = error
         self._is_by_member = by_member
         self._member = ""
+        self._outermost = lines.margin
+        self._refused: set[str] = set()
+        """Conditions of which a value is refused whatever the others are."""
 
     def _refuse(self, condition: str) -> None:
-        if condition:
+        if condition and condition not in self._refused:
+            if self.lines.margin == self._outermost:
+                self._refused.add(condition)
             with self.lines.block(f"if ({condition})"):
                 self._fail()
 

@@ -1,4 +1,4 @@
-"""What a generated header tells who reviews or calls it."""
+"""Generated C as those read it who review or call it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from tooling import require_tool
 from protogen.api import load
 from protogen.model.protocol import Protocol
 from protogen.targets.c.emit import emit, texts
-from protogen.targets.c.options import COptions
+from protogen.targets.c.options import COptions, Events
+from protogen.targets.c.wrapping import wrapped
 
 SCHEMA = """
 protocol: boiler
@@ -45,6 +46,13 @@ messages:
       name:  {type: ascii, size: 6}
       key:   {type: bytes, size: 4}
       cells: {type: uint16, count: 20}
+  trace:
+    id: 3
+    from: burner
+    fields:
+      n:     {type: uint8, range: [1, 9]}
+      hot:   {type: uint16, count: n}
+      cold:  {type: uint16, count: n}
 """
 
 
@@ -98,3 +106,49 @@ def test_decoders_of_messages_alone_declare_nothing_of_other_events(protocol: Pr
     files = emit([protocol], COptions(events="messages", hpp=True))
     for header in (file.text for file in files if file.path.suffix in (".h", ".hpp")):
         assert not re.search("event_kind|reason|BOILER_(UNKNOWN|INVALID|CHECKSUM)", header)
+
+
+@pytest.mark.parametrize("events", ["all", "messages"])
+def test_no_line_of_a_comment_is_too_long(events: Events, tmp_path: Path) -> None:
+    name = "a_protocol_of_some_length"
+    path = tmp_path / f"{name}.yaml"
+    path.write_text(SCHEMA.replace("protocol: boiler", f"protocol: {name}"), encoding="utf-8")
+    lines = [
+        line
+        for file in emit([load(path)], COptions(events=events, hpp=True))
+        if file.path.suffix in (".h", ".c", ".hpp")
+        for line in file.text.splitlines()
+        if line.lstrip().startswith(("*", "/*"))
+    ]
+    assert lines
+    assert [line for line in lines if len(line) > 100 and "     [](const " not in line] == []
+
+
+def test_paragraphs_of_comments_are_folded_by_themselves() -> None:
+    words = " ".join(["words"] * 20)
+    text = f"/* {words[:95]} */\n    /* {words}. */\n    /** {words}. */\n"
+    text += f"    /*\n     * {words}\n     * on.\n     *\n     * End. */"
+    folded = " ".join(["words"] * 15)
+    rest = " ".join(["words"] * 5)
+    assert wrapped(text).splitlines() == [
+        f"/* {words[:89]}",
+        "   words */",
+        f"    /* {folded}",
+        f"       {rest}. */",
+        "    /**",
+        f"     * {folded}",
+        f"     * {rest}.",
+        "     */",
+        "    /*",
+        f"     * {folded}",
+        f"     * {rest} on.",
+        "     *",
+        "     * End. */",
+    ]
+
+
+def test_a_number_that_counts_two_arrays_is_looked_at_once(protocol: Protocol) -> None:
+    source = texts(protocol, COptions())[1]
+    found = re.search(r"boiler_trace_validate\(.*?\n}", source, re.DOTALL)
+    assert found is not None
+    assert re.findall(r"if \((.*)\) {", found[0]) == ["message->n < 1U || message->n > 9U"]
