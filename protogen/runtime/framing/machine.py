@@ -51,6 +51,7 @@ class Candidate:
         """
         self.sender = sender
         self._spec = sender.frame
+        self._given_up_at = sender.frame.given_up_at
         self._layout = sender.layout
         self._wire = bytearray()
         self._shared = 0  # How many of these bytes, in front, are those of the frame before.
@@ -106,7 +107,7 @@ class Candidate:
                 self._take(byte)
             elif len(self._wire) > self._layout.start_size:
                 raise self._refused
-            if self._cut is None and len(self._wire) >= self._spec.given_up_at:
+            if self._cut is None and len(self._wire) >= self._given_up_at:
                 raise Rejected("length", f"no frame has more than {self._spec.greatest} bytes")
         except Rejected as why:
             return self._failure(why)
