@@ -22,7 +22,7 @@ FIRST = 3
 """Bytes behind those of a smallest frame: of its payload, or of the next one."""
 STATES = "-eva-slevel=1200"
 """A payload's checks are followed for each size and element alone."""
-PATHS = 4000
+PATHS = 20000
 """States that are followed alone at one place."""
 _DECODE = re.compile(
     r"enum \w+ (\w+)_decode\( ?(?:struct (\w+) \*message, )?const uint8_t \*payload, "
