@@ -110,9 +110,10 @@ of 16 for CRC-32 on the ATmega, one on the Cortex-M0.
 
 rflex's sonar_data has room for the 17 sonars of an ATRV-Jr here ([c/atrv.yaml](c/atrv.yaml)), in
 every program. Which of dagny's commands is sent varies while its programs run, and one function
-encodes them all, which is given the identity. The aim, with `--events messages`, is {target} times the expert's at most in the same
-ordinary build and on this machine, and no more than the expert's with `-flto`. In parentheses are
-ratios to that expert, which are held against the aim as they are printed.
+encodes them all, which is given the identity. The aim, with `--events messages`, is {target} times
+the expert's at most in the same ordinary build and on this machine, and no more than the expert's
+with `-flto`. In parentheses are ratios to that expert, which are held against the aim as they are
+printed.
 
 ## Where the aim is missed
 

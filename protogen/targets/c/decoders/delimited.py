@@ -191,6 +191,18 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
         return self.gives_up_first and self.only_size is not None
 
     @property
+    def is_full(self) -> str:
+        """The condition that all digits are there; nothing is written where more are."""
+        assert self.only_size is not None
+        kept = self.least - self.lead + self.only_size
+        return f"{self.content_counter} >= {self.counted(kept)}U"
+
+    @property
+    def is_unbegun(self) -> str:
+        """The condition that no start came; there is none of its digits alone."""
+        return f"{self.content_counter} < {self.counted(self.first_head)}U"
+
+    @property
     def least(self) -> int:
         """The number of bytes that are counted of a frame with an empty payload."""
         return self.in_front + self.counts_around + self.behind
