@@ -79,8 +79,8 @@ def test_contracts_are_comments(path: Path, tmp_path: Path) -> None:
     ("document", "before", "after", "function"),
     [
         ("dagny", "size > 128U", "size > 129U", "dagny_bump_check"),
-        ("rflex", "size - at > 246U", "size - at > 247U", "rflex_sonar_data_check"),
-        ("rn1", "size - at < 3U", "size - at < 2U", "rn1_maintenance_check"),
+        ("rflex", "size - at > 246U", "size - at > 249U", "rflex_sonar_data_check"),
+        ("rn1", "if (size != at)", "if (size < at)", "rn1_maintenance_check"),
         ("rn1", "size != 2U ? RN1_SIZE", "size > 2U ? RN1_SIZE", "rn1_host_identify"),
         (
             "rflex",
