@@ -111,4 +111,4 @@ def test_a_bound_that_is_wrong_by_one_is_found(
     contracts = contracts_of(made)
     assert before in contracts.body(function)
     contracts.change(function, contracts.body(function).replace(before, after))
-    assert prove(made, contracts, (function,), patience=5).failed
+    assert prove(made, contracts, (function,), patience=2).failed
