@@ -26,9 +26,6 @@ NEEDS = {
 _SIZES = re.compile(r"#define (\w+)_PAYLOAD_MIN (\d+)[uU]\s[^#]*#define \1_PAYLOAD_MAX (\d+)[uU]")
 _CHECK = re.compile(r"^static enum \w+ (\w+)_check\([^;{]*size_t \*need\) \{", re.MULTILINE)
 _HANDLED = re.compile(r"^ +decoder->handler\(decoder->user, &event\);\n", re.MULTILINE)
-_PAYLOAD_AT = re.compile(r"event->payload = &content\[(\d+)\];")
-_PAYLOAD_SIZE = re.compile(r"event->payload_size = ([^;]*);")
-_CHANGES = re.compile(r"decoder->(\w+)(?:\[[^\]]*\])?(?: [-+|&^]?= |\+\+|--)")
 _SENDER = re.compile(r"^(?:void|enum \w+) (\w+)_decoder_push\(", re.MULTILINE)
 _LOOP = re.compile(r"^( +)(?:for|while) \((?:(?:size_t|int) (\w+) = )?.*\{.*\n", re.MULTILINE)
 _LOCAL = re.compile(r"^( +)(?!return|__m128i)(?:enum )?\w+ (\w+)(?: = [^;]*)?;\n", re.MULTILINE)
@@ -80,13 +77,6 @@ class Contracts:
         """The same, for a function that is to access nothing out of bounds either."""
         self.put(name, *clauses)
         self.safe.append(name)
-
-    def promise(self, name: str, clause: str) -> None:
-        """Add a clause to a contract."""
-        before = self.body(name)
-        at = self.source.index(before)
-        end = self.source.rindex("*/", 0, at)
-        self.source = f"{self.source[:end]}    {clause};\n{self.source[end:]}"
 
     def change(self, name: str, body: str) -> None:
         """Put another text where that of a function is."""
@@ -153,10 +143,7 @@ def contracted(protocol: Protocol, header: str, source: str) -> Contracts:
                 rf"ensures 0 <= \result < 255 && (\result == {upper}_OK {implies} {fits})",
             )
     for prefix in _SENDER.findall(source):
-        if f"{prefix}_handler" in header:
-            _handled(made, prefix, upper)
-        else:
-            _polled(made, prefix, upper)
+        _handled(made, prefix, upper)
     _checked_loops(made)
     for function in list(made.functions):
         _purify(made, function)
@@ -276,110 +263,6 @@ def _whole(made: Contracts, prefix: str, valid: str, changes: str, room: int) ->
     )
 
 
-def _polled(made: Contracts, prefix: str, upper: str) -> None:
-    """What returns the message that is complete, whose event `NAME_decoder_event` fills."""
-    at, size = _shown(made, prefix)
-    none = f"{upper}_NO_MESSAGE"
-    valid = r"requires \valid(decoder)"
-    changes = "assigns *decoder"
-    shown = f"decoder->buffer + {at}, {size}"
-    event = "holds(event->message, event->payload, event->payload_size)"
-    apart = r"requires \valid(event) && \separated(event, decoder)"
-    made.put(
-        f"{prefix}_show",
-        rf"requires \valid(event) && \separated(event, content + (0 .. {at}))",
-        "assigns *event",
-        f"ensures event->payload == content + {at} && event->payload_size == {_of(made, prefix)}",
-    )
-    made.put(
-        f"{prefix}_decoder_event",
-        apart,
-        "assigns *event",
-        f"ensures event->payload == decoder->buffer + {at} && event->payload_size == {size}"
-        " && event->message == message",
-    )
-    for step in ("give_up", "reset", "open"):
-        if made.has(f"{prefix}_{step}"):
-            clauses = [f"ensures \\result == {none}"] if step == "give_up" else []
-            made.put(f"{prefix}_{step}", valid, changes, *clauses)
-    reads_size = "buffer" in size
-    told = size.replace("decoder->buffer", "content")
-    if made.has(f"{prefix}_head_fits") and reads_size:
-        made.put(
-            f"{prefix}_head_fits", r"assigns \nothing", rf"ensures \result ==> payload == {told}"
-        )
-    if made.has(f"{prefix}_identify"):
-        _judged(made, prefix, upper, at)
-    else:
-        is_told = [f"ensures \\result < 0 || \\result == {none} || payload == {told}"] * reads_size
-        made.put(
-            f"{prefix}_complete",
-            r"assigns \nothing",
-            f"ensures holds(\\result, content + {at}, payload)",
-            *is_told,
-        )
-    for name in ("push", "next", "flush"):
-        function = f"{prefix}_decoder_{name}"
-        if made.has(function):
-            made.put(function, valid, changes, f"ensures holds(\\result, {shown})")
-            made.loops(function, f"invariant holds(message, {shown})", assigns=["*decoder"])
-    if made.has(f"{prefix}_take_whole"):
-        room = _room(made, prefix)
-        whole = rf"{valid} && {apart.removeprefix('requires ')}"
-        whole += r" && \separated(event, data + (0 .. size - 1))"
-        _whole(made, prefix, whole, "assigns *event", room)
-        made.promise(f"{prefix}_take_whole", f"ensures {event}")
-    feed = f"{prefix}_decoder_feed"
-    bytes_ = r"requires \valid_read(data + (0 .. size - 1))"
-    apart_ = r"\separated(decoder, event, data + (0 .. size - 1))"
-    promises = (f"ensures {event}", r"ensures \result <= size")
-    made.put_safe(feed, valid, apart, f"{bytes_} && {apart_}", f"{changes}, *event", *promises)
-    invariants = [f"invariant holds(message, {shown}) && index <= size"]
-    invariants += [f"invariant event->message == {none}"]
-    made.loops(feed, *invariants, assigns=["*decoder", "*event"])
-
-
-def _shown(made: Contracts, prefix: str) -> tuple[str, str]:
-    """Where an event's payload is in the buffer, and the size that it is said to have."""
-    [at] = _PAYLOAD_AT.findall(made.body(f"{prefix}_show"))
-    call = re.search(
-        r"_show\(decoder->buffer, (.*), event\);", made.body(f"{prefix}_decoder_event")
-    )
-    [size] = _PAYLOAD_SIZE.findall(made.body(f"{prefix}_show"))
-    return at, call[1] if call else size.replace("content", "decoder->buffer")
-
-
-def _of(made: Contracts, prefix: str) -> str:
-    [size] = _PAYLOAD_SIZE.findall(made.body(f"{prefix}_show"))
-    return size
-
-
-def _judged(made: Contracts, prefix: str, upper: str, at: str) -> None:
-    """Steps that return why a candidate is no frame, or that it is one; the decoder has its message."""
-    made.put(
-        f"{prefix}_identify",
-        r"requires \valid(message) && \separated(message, parts, payload + (0 .. size - 1))",
-        "assigns *message",
-        rf"ensures \result == {upper}_FINE ==> holds(*message, payload, size)",
-    )
-    kept = f"holds(decoder->message, decoder->buffer + {at}, decoder->payload)"
-    step = re.compile(
-        rf"^static (uint8_t|void|bool) ({prefix}_\w+)\(struct {prefix}_decoder \*", re.M
-    )
-    for returned, name in step.findall(made.source):
-        if name in made.functions:
-            continue
-        clauses = [rf"ensures \result == {upper}_FRAME ==> {kept}"] * (returned == "uint8_t")
-        made.put(name, r"requires \valid(decoder)", "assigns *decoder", *clauses)
-        made.loops(name, assigns=["*decoder"])
-    made.put(
-        f"{prefix}_judge",
-        rf"requires \valid(decoder) && (reason == {upper}_FRAME ==> {kept})",
-        "assigns *decoder",
-        f"ensures holds(\\result, decoder->buffer + {at}, decoder->payload)",
-    )
-
-
 def _purify(made: Contracts, function: str) -> None:
     """Contracts for what a function calls that changes nothing but its own variables."""
     for called in dict.fromkeys(_CALL.findall(made.body(function))):
@@ -434,14 +317,11 @@ def portable(source: str) -> str:
     depth, left_out = 0, False
     for line in source.splitlines(keepends=True):
         directive = line.split()[0] if line.startswith("#") else ""
-        if directive in ("#if", "#ifdef", "#ifndef"):
-            if depth or (directive == "#if" and line.endswith("_SSE2\n")):
-                depth += 1
-                left_out = left_out or depth == 1
-        if not (depth and left_out):
-            lines.append(line) if not (depth == 1 and directive == "#endif") else None
-        if depth == 1 and directive == "#else":
-            left_out = False
+        begins = directive.startswith("#if") and (depth > 0 or line.endswith("_SSE2\n"))
+        depth += begins
+        left_out = (left_out or begins) and not (depth == 1 and directive == "#else")
+        if not left_out and not (depth == 1 and directive in ("#else", "#endif")):
+            lines.append(line)
         if depth and directive == "#endif":
             depth -= 1
             left_out = left_out and depth > 0

@@ -23,18 +23,17 @@ path = "{z3}"
 version = "{version}"
 """
 """What `why3 config detect` writes, but in a folder of its own."""
-_OPTIONS = (
+_READ = (
     "-no-autoload-plugins",
     "-load-module=wp,rtegen",
-    "-wp",
-    "-wp-cache=none",
-    "-wp-par=1",
-    "-wp-timeout=20",
-    "-wp-prover=z3",
+    "-machdep=gcc_x86_64",
+    "-simplify-cfg",
+    "-rte",
 )
+"""Without `switch`, WP follows where variables begin and end."""
+_PROVE = ("-wp", "-wp-cache=none", "-wp-par=1", "-wp-prover=z3")
 _GOALS = re.compile(r"Proved goals: +(\d+) / (\d+)")
 _GOAL = re.compile(r"Goal (\S+) : (?!Valid)")
-_RISK = re.compile(r"Warning: [^\n]*(?:[Cc]ast|Missing|skipped|ignored)[^\n]*")
 
 
 @dataclass(frozen=True)
@@ -44,30 +43,25 @@ class Proof:
     goals: int
     failed: tuple[str, ...]
     """Goals that are not proved, by name."""
-    doubts: tuple[str, ...]
-    """Warnings by which a proof might say less than it seems to."""
     log: str
 
 
 def prove_contracts(
-    source: Path, functions: Sequence[str], folder: Path, *, safe: Sequence[str] = ()
+    source: Path, functions: Sequence[str], folder: Path, *, safe: Sequence[str], patience: int
 ) -> Proof:
-    """Prove the contracts of some functions of a file.
+    """Prove the contracts of some functions of a file; and that safe ones do nothing undefined.
 
-    Those that are `safe` must not access memory out of bounds or overflow either.
+    `patience` is for each goal, in seconds.
     """
     frama_c, z3 = require_tool("frama-c"), require_tool("z3")
     require_tool("why3")
-    version = re.findall(r"\d+\.[\d.]+", subprocess.check_output([z3, "--version"], text=True))[0]
+    said = subprocess.run([z3, "--version"], capture_output=True, text=True, check=True).stdout
+    [version] = re.findall(r"\d+\.[\d.]+", said)
     config = folder / "why3.conf"
     config.write_text(_WHY3.format(z3=z3, version=version), encoding="utf-8")
-    command = [frama_c, *_OPTIONS, f"-wp-fct={','.join(functions)}"]
-    if safe:
-        command = [frama_c, "-no-autoload-plugins", "-load-module=wp,rtegen", "-rte"]
-        command += [f"-rte-select={','.join(safe)}", f"-cpp-extra-args=-I{folder}", str(source)]
-        command += ["-then", *_OPTIONS[2:], f"-wp-fct={','.join(functions)}"]
-    else:
-        command += [f"-cpp-extra-args=-I{folder}", str(source)]
+    command = [frama_c, *_READ, f"-cpp-extra-args=-I{folder}", f"-rte-select={','.join(safe)}"]
+    command += [str(source), "-then", *_PROVE, f"-wp-timeout={patience}"]
+    command += [f"-wp-fct={','.join(functions)}"]
     room = {**os.environ, "WHY3CONFIG": str(config)}
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=room)
     log = done.stdout + done.stderr
@@ -75,4 +69,4 @@ def prove_contracts(
     [counts] = _GOALS.findall(log)
     failed = tuple(_GOAL.findall(log))
     assert int(counts[1]) - int(counts[0]) == len(failed), log[-4000:]
-    return Proof(int(counts[1]), failed, tuple(_RISK.findall(log)), log)
+    return Proof(int(counts[1]), failed, log)
