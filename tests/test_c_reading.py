@@ -149,6 +149,7 @@ def test_paragraphs_of_comments_are_folded_by_themselves() -> None:
 
 def test_a_number_that_counts_two_arrays_is_looked_at_once(protocol: Protocol) -> None:
     source = texts(protocol, COptions())[1]
-    found = re.search(r"boiler_trace_validate\(.*?\n}", source, re.DOTALL)
-    assert found is not None
-    assert re.findall(r"if \((.*)\) {", found[0]) == ["message->n < 1U || message->n > 9U"]
+    for function, number in (("validate", "message->n"), ("check", "n")):
+        found = re.search(rf"boiler_trace_{function}\(.*?\n}}", source, re.DOTALL)
+        assert found is not None
+        assert len(re.findall(rf"if \({number}\w* < 1U \|\| ", found[0])) == 1

@@ -53,6 +53,8 @@ class NumberChecker(CheckedWalk):
         super().__init__(helpers, lines, prefix, fixed=fixed, needs=needs)
         self._ended = False  # True once something has taken all bytes that there were.
         self._numbers: dict[str, str] = {}  # Variables, by the places of the numbers they hold.
+        self._bounds: set[str] = set()  # Conditions of which any refuses the payload.
+        self._outermost = lines.margin
         self._branches = 0
 
     def finish(self, unfit: str, *, leaves: bool) -> None:
@@ -113,7 +115,10 @@ class NumberChecker(CheckedWalk):
         self._flush()
         most = count.greatest if by.type is None else by.type.greatest
         test = out_of_bounds(self.referred(by), count.least, count.greatest, most)
-        self._refuse(test, "SIZE")
+        if test not in self._bounds:
+            self._refuse(test, "SIZE")
+            if self.lines.margin == self._outermost:
+                self._bounds.add(test)
 
     # --- numbers ----------------------------------------------------------------------------------
 
