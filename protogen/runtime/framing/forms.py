@@ -91,10 +91,14 @@ class FormsCandidate:
     def push(self, byte: int) -> Cut | Failure | None:
         """Take the next byte. None: the candidate needs more."""
         self._wire.append(byte)
+        is_judged = False
         for index, candidate in enumerate(self._candidates):
             if self._verdicts[index] is None:
-                self._judge(index, candidate.push(byte))
-        return self._verdict()
+                verdict = candidate.push(byte)
+                if verdict is not None:
+                    self._judge(index, verdict)
+                    is_judged = True
+        return self._verdict() if is_judged else None
 
     def flush(self) -> Cut | Failure:
         """Take the end of the input."""
@@ -105,7 +109,7 @@ class FormsCandidate:
         assert verdict is not None
         return verdict
 
-    def _judge(self, index: int, verdict: Cut | Failure | None) -> None:
+    def _judge(self, index: int, verdict: Cut | Failure) -> None:
         sender = self._senders[index]
         if isinstance(verdict, Cut):
             try:
@@ -113,7 +117,7 @@ class FormsCandidate:
                 self._is_known[index] = message is not None
             except PayloadFault as error:
                 verdict = Failure(verdict.size, error.reason, str(error))
-        elif isinstance(verdict, Failure) and not self._is_begun_by_now(index):
+        elif not self._is_begun_by_now(index):
             verdict = Failure(0, verdict.reason, verdict.problem)  # No frame of it began here.
         self._verdicts[index] = verdict
 
