@@ -33,6 +33,10 @@ _PARAMETER = re.compile(r"(\w+)[,)]")
 _CALL = re.compile(r"\b(\w+)\(")
 _TO_WORD = re.compile(r"\(void\)memcpy\(&(\w+), ([^;]*), ([48])\);")
 _FROM_WORD = re.compile(r"\(void\)memcpy\(([^;]*), &(\w+), ([48])\);")
+_LEFT = r"invariant size <= \at(size, Pre) && data == \at(data, Pre) + (\at(size, Pre) - size)"
+"""What holds of the bytes that are left, of which the first is at `data`."""
+_IN_WORDS = r"invariant size == \at(size, Pre) && data == \at(data, Pre) && index <= size"
+_IN_BLOCK = f"{_IN_WORDS} && index <= end && end <= size && (end - index) % 8 == 0"
 _WORDS = """
 /*@ requires \\valid_read(at + (0 .. {last})); assigns \\nothing; */
 static uint64_t read_{size}(const uint8_t *at);
@@ -275,18 +279,22 @@ def _purify(made: Contracts, function: str) -> None:
             made.put_safe(
                 called, r"requires \valid_read(data + (0 .. size - 1))", r"assigns \nothing"
             )
-            made.loops(called, "invariant index <= size")
-            inner = "loop invariant index <= end && end <= size && (end - index) % 8 == 0;"
-            body = re.sub(
-                r"loop invariant index <= size;(.*\n.*index < end;)",
-                rf"{inner}\1",
-                made.body(called),
-            )
-            made.change(called, body)
+            _run_contract(made, called)
         else:
             made.put(called, r"assigns \nothing")
             made.loops(called)
         _purify(made, called)
+
+
+def _run_contract(made: Contracts, run: str) -> None:
+    """Bounds of the loops that take a checksum's bytes: words first on hosts, then what is left."""
+    made.loops(run, _LEFT)
+    lines = made.body(run).splitlines(keepends=True)
+    for index, line in enumerate(lines[:-1]):
+        if _LEFT in line and "index" in lines[index + 1]:
+            bounds = _IN_BLOCK if "index < end" in lines[index + 1] else _IN_WORDS
+            lines[index] = line.replace(_LEFT, bounds)
+    made.change(run, "".join(lines))
 
 
 def _is_open(behind: str, local: re.Match[str]) -> bool:
