@@ -37,7 +37,7 @@ from protogen.targets.c.lines import Lines, function, mentions
 from protogen.targets.c.payload.accessors import claim_accessor, reader
 from protogen.targets.c.payload.helpers import Helpers, cut, parted
 from protogen.targets.c.payload.records import Records
-from protogen.targets.c.payload.storing import Store
+from protogen.targets.c.payload.storing import Store, raw_of
 from protogen.targets.c.payload.validating import Validate
 from protogen.targets.c.payload.walk import amount, times
 from protogen.targets.c.payload.written_places import Amount, Place, Places, written_places
@@ -187,7 +187,7 @@ class _Put(Store):
         if _CALL.search(value):
             super()._number(type_, value)
             return
-        for place, byte in enumerate(parted(cut(type_), value)):
+        for place, byte in enumerate(parted(cut(type_), raw_of(type_, value))):
             self.lines.add(f"{self.byte(place)} = {byte};")
         self.skip(type_.size)
 

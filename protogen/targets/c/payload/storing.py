@@ -41,10 +41,10 @@ def _byte_of(type_: NumberType, value: str) -> str:
     """The only byte of a number."""
     if type_.role == "bool" or (is_plain(type_) and type_.signed):
         return f"(uint8_t){value}"
-    return value if is_plain(type_) else parted(type_, _raw_of(type_, value))[0]
+    return value if is_plain(type_) else parted(type_, raw_of(type_, value))[0]
 
 
-def _raw_of(type_: NumberType, value: str) -> str:
+def raw_of(type_: NumberType, value: str) -> str:
     """The unsigned value of a number."""
     return f"({unsigned_type(type_.bits)}){value}" if type_.signed else value
 
@@ -201,7 +201,7 @@ class Put(_Output):
         self.lines.add(f"{self._write}({self._writing}, {value});")
 
     def _number(self, type_: NumberType, value: str) -> None:
-        raw = _raw_of(type_, value)
+        raw = raw_of(type_, value)
         self.lines.add(f"{self.helpers.write(type_)}({self._writing}, {raw});")
 
     def _digits(self, digits: Digits, value: str) -> None:
