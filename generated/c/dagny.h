@@ -755,7 +755,8 @@ static inline bool dagny_transmitted(struct dagny_transmission *frame) {
 
 /**
  * The frame of a message that is one byte, for callers who have in a variable what tells it from
- * others. That there is such a message is not checked. `frame` of each of these messages calls this.
+ * others. That there is such a message is not checked. `frame` of each of these messages calls
+ * this.
  */
 DAGNY_API size_t dagny_host_frame_byte(uint8_t byte, uint8_t *frame, size_t capacity, uint8_t id);
 

@@ -41,7 +41,8 @@ typedef char dagny_library_gps_position_layout[offsetof(struct dagny_library_gps
 #include <string.h>
 #endif
 
-/* avr-gcc makes a short loop of memcpy, while others call it, as they do for a loop of single bytes. */
+/* avr-gcc makes a short loop of memcpy, while others call it, as they do for a loop of single
+   bytes. */
 DAGNY_LIBRARY_INLINE void dagny_library_copy_whole(uint8_t *to, const uint8_t *from, size_t size) {
 #if defined(__AVR__) && defined(__GNUC__)
     memcpy(to, from, size);

@@ -652,7 +652,8 @@ static inline bool dagny_library_transmitted(struct dagny_library_transmission *
 
 /**
  * The frame of a message that is one byte, for callers who have in a variable what tells it from
- * others. That there is such a message is not checked. `frame` of each of these messages calls this.
+ * others. That there is such a message is not checked. `frame` of each of these messages calls
+ * this.
  */
 DAGNY_LIBRARY_API size_t dagny_library_host_frame_byte(uint8_t byte, uint8_t *frame,
                                                        size_t capacity, uint8_t id);

@@ -56,7 +56,8 @@ typedef char matty_v4_status_layout[offsetof(struct matty_v4_status, yaw) == 22U
 #include <string.h>
 #endif
 
-/* avr-gcc makes a short loop of memcpy, while others call it, as they do for a loop of single bytes. */
+/* avr-gcc makes a short loop of memcpy, while others call it, as they do for a loop of single
+   bytes. */
 MATTY_V4_INLINE void matty_v4_copy_whole(uint8_t *to, const uint8_t *from, size_t size) {
 #if defined(__AVR__) && defined(__GNUC__)
     memcpy(to, from, size);
