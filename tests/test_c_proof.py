@@ -269,7 +269,7 @@ def test_no_input_harms_a_decoder(path: Path, events: Events, machine: str, tmp_
     assert (report.alarms, report.found) == (0, ())
 
 
-@pytest.mark.parametrize("path", DOCUMENTS, ids=name_of)
+@pytest.mark.parametrize("path", [*DOCUMENTS, *DIALECTS], ids=name_of)
 def test_no_message_harms_what_encodes_and_sends_it(path: Path, tmp_path: Path) -> None:
     report = prove_sending(generate(protocol_of(path), tmp_path))
     assert (report.alarms, report.found) == (0, ())
