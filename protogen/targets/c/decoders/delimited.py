@@ -194,13 +194,13 @@ class DelimitedDecoder(FlatDecoder, frozen=True, dict=True):
     def is_full(self) -> str:
         """The condition that all digits are there; nothing is written where more are."""
         assert self.only_size is not None
-        kept = self.least - self.lead + self.only_size
-        return f"{self.content_counter} >= {self.counted(kept)}U"
+        return f"at >= {self.least + self.only_size}U"
 
     @property
     def is_unbegun(self) -> str:
         """The condition that no start came; there is none of its digits alone."""
-        return f"{self.content_counter} < {self.counted(self.first_head)}U"
+        begun = self.lead + self.first_head
+        return "at == 0U" if begun == 1 else f"at < {begun}U"
 
     @property
     def least(self) -> int:

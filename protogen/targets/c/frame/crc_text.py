@@ -121,13 +121,17 @@ def _by_shifts(register: Register, shifts: Shifts) -> Iterator[str]:
 
 
 def _by_words(register: Register, shifts: Shifts) -> Iterator[str]:
-    """One statement for the whole register. What is above a byte of `out` reaches no factor."""
+    """Statements for the whole register. What is above a byte of `out` reaches no factor."""
     type_ = unsigned_type(register.bits)
     quotient = " ^ ".join(_moved("out", shift) for shift in shifts.quotient)
-    terms = [_moved("factor", shift) for shift in shifts.product if shift > -8]
+    wide = f"({type_})factor"
+    terms = [
+        _moved(wide if shift > 0 else "factor", shift) for shift in shifts.product if shift > -8
+    ]
     yield f"const {type_} out = ({type_})({_byte_of(register, 0)} ^ byte);"
-    yield f"const {type_} factor = (uint8_t)({quotient});"
-    yield f"sum = ({type_})({' ^ '.join([_rest(register, 1), *terms])});"
+    yield f"const uint8_t factor = (uint8_t)({quotient});"
+    yield f"const {type_} rest = ({type_}){_rest(register, 1)};"
+    yield f"sum = ({type_})({' ^ '.join(['rest', *terms])});"
 
 
 def _moved(number: str, shift: int) -> str:
