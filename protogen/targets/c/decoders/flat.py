@@ -13,6 +13,9 @@ from protogen.targets.c.frame.numbers import LiteralView, NumberView
 from protogen.targets.c.frame.part_numbers import fills_bytes
 from protogen.targets.c.frame.stuffing import Branch, Node, StuffingKind
 
+_TOP_BITS = {f"uint{bits}_t": 1 << (bits - 1) for bits in (8, 16, 32)}
+"""The highest bits of what counts bytes."""
+
 
 class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
     """Counters and conditions of a flat decoder."""
@@ -89,7 +92,35 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
     @property
     def has_node(self) -> bool:
         """True if something else than that counter tells the place inside of a stuffed byte."""
-        return self.stuffing is not None and not self.counts_digits
+        return self.stuffing is not None and not self.counts_digits and self.escape_flag is None
+
+    @cached_property
+    def escape_flag(self) -> int | None:
+        """The bit of that counter that says that an escape came; None where `node` says it.
+
+        Then one comparison finds all that is rare: no candidate, an escape, and the last byte.
+        """
+        if self.handed is None or self.only_size is None or self.checks_head:
+            return None
+        if self.stuffing is None or self.stuffing.kind is not StuffingKind.CODES:
+            return None
+        escapes = [b for b in self.branches(self.stuffing.nodes[0]) if b.node is not None]
+        has_others = len(escapes) != 1 or len(self.branches(self.stuffing.nodes[0])) != 1
+        if has_others or self.escape_xor is None or self.refused:
+            return None
+        return _TOP_BITS[self.counter] if self.last_due < _TOP_BITS[self.counter] else None
+
+    @property
+    def last_due(self) -> int:
+        """Value of that counter where the last byte of content is due, in frames of one size."""
+        assert self.only_size is not None
+        return self.counted(self.around + self.only_size) - 1
+
+    @property
+    def escape(self) -> str:
+        """The byte of the escape, where there is one."""
+        assert self.stuffing is not None
+        return byte(self.branches(self.stuffing.nodes[0])[0].byte)
 
     @property
     def idle_member(self) -> str:

@@ -70,6 +70,8 @@ def members_of(view: DecoderView | Candidate) -> tuple[Member, ...]:
     has_code = is_push and kind in (StuffingKind.BASE16, StuffingKind.COBS)
     is_paired = view.flat is not None and view.flat.counts_digits
     content = _DIGITS if is_paired else "Bytes of the candidate without stuffing."
+    if view.flat is not None and view.flat.escape_flag is not None:
+        content = "Bytes of the candidate without stuffing; its highest bit: an escape came."
     extra = "Bytes behind a failed candidate that may belong to a start."
     open_from = "Bytes on the wire in front of the first that may be a start."
     counters = (
