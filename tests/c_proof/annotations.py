@@ -38,7 +38,7 @@ _ROOM = re.compile(r"^( +)if \(\(uint8_t\)\(at - 1U\) >= (\d+)U\) \{\n", re.MULT
 """A place that is neither nought nor behind the buffer, which one comparison tells."""
 _SUM = re.compile(
     r"^static \w+ (\w+_run)\(\w+ sum, const uint8_t \*data,\s+size_t size\) \{\n"
-    r"(?:.*\n)*?( +)(?=for \(; size > 0U; size--\))",
+    r"(?:.*\n)*?( +)(?=for \(; size > 0U; size--\)|do \{)",
     re.MULTILINE,
 )
 _CONTRACT = """\

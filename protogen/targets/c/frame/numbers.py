@@ -404,8 +404,8 @@ class LengthView(msgspec.Struct, frozen=True):
     def told_payload(self, type_: str) -> str:
         """The payload's size that a possible `length` tells, of a C type."""
         if self.optional:
-            behind = f"length - {self.base + self.optional}U"
-            return f"({type_})(length != {self.base}U ? {behind} : 0U)"
+            most = f"{self.base + self.optional}U"
+            return f"({type_})(length > {most} ? length - {most} : 0U)"
         if self.base:
             return f"({type_})(length - {self.base}U)"
         return "length" if type_ == self.type else f"({type_})length"
