@@ -293,10 +293,10 @@ def test_no_event_has_bytes_that_were_not_received(path: Path, tmp_path: Path) -
     ],
 )
 def test_no_input_harms_a_decoder_of_one_message(document: str, only: str, tmp_path: Path) -> None:
-    """Its frames have one size, which it does not keep."""
+    """Its frames have one size, which it does not keep. Fed and dispatched, too."""
     protocol = protocol_of(ROOT / "schemas" / f"{document}.yaml")
     made = generate(protocol, tmp_path, COptions(events="messages", only=(only,)))
-    driver = push_driver(protocol, made.header.read_text(encoding="utf-8"))
+    driver = whole_driver(made)
     report = prove(made, driver, NARROW)
     assert (report.alarms, report.found) == (0, ())
 
