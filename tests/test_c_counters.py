@@ -226,6 +226,57 @@ def test_polled_decoders_count_what_python_finds(path: Path, decoder: str) -> No
                 assert found.checksums <= due.checksums
 
 
+ALIKE = """
+protocol: alike
+endpoints: {host: Host}
+byte_order: little
+frame:
+  start: {literal: 0x7E}
+  id: {type: uint8, id: true}
+  payload: {}
+  sum: {type: uint8, algorithm: sum-8, covers: [id, payload]}
+transparency: {covers: id..sum, escape: {byte: 0x7D, of: [0x7D, 0x7E], transform: {xor: 0x20}}}
+messages:
+  go: {id: 0x7D, from: host, fields: {x: uint8, y: uint16}}
+  turn: {id: 0x41, from: host, fields: {x: uint8, y: uint16}}
+"""
+TELLING = b"\x7e\x7d\x5d\x5e\x41\x00\x80\xff"
+
+
+def alike_stream(dice: Random) -> tuple[bytes, int]:
+    """Frames as the schema says, worked out here, between cut ones and noise, and their number."""
+    data, whole = bytearray(), 0
+    for _ in range(60):
+        body = bytes([dice.choice((0x7D, 0x41)), *dice.choices(TELLING, k=3)])
+        frame = bytearray(b"\x7e")
+        for byte in (*body, sum(body) & 0xFF):
+            frame += bytes([0x7D, byte ^ 0x20]) if byte in b"\x7d\x7e" else bytes([byte])
+        match dice.randrange(4):
+            case 0:
+                data += frame[: dice.randrange(1, len(frame))]
+            case 1:
+                data += bytes(dice.choices(TELLING, k=dice.randrange(1, 9)))
+                data += b"\x7e\x7d\x00"  # Closes what the noise began, and is none itself.
+            case _:
+                data += frame
+                whole += 1
+    return bytes(data), whole
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_frames_of_one_size_are_counted_behind_escapes(seed: int, tmp_path: Path) -> None:
+    """In streams of the bytes that mean something to a receiver."""
+    path = tmp_path / "alike.yaml"
+    path.write_text(ALIKE, encoding="utf-8")
+    data, whole = alike_stream(Random(f"alike {seed}"))
+    due = expected(path, "host", data)
+    assert due.messages >= whole > 10
+    for piece in (0, 1, 5, len(data)):
+        found = counted(path, "host", data, piece)
+        assert (found.messages, found.lost, found.pending) == (due.messages, due.lost, 0)
+        assert found.checksums == due.checksums
+
+
 COMMANDS = """
 protocol: commands
 endpoints: {host: Host}

@@ -223,6 +223,21 @@ def test_a_selection_decodes_as_the_same_selection_does_in_python(
     process.close()
 
 
+def test_frames_of_one_size_are_those_that_python_finds() -> None:
+    """Their decoder keeps in one number how much it has, and that an escape came."""
+    path = ROOT / "schemas" / "matty.yaml"
+    only = ("status",)
+    process = Process(protocol_of(path), COptions(only=only, events="messages"))
+    module = module_of(select(protocol_of(path), only, None))
+    check_corpus(process, module, "esp", path)
+    spec = module.PROTOCOL.sender("esp")
+    for seed in SEEDS:
+        dice = Random(f"matty status {seed}")
+        data = handwritten_streams.random_stream(spec, dice, 20)
+        check_events(process, module, "esp", steps_of(data, dice))
+    process.close()
+
+
 # --- what was worked out by hand ------------------------------------------------------------------
 
 
