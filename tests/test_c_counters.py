@@ -232,22 +232,23 @@ endpoints: {host: Host}
 byte_order: little
 frame:
   start: {literal: 0x7E}
+  length: {type: uint8, counts: payload}
   id: {type: uint8, id: true}
   payload: {}
-  sum: {type: uint8, algorithm: sum-8, covers: [id, payload]}
-transparency: {covers: id..sum, escape: {byte: 0x7D, of: [0x7D, 0x7E], transform: {xor: 0x20}}}
+  sum: {type: uint8, algorithm: sum-8, covers: length..payload}
+transparency: {covers: length..sum, escape: {byte: 0x7D, of: [0x7D, 0x7E], transform: {xor: 0x20}}}
 messages:
   go: {id: 0x7D, from: host, fields: {x: uint8, y: uint16}}
   turn: {id: 0x41, from: host, fields: {x: uint8, y: uint16}}
 """
-TELLING = b"\x7e\x7d\x5d\x5e\x41\x00\x80\xff"
+TELLING = b"\x7e\x7d\x5d\x5e\x41\x03\x80\xff"
 
 
 def alike_stream(dice: Random) -> tuple[bytes, int]:
     """Frames as the schema says, worked out here, between cut ones and noise, and their number."""
     data, whole = bytearray(), 0
     for _ in range(60):
-        body = bytes([dice.choice((0x7D, 0x41)), *dice.choices(TELLING, k=3)])
+        body = bytes([3, dice.choice((0x7D, 0x41)), *dice.choices(TELLING, k=3)])
         frame = bytearray(b"\x7e")
         for byte in (*body, sum(body) & 0xFF):
             frame += bytes([0x7D, byte ^ 0x20]) if byte in b"\x7d\x7e" else bytes([byte])
