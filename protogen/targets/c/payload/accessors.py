@@ -15,8 +15,9 @@ from protogen.model.payload_plan import (
 from protogen.model.types import NumberType
 from protogen.targets.c.comments import comment
 from protogen.targets.c.lines import Lines, function
-from protogen.targets.c.payload.helpers import Helpers, is_plain, is_whole, joined, sign_extended
+from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.loading import Load
+from protogen.targets.c.payload.number_bytes import is_plain, is_whole, joined, sign_extended
 from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.records import Records
 from protogen.targets.c.spelling import Names

@@ -14,7 +14,8 @@ from protogen.c_language.numbers import hexadecimal, integer_type, unsigned_type
 from protogen.model.packing import FilledPacking
 from protogen.model.payload_plan import IntegerStep, RepeatStep
 from protogen.model.types import Integer
-from protogen.targets.c.payload.helpers import Helpers, is_whole
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.number_bytes import is_whole
 
 _SIZE = "return count / 8U * bits + (count % 8U * bits + 7U) / 8U; /* Eight take whole bytes. */"
 

@@ -14,7 +14,7 @@ from protogen.model.payload_plan import (
     RepeatStep,
 )
 from protogen.model.types import Float, NumberType
-from protogen.targets.c.payload.helpers import is_plain, is_whole
+from protogen.targets.c.payload.number_bytes import is_plain, is_whole
 from protogen.targets.c.payload.texts import PaddedText
 
 _FEW = 4

@@ -35,7 +35,8 @@ from protogen.targets import naming
 from protogen.targets.c.comments import comment
 from protogen.targets.c.lines import Lines, function, mentions
 from protogen.targets.c.payload.accessors import claim_accessor, reader
-from protogen.targets.c.payload.helpers import Helpers, cut, parted
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.number_bytes import cut, parted
 from protogen.targets.c.payload.records import Records
 from protogen.targets.c.payload.storing import Store, raw_of
 from protogen.targets.c.payload.validating import Validate

@@ -9,7 +9,8 @@ import msgspec
 from protogen.c_language.numbers import hexadecimal, integer_type, unsigned, unsigned_type
 from protogen.model.numbers import Numeral
 from protogen.model.types import Integer
-from protogen.targets.c.payload.helpers import Helpers, is_whole
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.number_bytes import is_whole
 
 
 class Digits(msgspec.Struct, frozen=True):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from protogen.c_language.numbers import integer_type
 from protogen.model.payload_plan import IntegerStep, PartStep, PayloadPlan
-from protogen.targets.c.payload.helpers import is_plain
+from protogen.targets.c.payload.number_bytes import is_plain
 
 
 def only_byte(plan: PayloadPlan) -> str:

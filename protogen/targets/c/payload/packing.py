@@ -16,7 +16,8 @@ from protogen.model.packing import BytePart, Packing
 from protogen.model.payload_plan import AnyStep, Check, RepeatStep
 from protogen.model.payload_walks import PackedNumber, packed_numbers
 from protogen.model.types import NumberType
-from protogen.targets.c.payload.helpers import Helpers, is_whole
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.number_bytes import is_whole
 
 Placed = tuple[PackedNumber, str]
 """A number, and the member that holds it."""

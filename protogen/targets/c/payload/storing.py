@@ -22,7 +22,8 @@ from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.between import separator_of
 from protogen.targets.c.payload.filled_packing import FilledRun
 from protogen.targets.c.payload.free_numerals import FreeDigits
-from protogen.targets.c.payload.helpers import Helpers, is_plain, parted, stored_type
+from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.number_bytes import is_plain, parted, stored_type
 from protogen.targets.c.payload.numerals import Digits
 from protogen.targets.c.payload.packing import Placed, bytes_of
 from protogen.targets.c.payload.placed import PlacedWalk
