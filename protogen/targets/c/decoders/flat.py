@@ -104,11 +104,11 @@ class FlatDecoder(ReceivedFrame, frozen=True, dict=True):
             return None
         if self.stuffing is None or self.stuffing.kind is not StuffingKind.CODES:
             return None
-        escapes = [b for b in self.branches(self.stuffing.nodes[0]) if b.node is not None]
-        has_others = len(escapes) != 1 or len(self.branches(self.stuffing.nodes[0])) != 1
-        if has_others or self.escape_xor is None or self.refused:
+        begins = [b.node is not None for b in self.branches(self.stuffing.nodes[0])]
+        if begins != [True] or self.escape_xor is None or self.refused:
             return None
-        return _TOP_BITS[self.counter] if self.last_due < _TOP_BITS[self.counter] else None
+        flag = _TOP_BITS[self.counter]
+        return flag if self.last_due < flag else None
 
     @property
     def last_due(self) -> int:
