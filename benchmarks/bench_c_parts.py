@@ -83,7 +83,7 @@ def main() -> None:
             versions=versions(),
             checksums="\n".join(checksum_lines(sources, machines)),
             speeds="\n".join(speed_lines(sources, arguments.rounds)),
-            framings="\n".join(framing_lines(workshop, machines)),
+            framings="\n".join(framing_lines(workshop.folder, machines)),
         )
     arguments.output.write_text(text, encoding="utf-8")
 
@@ -120,13 +120,13 @@ def speed_lines(sources: Sequence[Source], rounds: int) -> Iterator[str]:
         yield row([source.name, *(f"{speed:,.0f}" for speed in speeds)])
 
 
-def framing_lines(workshop: Workshop, machines: Sequence[Machine]) -> Iterator[str]:
+def framing_lines(folder: Path, machines: Sequence[Machine]) -> Iterator[str]:
     heads = [
         f"{title}, {what}" for title in titles(machines) for what in ("decode / encode", "memory")
     ]
     yield from header("cycles a byte; flash / RAM", "build", *heads, texts=2)
     for title in FRAMINGS:
-        subject = framed(workshop, title)
+        workshop, subject = framed(folder, title)
         for build in BUILDS:
             cells = []
             for machine in machines:

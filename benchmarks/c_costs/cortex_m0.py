@@ -78,9 +78,11 @@ class _Run:
         straight = address + size if is_conditional(code) else None
         return (0 if mark is not None else cycles_of(code)), straight, mark
 
-    def _say(self, machine: Uc, access: int, address: int, size: int, *value: object) -> None:
-        del machine, access, address, size
-        self.events.append(Event(self._cycle, said=int(str(value[0])) & 0xFF))
+    def _say(
+        self, machine: Uc, access: int, address: int, size: int, value: int, user: object
+    ) -> None:
+        del machine, access, address, size, user
+        self.events.append(Event(self._cycle, said=value & 0xFF))
 
 
 def is_conditional(code: int) -> bool:

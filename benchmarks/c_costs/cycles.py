@@ -47,7 +47,7 @@ def build_counter(workshop: Workshop) -> Path:
 
 @dataclass
 class Cycles:
-    """Of one message in simavr."""
+    """Of one message on a small machine."""
 
     bytes: float
     decode: float
@@ -102,8 +102,8 @@ def cycles_apart(workshop: Workshop, counter: Path, subject: Subject) -> list[tu
     """Cycles for one byte in each function, while frames of the first message are decoded."""
     frames = frames_of(workshop.build(HOST, "host", subject), 0, FRAMES)
     program = _with_frames(workshop, AVR_APART, subject, 0, frames)
-    said = run([f"{AVR_APART.prefix}nm", "-S", "--defined-only", str(program)])
-    rows = [line.split() for line in said.splitlines()]
+    symbols = run([f"{AVR_APART.prefix}nm", "-S", "--defined-only", str(program)])
+    rows = [line.split() for line in symbols.splitlines()]
     places = [(int(row[0], 16), int(row[1], 16), row[3]) for row in rows if len(row) == 4]
     spent: dict[str, int] = {}
     for words in map(str.split, run([str(counter), str(program)]).splitlines()):

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
-from c_costs.protocols import FOLDER, Protocol
-from c_costs.toolchains import run
+from c_costs.protocols import Protocol
 from c_costs.workshop import Subject, Workshop
 
 FRAMINGS = {
@@ -65,20 +63,13 @@ messages:
       speed: {{type: sint16}}
       force: {{type: uint16}}
 """
-HEADER = FOLDER / "subjects" / "use_protogen_framed.h"
 
 
-def framed(workshop: Workshop, title: str) -> Subject:
-    """The message's codec in one of the framings."""
-    folder = workshop.folder / f"framing{list(FRAMINGS).index(title)}"
-    folder.mkdir()
-    schema = folder / "framed.yaml"
+def framed(folder: Path, title: str) -> tuple[Workshop, Subject]:
+    """The message's codec in one of the framings, and where it is built."""
+    workshop = Workshop(folder / f"framing{list(FRAMINGS).index(title)}")
+    workshop.folder.mkdir()
+    schema = workshop.folder / "framed.yaml"
     schema.write_text(SCHEMA.format(framing=FRAMINGS[title]), encoding="utf-8")
-    command = [sys.executable, "-m", "protogen", "generate", str(schema), "-o", str(folder)]
-    run([*command, "--quiet", "--target", "c", "--events", "messages", "--sender", "board"])
-    source: Path = folder / "c" / "framed.c"
     protocol = Protocol("framed", title, schema, "board", ("sample",), 8, 0, b"")
-    lto = ("-DFRAMED_APART=static",)
-    return Subject(
-        "messages", protocol, HEADER, (source.parent,), (source,), ("-DBENCH_POLLS",), lto
-    )
+    return workshop, workshop.subject("messages", protocol)
