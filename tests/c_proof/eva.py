@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
-from tooling import require_tool
+from c_proof.frama_c import run_frama_c
 
 MACHINES = ("gcc_x86_64", "gcc_x86_16")
 """Words of 64 bits; and of 16, as on AVR, where `int` is too narrow for much."""
@@ -47,17 +45,14 @@ def analyse(
 
     With `first` it ends at the first alarm, if there is one: that is enough to see that there is.
     """
-    frama_c = require_tool("frama-c")
     includes = f"-cpp-extra-args=-I{folder}"
     until = (_FIRST,) if first else ()
-    command = [frama_c, *_OPTIONS, *until, *options, f"-machdep={machine}", includes, str(source)]
-    room = {**os.environ, "OCAMLRUNPARAM": _ROOM}
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=room)
-    log = done.stdout + done.stderr
+    arguments = [*_OPTIONS, *until, *options, f"-machdep={machine}", includes, str(source)]
+    status, log = run_frama_c(arguments, OCAMLRUNPARAM=_ROOM)
     found = tuple(f"{place}: {' '.join(text.split())}" for place, text in _ALARM.findall(log))
     if first and found:
         return Report(len(found), found, log)
-    assert done.returncode == 0, log[-4000:]
+    assert status == 0, log[-4000:]
     assert "done for function main" in log, log[-4000:]
     counts = _ALARMS.findall(log)
     assert len(counts) == 1, log[-4000:]

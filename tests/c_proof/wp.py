@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 from collections.abc import Sequence
@@ -10,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tooling import require_tool
+
+from c_proof.frama_c import run_frama_c
 
 _WHY3 = """[main]
 magic = 14
@@ -53,19 +54,17 @@ def prove_contracts(
 
     `patience` is for each goal, in seconds.
     """
-    frama_c, z3 = require_tool("frama-c"), require_tool("z3")
+    z3 = require_tool("z3")
     require_tool("why3")
     said = subprocess.run([z3, "--version"], capture_output=True, text=True, check=True).stdout
     [version] = re.findall(r"\d+\.[\d.]+", said)
     config = folder / "why3.conf"
     config.write_text(_WHY3.format(z3=z3, version=version), encoding="utf-8")
-    command = [frama_c, *_READ, f"-cpp-extra-args=-I{folder}", f"-rte-select={','.join(safe)}"]
-    command += [str(source), "-then", *_PROVE, f"-wp-timeout={patience}"]
-    command += [f"-wp-fct={','.join(functions)}"]
-    room = {**os.environ, "WHY3CONFIG": str(config)}
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=room)
-    log = done.stdout + done.stderr
-    assert done.returncode == 0, log[-4000:]
+    arguments = [*_READ, f"-cpp-extra-args=-I{folder}", f"-rte-select={','.join(safe)}"]
+    arguments += [str(source), "-then", *_PROVE, f"-wp-timeout={patience}"]
+    arguments += [f"-wp-fct={','.join(functions)}"]
+    status, log = run_frama_c(arguments, WHY3CONFIG=str(config))
+    assert status == 0, log[-4000:]
     [counts] = _GOALS.findall(log)
     failed = tuple(_GOAL.findall(log))
     assert int(counts[1]) - int(counts[0]) == len(failed), log[-4000:]
