@@ -2,7 +2,7 @@
 
 An event has a message only with a payload of which `load` can read all that it reads, and what
 takes frames whole out of a buffer stays in it. The contracts are put into the C as comments
-(`c_proof/contracts.py`), and are proved one function at a time. EVA shows the rest
+(`c_proof/contracted.py`), and are proved one function at a time. EVA shows the rest
 (`test_c_proof.py`): that the payload of each event is there, and that `dispatch` does nothing wrong
 with any that a contract allows.
 """
@@ -13,8 +13,10 @@ import re
 from pathlib import Path
 
 import pytest
-from c_proof.contracts import Contracts, contracted, portable
+from c_proof.contracted import contracted
+from c_proof.contracts import Contracts
 from c_proof.generated import Generated, generate
+from c_proof.portable import portable
 from c_proof.wp import Proof, prove_contracts
 from compiled import DIALECTS, DOCUMENTS, ROOT, name_of, protocol_of
 

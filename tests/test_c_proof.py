@@ -12,7 +12,6 @@ from pathlib import Path
 
 import pytest
 from c_proof.annotations import OPTIONS, annotated, contracted, fed, followed, sums_in
-from c_proof.contracts import needs
 from c_proof.drivers import (
     SUMMED,
     Driver,
@@ -25,6 +24,7 @@ from c_proof.drivers import (
 from c_proof.eva import MACHINES, Report, analyse
 from c_proof.generated import Generated, generate
 from c_proof.in_place import in_place_driver
+from c_proof.needs import needs
 from c_proof.sending import send_driver, unrolled
 from compiled import DIALECTS, DOCUMENTS, ROOT, SCHEMAS, name_of, protocol_of
 
