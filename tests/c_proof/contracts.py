@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+_ORDER = ("requires", "assigns", "ensures")
 _LOOP = re.compile(r"^( +)(?:for|while) \((?:(?:size_t|int) (\w+) = )?.*\{.*\n", re.MULTILINE)
 _LOCAL = re.compile(
     r"^( +)(?!return|__m128i)(?:enum |struct )?\w+ (\w+)(?: = [^;]*)?;\n", re.MULTILINE
@@ -34,7 +35,8 @@ class Contracts:
 
     def put(self, name: str, *clauses: str) -> None:
         """Put a contract in front of a function, which is to be proved."""
-        contract = "/*@\n" + "".join(f"    {clause};\n" for clause in clauses) + "*/\n"
+        ordered = sorted(clauses, key=lambda clause: _ORDER.index(clause.split()[0]))
+        contract = "/*@\n" + "".join(f"    {clause};\n" for clause in ordered) + "*/\n"
         self.change(name, contract + self.body(name))
         self.functions.append(name)
 

@@ -12,6 +12,7 @@ from c_proof.contracts import Contracts, room_of
 from c_proof.whole import takes_whole
 
 _PAYLOAD_AT = re.compile(r"event->payload = &content\[(\d+)\];")
+_PLACE = re.compile(r"content\[(\d+)\]")
 _PAYLOAD_SIZE = re.compile(r"event->payload_size = ([^;]*);")
 _SHOWN = re.compile(r"_show\(decoder->buffer, (.*), event\);")
 _PART = re.compile(r"(event->parts\.\w+) = (content\[\d+\]);")
@@ -19,6 +20,9 @@ _CHANGED = re.compile(r"(decoder->\w+) = (\w+);")
 _BEHIND_BUFFER = re.compile(r"decoder->buffer\[at - (\d)U\]")
 _LEAST = re.compile(r"_complete\(decoder->buffer, \(\w+\)\(at - (\d+)U\)")
 _RUN = re.compile(r"_run\(sum, (?:content|&content\[(\d+)U\]), (\d+)U \+ payload(?: - (\d+)U)?\)")
+_AROUND = re.compile(r"(\d+)U \+ \(size_t\)decoder->payload")
+_CALL = re.compile(r"\b(\w+)\(")
+_DROPPED = "invariant to <= from && to <= count"
 _LIMITS = re.compile(r"case (0x\w+)U:\n +limit = (\d+)U;")
 """Bytes of content that a frame with a start of its own has."""
 
@@ -47,6 +51,7 @@ class _Decoder:
         self._room = room_of(made, prefix)
         [self._at] = _PAYLOAD_AT.findall(made.body(f"{prefix}_show"))
         [self._size] = _PAYLOAD_SIZE.findall(made.body(f"{prefix}_show"))
+        self._last = max(map(int, _PLACE.findall(made.body(f"{prefix}_show"))))
         [payload] = _SHOWN.findall(made.body(f"{prefix}_decoder_event"))
         self._payload = payload
         self._message = f"holds(\\result, decoder->buffer + {self._at}, {payload})"
@@ -56,6 +61,10 @@ class _Decoder:
     def _invariant(self) -> str:
         """What holds of the decoder between two bytes."""
         push = self._made.body(f"{self._prefix}_decoder_push")
+        if self._has("set_payload"):
+            members = ("content", "limit", "count")
+            bounds = [f"decoder->{member} <= {self._room}" for member in members]
+            return " && ".join([*bounds, f"decoder->payload <= {self._most()}"])
         limits = _LIMITS.findall(push)
         if limits:
             of_starts = " || ".join(
@@ -72,7 +81,7 @@ class _Decoder:
             most = self._room + int(behind[0])
             return (
                 f"(decoder->limit == 0 || ({least[0]} <= decoder->limit &&"
-                f" decoder->limit <= {most}))"
+                f" decoder->limit <= {most} && 1 <= decoder->content))"
             )
         return r"\true"
 
@@ -87,7 +96,7 @@ class _Decoder:
         show = self._made.body(f"{self._prefix}_show")
         self._put(
             "show",
-            r"requires \valid(event)",
+            rf"requires \valid(event) && \separated(event, content + (0 .. {self._last}))",
             r"assigns event->payload, event->payload_size, event->parts",
             f"ensures event->payload == content + {self._at}",
             f"ensures event->payload_size == {self._size}",
@@ -114,6 +123,11 @@ class _Decoder:
         for begin, size, less in _RUN.findall(made.body(f"{prefix}_complete")):
             last = f"{int(begin or 0) + int(size) - int(less or 0)} + payload - 1"
             more.append(rf"requires \valid_read(content + (0 .. {last}))")
+        told = self._payload.replace("decoder->buffer", "content")
+        if told != self._payload:
+            self._put("head_fits", r"assigns \nothing", rf"ensures \result ==> payload == {told}")
+            of_message = rf"0 <= \result && \result < {self._none}"
+            more.append(f"ensures {of_message} ==> payload == {told}")
         self._put(
             "complete",
             *more,
@@ -129,22 +143,57 @@ class _Decoder:
             r"requires \valid(message) && \separated(message, parts, payload + (0 .. size - 1))",
             "assigns *message",
             rf"ensures \result == {upper}_FINE ==> holds(*message, payload, size)",
+            rf"ensures \result != {upper}_FRAME",
         )
         kept = f"holds(decoder->message, decoder->buffer + {self._at}, decoder->payload)"
+        frame = rf"\result == {upper}_FRAME"
         step = re.compile(
-            rf"^static (uint8_t|void|bool) ({prefix}_\w+)\(struct {prefix}_decoder \*", re.M
+            rf"^static (\w+) ({prefix}_\w+)\((const )?struct {prefix}_decoder \*", re.MULTILINE
         )
-        for returned, name in step.findall(made.source):
-            is_reason = returned == "uint8_t"
-            clauses = [rf"ensures \result == {upper}_FRAME ==> {kept}"] if is_reason else []
-            made.put(name, r"requires \valid(decoder)", "assigns *decoder", *clauses)
-            made.loops(name, assigns=["*decoder"])
+        steps = [(found[1], found[2], bool(found[3])) for found in step.finditer(made.source)]
+        for returned, name, is_constant in steps:
+            if name == f"{prefix}_judge" or returned == "enum":
+                continue
+            clauses = []
+            if name == f"{prefix}_set_payload":
+                clauses.append(f"requires size <= {self._most()}")
+            if returned == "uint8_t":
+                clauses.append(
+                    f"ensures {frame} ==> {kept}"
+                    if self._calls(name, "complete")
+                    else rf"ensures \result != {upper}_FRAME"
+                )
+            made.put(
+                name,
+                rf"requires \valid(decoder) && {self._between}",
+                r"assigns \nothing" if is_constant else "assigns *decoder",
+                f"ensures {self._between}",
+                *clauses,
+            )
+            places = [_DROPPED] if name == f"{prefix}_drop" else []
+            made.loops(name, *places, f"invariant {self._between}", assigns=["*decoder"])
         self._put(
             "judge",
-            rf"requires \valid(decoder) && (reason == {upper}_FRAME ==> {kept})",
+            rf"requires \valid(decoder) && {self._between}",
+            f"requires reason == {upper}_FRAME ==> {kept}",
             "assigns *decoder",
             f"ensures {self._message}",
+            f"ensures {self._between}",
         )
+
+    def _calls(self, function: str, other: str) -> bool:
+        """Whether a function calls another one, itself or by what it calls."""
+        called = set(_CALL.findall(self._made.body(function)[len(function) :]))
+        return function == f"{self._prefix}_{other}" or any(
+            self._calls(name, other)
+            for name in called
+            if name != function and name.startswith(self._prefix) and self._made.has(name)
+        )
+
+    def _most(self) -> int:
+        """The greatest payload that fits in the buffer with what stands around it."""
+        [around] = _AROUND.findall(self._made.body(f"{self._prefix}_complete"))
+        return self._room - int(around)
 
     def steps(self) -> None:
         """What takes a byte, goes on, or ends the input."""
@@ -168,7 +217,8 @@ class _Decoder:
                     f"ensures {self._between}",
                 )
                 kept = self._message.replace(r"\result", "message")
-                made.loops(f"{prefix}_decoder_{name}", f"invariant {kept}", assigns=["*decoder"])
+                kept = f"invariant {kept} && {self._between}"
+                made.loops(f"{prefix}_decoder_{name}", kept, assigns=["*decoder"])
 
     def feeds(self) -> None:
         """What takes several bytes, and fills the event of the first message."""
