@@ -20,6 +20,9 @@ from c_proof.portable import portable
 from c_proof.wp import Proof, prove_contracts
 from compiled import DIALECTS, DOCUMENTS, ROOT, name_of, protocol_of
 
+from protogen.targets.c.options import COptions, Events
+
+EVENTS: tuple[Events, ...] = ("all", "messages")
 PROVED = [path for path in (*DOCUMENTS, *DIALECTS) if not path.stem.startswith("uherobot")]
 """Those of which EVA does not see all. Of uherobot it does: no array has a size of its own, and its
 decoders take frames byte by byte."""
@@ -44,11 +47,12 @@ def prove(
     )
 
 
+@pytest.mark.parametrize("events", EVENTS)
 @pytest.mark.parametrize("path", PROVED, ids=name_of)
 def test_events_can_be_loaded_and_whole_frames_stay_in_their_buffer(
-    path: Path, tmp_path: Path
+    path: Path, events: Events, tmp_path: Path
 ) -> None:
-    made = generate(protocol_of(path), tmp_path)
+    made = generate(protocol_of(path), tmp_path, COptions(events=events))
     contracts = contracts_of(made)
     feeds = [name for name in contracts.functions if name.endswith("_feed")]
     assert len(feeds) == len(made.protocol.senders)
@@ -58,58 +62,97 @@ def test_events_can_be_loaded_and_whole_frames_stay_in_their_buffer(
 
 
 @pytest.mark.parametrize("path", PROVED, ids=name_of)
-def test_contracts_are_comments(path: Path, tmp_path: Path) -> None:
+def test_what_takes_payloads_is_the_same_for_all_events_and_for_messages(
+    path: Path, tmp_path: Path
+) -> None:
+    """So that what EVA shows of `dispatch` and `load` with all events holds of messages alone."""
+    takes = re.compile(r"_(?:load|check|dispatch)$")
+    sources: list[dict[str, str]] = []
+    for events in EVENTS:
+        folder = tmp_path / events
+        folder.mkdir()
+        contracts = contracts_of(generate(protocol_of(path), folder, COptions(events=events)))
+        names = re.findall(r"^[a-z][^;{}()\n]*\b(\w+)\([^;{}]*\{", contracts.source, re.MULTILINE)
+        kept = [name for name in names if takes.search(name) and "_decoder_" not in name]
+        sources.append({name: contracts.body(name) for name in kept})
+    assert sources[0] == sources[1]
+    assert {name.rpartition("_")[2] for name in sources[0]} == {"load", "check", "dispatch"}
+
+
+@pytest.mark.parametrize("events", EVENTS)
+@pytest.mark.parametrize("path", PROVED, ids=name_of)
+def test_contracts_are_comments(path: Path, events: Events, tmp_path: Path) -> None:
     """Beside what is said of them: copies of words, a mask, and the call of the handler."""
-    made = generate(protocol_of(path), tmp_path)
+    made = generate(protocol_of(path), tmp_path, COptions(events=events))
     assert made.source is not None
     contracts = contracts_of(made)
     added = (
         r"^ *//@ .*\n|^/\*@ .*\*/\n|^/\*@\n(?:.*\n)*?\*/\n"
         r"|^static \w+ (?:read_|write_|\w+_application).*;\n"
     )
-    plain = re.sub(added, "", contracts.source, flags=re.MULTILINE)
-    plain = re.sub(r"\w+_application\(", "decoder->handler(", plain)
     before = portable(made.source.read_text(encoding="utf-8"))
-    assert [*filter(str.strip, plain.splitlines())] == [*filter(str.strip, before.splitlines())]
-    assert contracts.header == made.header.read_text(encoding="utf-8")
+    header = made.header.read_text(encoding="utf-8")
+    for annotated, text in ((contracts.source, before), (contracts.header, header)):
+        plain = re.sub(added, "", annotated, flags=re.MULTILINE)
+        plain = re.sub(r"\w+_application\(", "decoder->handler(", plain)
+        assert [*filter(str.strip, plain.splitlines())] == [*filter(str.strip, text.splitlines())]
 
 
 # --- faults that have to be seen ------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("document", "before", "after", "function"),
-    [
-        ("dagny", "size > 128U", "size > 129U", "dagny_bump_check"),
-        ("rflex", "size - at > 246U", "size - at > 249U", "rflex_sonar_data_check"),
-        ("rn1", "if (size != at)", "if (size < at)", "rn1_maintenance_check"),
-        ("rn1", "size != 2U ? RN1_SIZE", "size > 2U ? RN1_SIZE", "rn1_host_identify"),
-        (
-            "rflex",
-            "event.payload_size = decoder->payload;",
-            "event.payload_size = (uint16_t)(decoder->payload + 1U);",
-            "rflex_flex_complete",
-        ),
-        ("rn1", "size < 722U ||", "size < 721U ||", "rn1_brain_take_whole"),
-        ("rn1", "index < size; index++", "index <= size; index++", "rn1_is_high"),
-        ("matty", "size - from >= 8U", "size - from >= 7U", "matty_pc_unstuff_to"),
-        ("matty", "need - at >= 8U", "need - at >= 7U", "matty_pc_unstuff_to"),
-        ("matty", "if (from == size) {", "if (from > size) {", "matty_pc_unstuff_one"),
-        ("matty", "left > 121U", "left > 122U", "matty_pc_measure_head"),
-        (
-            "matty",
-            "while (index < size) {",
-            "while (index <= size) {",
-            "matty_pc_decoder_feed",
-        ),
-        ("rflex", "size - wire < 2U", "size - wire < 1U", "rflex_flex_take_whole"),
-    ],
-)
+OF_ALL = [
+    ("dagny", "size > 128U", "size > 129U", "dagny_bump_check"),
+    ("rflex", "size - at > 246U", "size - at > 249U", "rflex_sonar_data_check"),
+    ("rn1", "if (size != at)", "if (size < at)", "rn1_maintenance_check"),
+    ("rn1", "size != 2U ? RN1_SIZE", "size > 2U ? RN1_SIZE", "rn1_host_identify"),
+    (
+        "rflex",
+        "event.payload_size = decoder->payload;",
+        "event.payload_size = (uint16_t)(decoder->payload + 1U);",
+        "rflex_flex_complete",
+    ),
+    ("rn1", "size < 722U ||", "size < 721U ||", "rn1_brain_take_whole"),
+    ("rn1", "index < size; index++", "index <= size; index++", "rn1_is_high"),
+    ("matty", "size - from >= 8U", "size - from >= 7U", "matty_pc_unstuff_to"),
+    ("matty", "need - at >= 8U", "need - at >= 7U", "matty_pc_unstuff_to"),
+    ("matty", "if (from == size) {", "if (from > size) {", "matty_pc_unstuff_one"),
+    ("matty", "left > 121U", "left > 122U", "matty_pc_measure_head"),
+    (
+        "matty",
+        "while (index < size) {",
+        "while (index <= size) {",
+        "matty_pc_decoder_feed",
+    ),
+    ("rflex", "size - wire < 2U", "size - wire < 1U", "rflex_flex_take_whole"),
+]
+OF_MESSAGES = [
+    ("dagny", "size != 1U ? DAGNY_SIZE", "size > 1U ? DAGNY_SIZE", "dagny_host_identify"),
+    ("dagny", "decoder->limit = 514U;", "decoder->limit = 516U;", "dagny_host_find_size"),
+    ("dagny", "(uint16_t)(decoder->content - 1U)", "decoder->content", "dagny_host_close_open"),
+    ("matty", "(uint8_t)(decoder->limit - 5U)", "decoder->limit", "matty_pc_decoder_event"),
+    ("matty", "if (payload == 4U) {", "if (payload >= 4U) {", "matty_pc_complete"),
+    ("matty", "if (size > 4U) {", "if (size > 5U) {", "matty_pc_decoder_push"),
+    ("rflex", "content[3] != payload", "content[3] > payload", "rflex_linux_head_fits"),
+    ("rflex", "size - wire < 2U", "size - wire < 1U", "rflex_linux_take_whole"),
+    ("rn1", "limit = 722U;", "limit = 721U;", "rn1_brain_decoder_push"),
+    ("rn1", "*payload = 721;", "*payload = 722;", "rn1_brain_measure_head"),
+    ("rn1", "if (at >= limit) {", "if (at > limit) {", "rn1_brain_decoder_push"),
+    ("rn1", "decoder->payload = payload;", "decoder->payload = at;", "rn1_host_decoder_push"),
+    ("rn1", "size - taken,", "size,", "rn1_brain_decoder_dispatch"),
+]
+FAULTS = [
+    *(("all", *fault) for fault in OF_ALL),
+    *(("messages", *fault) for fault in OF_MESSAGES),
+]
+
+
+@pytest.mark.parametrize(("events", "document", "before", "after", "function"), FAULTS)
 def test_a_bound_that_is_wrong_by_one_is_found(
-    document: str, before: str, after: str, function: str, tmp_path: Path
+    events: Events, document: str, before: str, after: str, function: str, tmp_path: Path
 ) -> None:
     path = ROOT / "schemas" / f"{document}.yaml"
-    made = generate(protocol_of(path), tmp_path)
+    made = generate(protocol_of(path), tmp_path, COptions(events=events))
     contracts = contracts_of(made)
     assert before in contracts.body(function)
     contracts.change(function, contracts.body(function).replace(before, after))
