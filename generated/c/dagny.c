@@ -1487,7 +1487,6 @@ static void dagny_host_add_noise(struct dagny_host_decoder *decoder, uint16_t si
 }
 
 /* The message of a valid frame. */
-
 static uint8_t dagny_host_identify(const struct dagny_host_parts *parts, const uint8_t *payload,
                                    uint16_t size, enum dagny_message *message) {
     *message = DAGNY_NO_MESSAGE;
@@ -1925,7 +1924,6 @@ static void dagny_robot_add_noise(struct dagny_robot_decoder *decoder, uint16_t 
 }
 
 /* The message of a valid frame. */
-
 static uint8_t dagny_robot_identify(const struct dagny_robot_parts *parts, const uint8_t *payload,
                                     uint16_t size, enum dagny_message *message) {
     *message = DAGNY_NO_MESSAGE;

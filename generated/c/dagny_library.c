@@ -1201,7 +1201,6 @@ static void dagny_library_host_add_noise(struct dagny_library_host_decoder *deco
 }
 
 /* The message of a valid frame. */
-
 static uint8_t dagny_library_host_identify(const struct dagny_library_host_parts *parts,
                                            const uint8_t *payload, uint16_t size,
                                            enum dagny_library_message *message) {
@@ -1585,7 +1584,6 @@ static void dagny_library_robot_add_noise(struct dagny_library_robot_decoder *de
 }
 
 /* The message of a valid frame. */
-
 static uint8_t dagny_library_robot_identify(const struct dagny_library_robot_parts *parts,
                                             const uint8_t *payload, uint16_t size,
                                             enum dagny_library_message *message) {

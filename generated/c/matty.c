@@ -1079,7 +1079,6 @@ static void matty_pc_add_noise(struct matty_pc_decoder *decoder, uint16_t size) 
 }
 
 /* The message of a valid frame. */
-
 static uint8_t matty_pc_identify(const struct matty_pc_parts *parts, const uint8_t *payload,
                                  uint16_t size, enum matty_message *message) {
     (void)payload;
@@ -1608,7 +1607,6 @@ static void matty_esp_add_noise(struct matty_esp_decoder *decoder, uint16_t size
 }
 
 /* The message of a valid frame. */
-
 static uint8_t matty_esp_identify(const struct matty_esp_parts *parts, const uint8_t *payload,
                                   uint16_t size, enum matty_message *message) {
     *message = MATTY_NO_MESSAGE;

@@ -1309,7 +1309,6 @@ static void matty_v4_pc_add_noise(struct matty_v4_pc_decoder *decoder, uint16_t 
 }
 
 /* The message of a valid frame. */
-
 static uint8_t matty_v4_pc_identify(const struct matty_v4_pc_parts *parts, const uint8_t *payload,
                                     uint16_t size, enum matty_v4_message *message) {
     (void)payload;
@@ -1848,7 +1847,6 @@ static void matty_v4_esp_add_noise(struct matty_v4_esp_decoder *decoder, uint16_
 }
 
 /* The message of a valid frame. */
-
 static uint8_t matty_v4_esp_identify(const struct matty_v4_esp_parts *parts, const uint8_t *payload,
                                      uint16_t size, enum matty_v4_message *message) {
     *message = MATTY_V4_NO_MESSAGE;

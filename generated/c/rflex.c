@@ -1901,7 +1901,6 @@ static void rflex_linux_add_noise(struct rflex_linux_decoder *decoder, uint16_t 
 }
 
 /* The message of a valid frame. */
-
 static uint8_t rflex_linux_identify(const struct rflex_linux_parts *parts, const uint8_t *payload,
                                     uint16_t size, enum rflex_message *message) {
     (void)payload;
@@ -2611,7 +2610,6 @@ static void rflex_flex_add_noise(struct rflex_flex_decoder *decoder, uint16_t si
 }
 
 /* The message of a valid frame. */
-
 static uint8_t rflex_flex_identify(const struct rflex_flex_parts *parts, const uint8_t *payload,
                                    uint16_t size, enum rflex_message *message) {
     *message = RFLEX_NO_MESSAGE;

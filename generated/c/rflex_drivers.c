@@ -2388,7 +2388,6 @@ static void rflex_drivers_linux_add_noise(struct rflex_drivers_linux_decoder *de
 }
 
 /* The message of a valid frame. */
-
 static uint8_t rflex_drivers_linux_identify(const struct rflex_drivers_linux_parts *parts,
                                             const uint8_t *payload, uint16_t size,
                                             enum rflex_drivers_message *message) {
@@ -3118,7 +3117,6 @@ static void rflex_drivers_flex_add_noise(struct rflex_drivers_flex_decoder *deco
 }
 
 /* The message of a valid frame. */
-
 static uint8_t rflex_drivers_flex_identify(const struct rflex_drivers_flex_parts *parts,
                                            const uint8_t *payload, uint16_t size,
                                            enum rflex_drivers_message *message) {

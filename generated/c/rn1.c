@@ -1479,7 +1479,6 @@ static void rn1_host_add_noise(struct rn1_host_decoder *decoder, uint8_t size) {
 }
 
 /* The message of a valid frame. */
-
 static uint8_t rn1_host_identify(const struct rn1_host_parts *parts, const uint8_t *payload,
                                  uint8_t size, enum rn1_message *message) {
     *message = RN1_NO_MESSAGE;
@@ -1799,7 +1798,6 @@ static void rn1_brain_add_noise(struct rn1_brain_decoder *decoder, uint16_t size
 }
 
 /* The message of a valid frame. */
-
 static uint8_t rn1_brain_identify(const struct rn1_brain_parts *parts, const uint8_t *payload,
                                   uint16_t size, enum rn1_message *message) {
     (void)payload;

@@ -1837,7 +1837,6 @@ static void rn1_firmware_host_add_noise(struct rn1_firmware_host_decoder *decode
 }
 
 /* The message of a valid frame. */
-
 static uint8_t rn1_firmware_host_identify(const struct rn1_firmware_host_parts *parts,
                                           const uint8_t *payload, uint8_t size,
                                           enum rn1_firmware_message *message) {
@@ -2170,7 +2169,6 @@ static void rn1_firmware_brain_add_noise(struct rn1_firmware_brain_decoder *deco
 }
 
 /* The message of a valid frame. */
-
 static uint8_t rn1_firmware_brain_identify(const struct rn1_firmware_brain_parts *parts,
                                            const uint8_t *payload, uint16_t size,
                                            enum rn1_firmware_message *message) {

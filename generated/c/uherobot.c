@@ -482,7 +482,6 @@ static void uherobot_daemon_add_noise(struct uherobot_daemon_decoder *decoder, u
 }
 
 /* The message of a valid frame. */
-
 static uint8_t uherobot_daemon_identify(const struct uherobot_daemon_parts *parts,
                                         const uint8_t *payload, uint16_t size,
                                         enum uherobot_message *message) {
@@ -798,7 +797,6 @@ static void uherobot_board_add_noise(struct uherobot_board_decoder *decoder, uin
 }
 
 /* The message of a valid frame. */
-
 static uint8_t uherobot_board_identify(const struct uherobot_board_parts *parts,
                                        const uint8_t *payload, uint16_t size,
                                        enum uherobot_message *message) {

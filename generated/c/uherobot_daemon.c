@@ -485,7 +485,6 @@ static void uherobot_daemon_daemon_add_noise(struct uherobot_daemon_daemon_decod
 }
 
 /* The message of a valid frame. */
-
 static uint8_t uherobot_daemon_daemon_identify(const struct uherobot_daemon_daemon_parts *parts,
                                                const uint8_t *payload, uint16_t size,
                                                enum uherobot_daemon_message *message) {
@@ -833,7 +832,6 @@ static void uherobot_daemon_board_add_noise(struct uherobot_daemon_board_decoder
 }
 
 /* The message of a valid frame. */
-
 static uint8_t uherobot_daemon_board_identify(const struct uherobot_daemon_board_parts *parts,
                                               const uint8_t *payload, uint16_t size,
                                               enum uherobot_daemon_message *message) {
