@@ -36,6 +36,7 @@ def polled(made: Contracts, prefix: str, upper: str) -> None:
     else:
         decoder.completes()
     decoder.steps()
+    decoder.begins()
     decoder.feeds()
     decoder.dispatches()
 
@@ -152,7 +153,7 @@ class _Decoder:
         )
         steps = [(found[1], found[2], bool(found[3])) for found in step.finditer(made.source)]
         for returned, name, is_constant in steps:
-            if name == f"{prefix}_judge" or returned == "enum":
+            if name in (f"{prefix}_judge", f"{prefix}_reset"):
                 continue
             clauses = []
             if name == f"{prefix}_set_payload":
@@ -183,7 +184,7 @@ class _Decoder:
 
     def _calls(self, function: str, other: str) -> bool:
         """Whether a function calls another one, itself or by what it calls."""
-        called = set(_CALL.findall(self._made.body(function)[len(function) :]))
+        called = set(_CALL.findall(self._made.body(function)))
         return function == f"{self._prefix}_{other}" or any(
             self._calls(name, other)
             for name in called
@@ -219,6 +220,15 @@ class _Decoder:
                 kept = self._message.replace(r"\result", "message")
                 kept = f"invariant {kept} && {self._between}"
                 made.loops(f"{prefix}_decoder_{name}", kept, assigns=["*decoder"])
+
+    def begins(self) -> None:
+        """What starts at the beginning of an input, out of a decoder of any content."""
+        self._put(
+            "decoder_init",
+            r"requires \valid(decoder)",
+            "assigns *decoder",
+            f"ensures {self._between}",
+        )
 
     def feeds(self) -> None:
         """What takes several bytes, and fills the event of the first message."""
