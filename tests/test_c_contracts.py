@@ -23,9 +23,7 @@ from compiled import DIALECTS, DOCUMENTS, ROOT, name_of, protocol_of
 from protogen.targets.c.options import COptions, Events
 
 EVENTS: tuple[Events, ...] = ("all", "messages")
-PROVED = [path for path in (*DOCUMENTS, *DIALECTS) if not path.stem.startswith("uherobot")]
-"""Those of which EVA does not see all. Of uherobot it does: no array has a size of its own, and its
-decoders take frames byte by byte."""
+PROVED = (*DOCUMENTS, *DIALECTS)
 
 
 def contracts_of(made: Generated) -> Contracts:
@@ -58,7 +56,7 @@ def test_events_can_be_loaded_and_whole_frames_stay_in_their_buffer(
     assert len(feeds) == len(made.protocol.senders)
     proof = prove(made, contracts)
     assert proof.failed == ()
-    assert proof.goals > 100
+    assert proof.goals >= 80
 
 
 @pytest.mark.parametrize("path", PROVED, ids=name_of)
@@ -76,7 +74,7 @@ def test_what_takes_payloads_is_the_same_for_all_events_and_for_messages(
         kept = [name for name in names if takes.search(name) and "_decoder_" not in name]
         sources.append({name: contracts.body(name) for name in kept})
     assert sources[0] == sources[1]
-    assert {name.rpartition("_")[2] for name in sources[0]} == {"load", "check", "dispatch"}
+    assert {name.rpartition("_")[2] for name in sources[0]} >= {"load", "dispatch"}
 
 
 @pytest.mark.parametrize("events", EVENTS)

@@ -25,6 +25,7 @@ from c_proof.eva import MACHINES, Report, analyse
 from c_proof.generated import Generated, generate
 from c_proof.in_place import in_place_driver
 from c_proof.needs import needs
+from c_proof.others import others_driver
 from c_proof.sending import send_driver, unrolled
 from compiled import DIALECTS, DOCUMENTS, ROOT, SCHEMAS, name_of, protocol_of
 
@@ -299,6 +300,29 @@ def test_no_input_harms_a_decoder_of_one_message(document: str, only: str, tmp_p
     driver = whole_driver(made)
     report = prove(made, driver, NARROW)
     assert (report.alarms, report.found) == (0, ())
+
+
+def prove_others(made: Generated, *, first: bool = False) -> Report:
+    """Analyse names, counters, and frames that go out in pieces."""
+    assert made.source is not None
+    header, source = (path.read_text(encoding="utf-8") for path in (made.header, made.source))
+    return prove_as_it_is(made, others_driver(made.protocol, header, source), first=first)
+
+
+@pytest.mark.parametrize("events", EVENTS)
+@pytest.mark.parametrize("path", [*DOCUMENTS, *DIALECTS], ids=name_of)
+def test_no_value_harms_names_counters_and_frames_in_pieces(
+    path: Path, events: Events, tmp_path: Path
+) -> None:
+    report = prove_others(generate(protocol_of(path), tmp_path, COptions(events=events)))
+    assert (report.alarms, report.found) == (0, ())
+
+
+def test_a_value_without_a_name_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(MATTY), tmp_path)
+    assert made.source is not None
+    changed(made.source, r'return "\?";', "return NULL;")
+    assert prove_others(made, first=True).alarms > 0
 
 
 def prove_in_place(made: Generated, machine: str = WIDE, *, first: bool = False) -> Report:

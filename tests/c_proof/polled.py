@@ -15,6 +15,7 @@ _PAYLOAD_AT = re.compile(r"event->payload = &content\[(\d+)\];")
 _PLACE = re.compile(r"content\[(\d+)\]")
 _PAYLOAD_SIZE = re.compile(r"event->payload_size = ([^;]*);")
 _SHOWN = re.compile(r"_show\(decoder->buffer, (.*), event\);")
+_HEAD = re.compile(r"if \((content\[(\d+)\]) != ([^;{]*)\) \{")
 _PART = re.compile(r"(event->parts\.\w+) = (content\[\d+\]);")
 _CHANGED = re.compile(r"(decoder->\w+) = (\w+);")
 _BEHIND_BUFFER = re.compile(r"decoder->buffer\[at - (\d)U\]")
@@ -53,9 +54,10 @@ class _Decoder:
         [self._at] = _PAYLOAD_AT.findall(made.body(f"{prefix}_show"))
         [self._size] = _PAYLOAD_SIZE.findall(made.body(f"{prefix}_show"))
         self._last = max(map(int, _PLACE.findall(made.body(f"{prefix}_show"))))
-        [payload] = _SHOWN.findall(made.body(f"{prefix}_decoder_event"))
-        self._payload = payload
-        self._message = f"holds(\\result, decoder->buffer + {self._at}, {payload})"
+        payload = _SHOWN.search(made.body(f"{prefix}_decoder_event"))
+        # All that it decodes may have one size, which is a number then.
+        self._payload = payload[1] if payload else self._size
+        self._message = f"holds(\\result, decoder->buffer + {self._at}, {self._payload})"
         self._event = "holds(event->message, event->payload, event->payload_size)"
         self._between = self._invariant()
 
@@ -126,14 +128,22 @@ class _Decoder:
             more.append(rf"requires \valid_read(content + (0 .. {last}))")
         told = self._payload.replace("decoder->buffer", "content")
         if told != self._payload:
-            self._put("head_fits", r"assigns \nothing", rf"ensures \result ==> payload == {told}")
+            equal = _HEAD.findall(made.body(f"{prefix}_head_fits"))
+            places = [place for _, place, _ in equal]
+            made.put_safe(
+                f"{prefix}_head_fits",
+                rf"requires \valid_read(content + (0 .. {max(map(int, places))}))",
+                r"assigns \nothing",
+                *(rf"ensures \result ==> {left} == {right}" for left, _, right in equal),
+            )
+            more.append(rf"requires \valid_read(content + (0 .. {max(map(int, places))}))")
             of_message = rf"0 <= \result && \result < {self._none}"
             more.append(f"ensures {of_message} ==> payload == {told}")
         self._put(
             "complete",
             *more,
             r"assigns \nothing",
-            f"ensures holds(\\result, content + {self._at}, payload)",
+            f"ensures holds(\\result, content + {self._at}, {self._size})",
         )
 
     def judges(self) -> None:

@@ -26,6 +26,9 @@ def purify(made: Contracts, function: str) -> None:
                 called, r"requires \valid_read(data + (0 .. size - 1))", r"assigns \nothing"
             )
             _run_contract(made, called)
+        elif re.search(r"\w \*", head.replace("const struct", "")) is None:
+            made.put_safe(called, r"assigns \nothing")
+            made.loops(called)
         else:
             made.put(called, r"assigns \nothing")
             made.loops(called)

@@ -32,6 +32,7 @@ def takes_whole(
             rf"ensures \result ==> *payload <= {most}",
             *_of_starts(of_starts),
         )
+    made.put_safe(f"{prefix}_is_idle", r"requires \valid_read(decoder)", r"assigns \nothing")
     if made.has(f"{prefix}_unstuff_to"):
         changes = f"{changes}, {buffer}"
         made.put_safe(
