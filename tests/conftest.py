@@ -13,6 +13,7 @@ import selection
 import tooling
 from hypothesis import HealthCheck, settings
 
+from protogen.cli import collecting
 from protogen.native.compiler import Compiler
 
 # Deadlines measure the machine rather than the code; the CPU is shared with other workers. Whoever
@@ -117,6 +118,14 @@ def settled_objects() -> None:
     """
     gc.collect()
     gc.freeze()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def settled_objects_stay() -> Iterator[None]:
+    """Commands that run in this process leave them: to look through them all takes seconds."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(collecting, "_age", lambda: None)
+        yield
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -11,7 +11,8 @@ from random import Random
 import pytest
 from passes_support import HEAD, framing_of, message_framing, repository_protocol
 
-from protogen.passes.proofs.correlation import Place, most_summed
+from protogen.passes.proofs import correlation
+from protogen.passes.proofs.correlation import Place, Sum, most_summed
 
 Table = dict[int, bytes]
 Checksum = Callable[[bytes], int]
@@ -186,9 +187,16 @@ transparency: slip
 
 
 @pytest.mark.parametrize("seed", range(20))
-@pytest.mark.parametrize("step", [xor, lambda one, other: (one + other) & 0xFF])
+@pytest.mark.parametrize(
+    ("step", "steps"),
+    [
+        (xor, correlation.exclusive_or),
+        (lambda one, other: (one + other) & 0xFF, correlation.added),
+    ],
+    ids=["xor", "sum"],
+)
 def test_sums_are_followed_as_if_all_contents_were_tried(
-    step: Callable[[int, int], int], seed: int
+    step: Callable[[int, int], int], steps: Sum, seed: int
 ) -> None:
     dice = Random(seed)
     prices = [dice.choice([1, 1, 1, 2, 3]) for _ in range(256)]
@@ -204,4 +212,4 @@ def test_sums_are_followed_as_if_all_contents_were_tried(
         sum(prices[value] for value in content) + worths[reduce(step, content, register)]
         for content in product(*values)
     )
-    assert most_summed(places, step, worths, register) == best
+    assert most_summed(places, steps, worths, register) == best

@@ -28,6 +28,8 @@ def test_schemas_that_are_kept_are_there() -> None:
         ("test_tables[gcc-rn1]", True),
         ("test_tables[matty_v4-pc]", False),
         ("test_tables[hdlc-station]", False),
+        ("test_tables[cobs1-station]", True),
+        ("test_tables[hdlc1-station]", False),
     ],
 )
 def test_a_test_of_another_schema_is_left_out(name: str, is_kept: bool) -> None:

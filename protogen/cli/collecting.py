@@ -14,7 +14,11 @@ def without_garbage_collection() -> Iterator[None]:
     try:
         yield
     finally:
-        # Python would look through all that is new; these two make it old without a look.
-        gc.freeze()
-        gc.unfreeze()
+        _age()
         gc.enable()
+
+
+def _age() -> None:
+    """Make all that is new old, without the look that Python would take at it."""
+    gc.freeze()
+    gc.unfreeze()

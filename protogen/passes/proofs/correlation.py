@@ -13,6 +13,9 @@ from itertools import groupby
 import msgspec
 
 _REGISTERS = 256
+_ALL_REGISTERS = (1 << _REGISTERS) - 1
+_EVEN_RUNS = [(1 << bit, _ALL_REGISTERS // ((1 << (1 << bit)) + 1)) for bit in range(8)]
+"""Each bit of a byte, and the set of registers in which it is 0."""
 _MOST_STEPS = 1 << 18
 
 
@@ -21,6 +24,8 @@ class Place(msgspec.Struct, frozen=True):
 
     top: int
     options: Mapping[int, Sequence[int]]
+    sets: Mapping[int, int]
+    """The same values, as numbers with a bit for each."""
 
     @classmethod
     def of(cls, values: frozenset[int], worth: Callable[[int], int]) -> Place:
@@ -29,11 +34,29 @@ class Place(msgspec.Struct, frozen=True):
         options: dict[int, list[int]] = {}
         for value in sorted(values):
             options.setdefault(top - worth(value), []).append(value)
-        return cls(top, dict(sorted(options.items())))
+        sets = {loss: sum(1 << value for value in each) for loss, each in options.items()}
+        return cls(top, dict(sorted(options.items())), sets)
 
 
 Sum = Callable[[int, int], int]
-"""One step of a checksum whose register is a byte: register and byte to register."""
+"""One step of a checksum whose register is a byte: set of registers and byte to set of registers.
+
+A set is a number with a bit for each register that is in it.
+"""
+
+
+def added(registers: int, byte: int) -> int:
+    """Add a byte to each register of a set."""
+    moved = registers << byte
+    return (moved | moved >> _REGISTERS) & _ALL_REGISTERS
+
+
+def exclusive_or(registers: int, byte: int) -> int:
+    """Take the exclusive or of a byte and each register of a set."""
+    for bit, even in _EVEN_RUNS:
+        if byte & bit:
+            registers = (registers & even) << bit | registers >> bit & even
+    return registers
 
 
 def most_summed(
@@ -44,13 +67,12 @@ def most_summed(
     `worths` says what the checksum is worth that comes of each register; before the first byte
     that is `register`.
     """
-    reached: list[set[int]] = [set() for _ in range(max(worths) - min(worths) + 1)]
-    reached[0].add(register)
+    reached = [1 << register, *[0] * (max(worths) - min(worths))]
     top = sum(place.top for place in places)
     steps = 0
     for _, group in groupby(places, key=id):
         alike = list(group)
-        before: list[set[int]] = []
+        before: list[int] = []
         while alike and steps <= _MOST_STEPS:
             found, taken = _stepped(reached, alike.pop(), step)
             steps += taken
@@ -61,36 +83,37 @@ def most_summed(
     if steps > _MOST_STEPS:
         return None
     return top + max(
-        max(worths[value] for value in registers) - loss
+        max(worth for value, worth in enumerate(worths) if registers >> value & 1) - loss
         for loss, registers in enumerate(reached)
         if registers
     )
 
 
-def _stepped(reached: Sequence[set[int]], place: Place, step: Sum) -> tuple[list[set[int]], int]:
+def _stepped(reached: Sequence[int], place: Place, step: Sum) -> tuple[list[int], int]:
     """The registers behind one more byte, by what was lost until there, and the steps it took.
 
     To lose more than there is between the checksums that are worth most and least is of no use.
     """
-    found: list[set[int]] = [set() for _ in reached]
+    found = [0] * len(reached)
     steps = len(found)
-    for loss, registers in reversed(list(enumerate(reached))):
-        for own, values in place.options.items():
-            if not registers or loss + own >= len(found):
-                continue
-            if len(registers) == _REGISTERS:
-                found[loss + own] = registers  # A step takes all registers to all.
-            steps += _add_steps(found[loss + own], registers, values, step)
+    for loss, registers in enumerate(reached):
+        for own, values in place.sets.items():
+            if registers and loss + own < len(found):
+                found[loss + own] |= _all_sums(registers, values, step)
+                steps += min(registers.bit_count(), values.bit_count())
     return found, steps
 
 
-def _add_steps(found: set[int], registers: set[int], values: Sequence[int], step: Sum) -> int:
-    """Add what comes of these registers and values."""
-    for done, value in enumerate(values):
-        if len(found) == _REGISTERS:
-            return done * len(registers)
-        found.update([step(register, value) for register in registers])
-    return len(values) * len(registers)
+def _all_sums(registers: int, values: int, step: Sum) -> int:
+    """The registers that come of any of these registers and any of these values."""
+    if registers.bit_count() + values.bit_count() > _REGISTERS:
+        return _ALL_REGISTERS  # Each register comes of at least one of so many.
+    few, many = sorted((registers, values), key=int.bit_count)
+    found = 0
+    while few:
+        found |= step(many, few.bit_length() - 1)
+        few ^= 1 << few.bit_length() - 1
+    return found
 
 
 def most_tried(

@@ -5,11 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from protogen.model.checksums import ChecksumSpec, checksum_of
+from protogen.model.checksums import checksum_of
 from protogen.model.frame import Frame
 from protogen.model.parts import ChecksumPart, checksums_of
 from protogen.passes.proofs.contents import Contents, checksum_bytes, has_virtual, number_bytes
-from protogen.passes.proofs.correlation import Place, Sum, most_summed, most_tried
+from protogen.passes.proofs.correlation import (
+    Place,
+    added,
+    exclusive_or,
+    most_summed,
+    most_tried,
+)
 from protogen.passes.proofs.wire_code import ByteSet
 
 Price = Callable[[str, int], int]
@@ -79,7 +85,7 @@ class Together:
             self._worths[part.name] = [
                 self._worth(part, number_bytes(part, number)) for number in numbers
             ]
-        step = _step(part.algorithm)
+        step = exclusive_or if part.algorithm.kind == "xor" else added
         return most_summed(places, step, self._worths[part.name], part.algorithm.init)
 
     # -- other checksums ------------------------------------------------------------------------
@@ -98,12 +104,6 @@ class Together:
             return self._worth(part, checksum_bytes(self._frame, part, plain))
 
         return most_tried(self._all_places(covered, contents), checksum, bound, tries)
-
-
-def _step(spec: ChecksumSpec) -> Sum:
-    if spec.kind == "xor":
-        return lambda register, byte: register ^ byte
-    return lambda register, byte: (register + byte) & 0xFF
 
 
 def _split(covered: Sequence[str], contents: Contents, data: bytes) -> Iterator[tuple[str, bytes]]:
