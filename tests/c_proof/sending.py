@@ -20,7 +20,7 @@ STUFFED = 300
 """More bytes than are stuffed in any frame."""
 _ENCODERS = re.compile(
     r"(?:enum \w+|size_t) ((\w+)_(encode|frame|send))"
-    r"\( ?(?:const struct (\w+) \*message, )?([^)]*)\);"
+    r"\( ?(?:const struct (\w+) \*message, )?([^)]*)\)(?:;| \{)"
 )
 _ROOM = re.compile(r"#define (\w+_(?:PAYLOAD_MAX|FRAME_ROOM)) (\d+)[uU]")
 _STRUCT = re.compile(r"^struct (\w+) \{\n((?:.*\n)*?)\};\n", re.MULTILINE)
