@@ -25,7 +25,7 @@ from c_proof.drivers import (
 from c_proof.eva import MACHINES, Report, analyse
 from c_proof.generated import Generated, generate
 from c_proof.in_place import in_place_driver
-from c_proof.sending import send_driver, unrolled
+from c_proof.sending import filled, send_driver, unrolled
 from compiled import DIALECTS, DOCUMENTS, ROOT, SCHEMAS, name_of, protocol_of
 
 from protogen.copying import replace
@@ -237,6 +237,7 @@ def prove_sending(made: Generated, *, first: bool = False) -> Report:
     assert made.source is not None
     header, source = (path.read_text(encoding="utf-8") for path in (made.header, made.source))
     made.source.write_text(unrolled(source), encoding="utf-8")
+    made.header.write_text(filled(header), encoding="utf-8")
     return prove(made, send_driver(made.protocol, header, source, stuffs_great=ALL), first=first)
 
 
