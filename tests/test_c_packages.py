@@ -73,6 +73,13 @@ def test_cmake_finds_a_library_for_each_protocol(tmp_path: Path) -> None:
     assert build_with_cmake(tmp_path, "", "protogen::matty") == FRAME
 
 
+def test_a_linker_can_leave_out_what_nobody_calls(tmp_path: Path) -> None:
+    build_with_cmake(tmp_path, "", "protogen::matty")
+    (archive,) = (tmp_path / "build").rglob("libprotogen_matty.a")
+    sections = run([require_tool("objdump"), "-h", str(archive)])
+    assert {".text.matty_stop_frame", ".text.matty_pc_decoder_push"} <= set(sections.split())
+
+
 def test_cmake_generates_from_a_schema_and_again_when_it_changes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

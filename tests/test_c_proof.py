@@ -26,7 +26,7 @@ from c_proof.generated import Generated, generate
 from c_proof.in_place import in_place_driver
 from c_proof.needs import needs
 from c_proof.others import others_driver
-from c_proof.sending import send_driver, unrolled
+from c_proof.sending import filled, send_driver, unrolled
 from compiled import DIALECTS, DOCUMENTS, ROOT, SCHEMAS, name_of, protocol_of
 
 from protogen.copying import replace
@@ -238,6 +238,7 @@ def prove_sending(made: Generated, *, first: bool = False) -> Report:
     assert made.source is not None
     header, source = (path.read_text(encoding="utf-8") for path in (made.header, made.source))
     made.source.write_text(unrolled(source), encoding="utf-8")
+    made.header.write_text(filled(header), encoding="utf-8")
     return prove(made, send_driver(made.protocol, header, source, stuffs_great=ALL), first=first)
 
 

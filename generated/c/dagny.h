@@ -702,7 +702,9 @@ static inline bool dagny_command_data_set_at(uint8_t *payload, size_t index, con
  * how many bytes the frame has; 0 where it wrote none, as the buffer is too short or something
  * can't be sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for
  * a shorter payload less does, but the buffer has to take the most that its bytes can need. `send`
- * hands the same bytes to a function, one after another, and needs no buffer.
+ * hands the same bytes to a function, one after another, and needs no buffer. Where bytes of a
+ * frame depend on those behind them, it has a copy of ..._FRAME_ROOM bytes on the stack, and
+ * returns DAGNY_ERROR_RANGE where `frame` returns 0.
  *
  * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer
  * of ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter.
@@ -767,6 +769,15 @@ DAGNY_API size_t dagny_sonar_frame(const struct dagny_sonar *message, uint8_t *f
                                    size_t capacity);
 DAGNY_API uint8_t *dagny_sonar_begin(uint8_t *frame, size_t capacity);
 DAGNY_API size_t dagny_sonar_end(uint8_t data_size, uint8_t *frame);
+static inline enum dagny_result dagny_sonar_send(const struct dagny_sonar *message, dagny_put put,
+                                                 void *user) {
+    uint8_t frame[DAGNY_SONAR_FRAME_ROOM]; /* It suffices. */
+    const size_t size = dagny_sonar_frame(message, frame, sizeof frame);
+    for (size_t i = 0; i < size; i++) {
+        put(user, frame[i]);
+    }
+    return size == 0U ? DAGNY_ERROR_RANGE : DAGNY_OK;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_GPS_FRAME_MAX 131U
@@ -774,6 +785,15 @@ DAGNY_API size_t dagny_sonar_end(uint8_t data_size, uint8_t *frame);
 DAGNY_API size_t dagny_gps_frame(const struct dagny_gps *message, uint8_t *frame, size_t capacity);
 DAGNY_API uint8_t *dagny_gps_begin(uint8_t *frame, size_t capacity);
 DAGNY_API size_t dagny_gps_end(uint8_t data_size, uint8_t *frame);
+static inline enum dagny_result dagny_gps_send(const struct dagny_gps *message, dagny_put put,
+                                               void *user) {
+    uint8_t frame[DAGNY_GPS_FRAME_ROOM]; /* It suffices. */
+    const size_t size = dagny_gps_frame(message, frame, sizeof frame);
+    for (size_t i = 0; i < size; i++) {
+        put(user, frame[i]);
+    }
+    return size == 0U ? DAGNY_ERROR_RANGE : DAGNY_OK;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_BUMP_FRAME_MAX 131U
@@ -782,6 +802,15 @@ DAGNY_API size_t dagny_bump_frame(const struct dagny_bump *message, uint8_t *fra
                                   size_t capacity);
 DAGNY_API uint8_t *dagny_bump_begin(uint8_t *frame, size_t capacity);
 DAGNY_API size_t dagny_bump_end(uint8_t data_size, uint8_t *frame);
+static inline enum dagny_result dagny_bump_send(const struct dagny_bump *message, dagny_put put,
+                                                void *user) {
+    uint8_t frame[DAGNY_BUMP_FRAME_ROOM]; /* It suffices. */
+    const size_t size = dagny_bump_frame(message, frame, sizeof frame);
+    for (size_t i = 0; i < size; i++) {
+        put(user, frame[i]);
+    }
+    return size == 0U ? DAGNY_ERROR_RANGE : DAGNY_OK;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_ODOMETRY_FRAME_MAX 131U
@@ -790,6 +819,15 @@ DAGNY_API size_t dagny_odometry_frame(const struct dagny_odometry *message, uint
                                       size_t capacity);
 DAGNY_API uint8_t *dagny_odometry_begin(uint8_t *frame, size_t capacity);
 DAGNY_API size_t dagny_odometry_end(uint8_t data_size, uint8_t *frame);
+static inline enum dagny_result dagny_odometry_send(const struct dagny_odometry *message,
+                                                    dagny_put put, void *user) {
+    uint8_t frame[DAGNY_ODOMETRY_FRAME_ROOM]; /* It suffices. */
+    const size_t size = dagny_odometry_frame(message, frame, sizeof frame);
+    for (size_t i = 0; i < size; i++) {
+        put(user, frame[i]);
+    }
+    return size == 0U ? DAGNY_ERROR_RANGE : DAGNY_OK;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_SPEED_FRAME_MAX 131U
@@ -798,6 +836,15 @@ DAGNY_API size_t dagny_speed_frame(const struct dagny_speed *message, uint8_t *f
                                    size_t capacity);
 DAGNY_API uint8_t *dagny_speed_begin(uint8_t *frame, size_t capacity);
 DAGNY_API size_t dagny_speed_end(uint8_t data_size, uint8_t *frame);
+static inline enum dagny_result dagny_speed_send(const struct dagny_speed *message, dagny_put put,
+                                                 void *user) {
+    uint8_t frame[DAGNY_SPEED_FRAME_ROOM]; /* It suffices. */
+    const size_t size = dagny_speed_frame(message, frame, sizeof frame);
+    for (size_t i = 0; i < size; i++) {
+        put(user, frame[i]);
+    }
+    return size == 0U ? DAGNY_ERROR_RANGE : DAGNY_OK;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_WHEEL_SLIP_FRAME_MAX 131U
@@ -806,6 +853,15 @@ DAGNY_API size_t dagny_wheel_slip_frame(const struct dagny_wheel_slip *message, 
                                         size_t capacity);
 DAGNY_API uint8_t *dagny_wheel_slip_begin(uint8_t *frame, size_t capacity);
 DAGNY_API size_t dagny_wheel_slip_end(uint8_t data_size, uint8_t *frame);
+static inline enum dagny_result dagny_wheel_slip_send(const struct dagny_wheel_slip *message,
+                                                      dagny_put put, void *user) {
+    uint8_t frame[DAGNY_WHEEL_SLIP_FRAME_ROOM]; /* It suffices. */
+    const size_t size = dagny_wheel_slip_frame(message, frame, sizeof frame);
+    for (size_t i = 0; i < size; i++) {
+        put(user, frame[i]);
+    }
+    return size == 0U ? DAGNY_ERROR_RANGE : DAGNY_OK;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_BATTERY_FRAME_MAX 131U
@@ -814,6 +870,15 @@ DAGNY_API size_t dagny_battery_frame(const struct dagny_battery *message, uint8_
                                      size_t capacity);
 DAGNY_API uint8_t *dagny_battery_begin(uint8_t *frame, size_t capacity);
 DAGNY_API size_t dagny_battery_end(uint8_t data_size, uint8_t *frame);
+static inline enum dagny_result dagny_battery_send(const struct dagny_battery *message,
+                                                   dagny_put put, void *user) {
+    uint8_t frame[DAGNY_BATTERY_FRAME_ROOM]; /* It suffices. */
+    const size_t size = dagny_battery_frame(message, frame, sizeof frame);
+    for (size_t i = 0; i < size; i++) {
+        put(user, frame[i]);
+    }
+    return size == 0U ? DAGNY_ERROR_RANGE : DAGNY_OK;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_REFLEX_SETTINGS_FRAME_MAX 131U
@@ -822,6 +887,15 @@ DAGNY_API size_t dagny_reflex_settings_frame(const struct dagny_reflex_settings 
                                              uint8_t *frame, size_t capacity);
 DAGNY_API uint8_t *dagny_reflex_settings_begin(uint8_t *frame, size_t capacity);
 DAGNY_API size_t dagny_reflex_settings_end(uint8_t data_size, uint8_t *frame);
+static inline enum dagny_result dagny_reflex_settings_send(
+    const struct dagny_reflex_settings *message, dagny_put put, void *user) {
+    uint8_t frame[DAGNY_REFLEX_SETTINGS_FRAME_ROOM]; /* It suffices. */
+    const size_t size = dagny_reflex_settings_frame(message, frame, sizeof frame);
+    for (size_t i = 0; i < size; i++) {
+        put(user, frame[i]);
+    }
+    return size == 0U ? DAGNY_ERROR_RANGE : DAGNY_OK;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_HARDWARE_STATUS_FRAME_MAX 131U
@@ -830,6 +904,15 @@ DAGNY_API size_t dagny_hardware_status_frame(const struct dagny_hardware_status 
                                              uint8_t *frame, size_t capacity);
 DAGNY_API uint8_t *dagny_hardware_status_begin(uint8_t *frame, size_t capacity);
 DAGNY_API size_t dagny_hardware_status_end(uint8_t data_size, uint8_t *frame);
+static inline enum dagny_result dagny_hardware_status_send(
+    const struct dagny_hardware_status *message, dagny_put put, void *user) {
+    uint8_t frame[DAGNY_HARDWARE_STATUS_FRAME_ROOM]; /* It suffices. */
+    const size_t size = dagny_hardware_status_frame(message, frame, sizeof frame);
+    for (size_t i = 0; i < size; i++) {
+        put(user, frame[i]);
+    }
+    return size == 0U ? DAGNY_ERROR_RANGE : DAGNY_OK;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_MOTOR_FRAME_MAX 4U
@@ -865,6 +948,14 @@ DAGNY_API enum dagny_result dagny_reflex_send(const struct dagny_reflex *message
 #define DAGNY_POWER_DOWN_FRAME_MAX 4U
 #define DAGNY_POWER_DOWN_FRAME_ROOM 4U
 DAGNY_API size_t dagny_power_down_frame(uint8_t *frame, size_t capacity);
+static inline enum dagny_result dagny_power_down_send(dagny_put put, void *user) {
+    uint8_t frame[DAGNY_POWER_DOWN_FRAME_ROOM]; /* It suffices. */
+    const size_t size = dagny_power_down_frame(frame, sizeof frame);
+    for (size_t i = 0; i < size; i++) {
+        put(user, frame[i]);
+    }
+    return size == 0U ? DAGNY_ERROR_RANGE : DAGNY_OK;
+}
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define DAGNY_POWER_FRAME_MAX 4U
@@ -891,6 +982,15 @@ DAGNY_API size_t dagny_command_frame(const struct dagny_command *message, uint8_
                                      size_t capacity);
 DAGNY_API uint8_t *dagny_command_begin(uint8_t *frame, size_t capacity);
 DAGNY_API size_t dagny_command_end(uint8_t data_size, uint8_t *frame);
+static inline enum dagny_result dagny_command_send(const struct dagny_command *message,
+                                                   dagny_put put, void *user) {
+    uint8_t frame[DAGNY_COMMAND_FRAME_ROOM]; /* It suffices. */
+    const size_t size = dagny_command_frame(message, frame, sizeof frame);
+    for (size_t i = 0; i < size; i++) {
+        put(user, frame[i]);
+    }
+    return size == 0U ? DAGNY_ERROR_RANGE : DAGNY_OK;
+}
 
 /* --- what decoders yield ---------------------------------------------------------------------- */
 

@@ -132,7 +132,7 @@ def _messages(unit: Unit) -> list[_Owner]:
         roles = [("encode", message.encode), ("decode", message.decode)]
         own = [frame for frame in frames if frame.message.name == message.name]
         roles += [("frame", frame.called.function) for frame in own]
-        roles += [("send", frame.called.send) for frame in own if frame.sends]
+        roles += [("send", frame.called.send) for frame in own if frame.streams]
         owners.append(_Owner(message.name, tuple(roles), message.struct or None))
     return owners
 

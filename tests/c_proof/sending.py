@@ -22,6 +22,8 @@ _ENCODERS = re.compile(
     r"(?:enum \w+|size_t) ((\w+)_(encode|frame|send))"
     r"\( ?(?:const struct (\w+) \*message, )?([^)]*)\)(?:;| \{)"
 )
+_COPY = re.compile(r"(uint8_t frame\[\w+_FRAME_ROOM\]);")
+"""Where `send` has a frame as a whole."""
 _ROOM = re.compile(r"#define (\w+_(?:PAYLOAD_MAX|FRAME_ROOM)) (\d+)[uU]")
 _STRUCT = re.compile(r"^struct (\w+) \{\n((?:.*\n)*?)\};\n", re.MULTILINE)
 _TRUTH = re.compile(r"^ +bool (\w+);", re.MULTILINE)
@@ -132,6 +134,11 @@ def send_driver(protocol: Protocol, header: str, source: str, *, stuffs_great: b
 def unrolled(source: str) -> str:
     """Generated C with comments that have EVA go over stuffed bytes one by one."""
     return _WRAP.sub(lambda loop: f"{loop[1]}//@ loop unroll {STUFFED};\n{loop.group()}", source)
+
+
+def filled(header: str) -> str:
+    """The header with zeros in copies of frames at first: EVA does not follow what fills them."""
+    return _COPY.sub(r"\1 = {0};", header)
 
 
 def _apart(measure: str, greatest: int) -> list[str]:

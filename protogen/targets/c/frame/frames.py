@@ -464,8 +464,8 @@ def _covered(item: ChecksumPlan) -> set[str]:
 
 
 _WORDS = (
-    "byte capacity code content due frame from full high index length literal low message payload "
-    "put result seen size sum tail to user wire writer"
+    "byte capacity code content due frame from full high i index length literal low message "
+    "payload put result seen size sum tail to user wire writer"
 )
 _LOCAL = frozenset(_WORDS.split())
 """Names of the functions' own variables."""

@@ -73,11 +73,6 @@ class FramingView(msgspec.Struct, frozen=True):
     """Functions for the digits of parts, but for those that payloads have as well."""
 
     @property
-    def sends(self) -> bool:
-        """True if some message can be sent byte by byte."""
-        return any(message.sends for message in self.messages)
-
-    @property
     def polled(self) -> tuple[str, ...]:
         """Prefixes of the decoders whose functions return what is complete."""
         alone = tuple(decoder.prefix for decoder in self.decoders if decoder.is_polled)
@@ -156,8 +151,8 @@ def framing_view(
     distinct = tuple({frame.decoder.name: frame for frame in frames.values()}.values())
     message_frames = tuple(_message_frames(protocol, frames, decoders, views, names))
     algorithms = [item.checksum for decoder in decoders for item in decoder.checksums]
-    streaming = tuple(dict.fromkeys(m.frame.decoder.name for m in message_frames if m.sends))
-    puts = tuple(dict.fromkeys(item.view.put_function for item in message_frames if item.sends))
+    streaming = tuple(dict.fromkeys(m.frame.decoder.name for m in message_frames if m.streams))
+    puts = tuple(dict.fromkeys(item.view.put_function for item in message_frames if item.streams))
     used = _used(sinks, list(puts))
     return FramingView(
         decoders=tuple(decoder.without_start for decoder in decoders),
@@ -196,7 +191,7 @@ def framing_view(
         around_bytes=_several(item.frame.decoder.name for item in message_frames if item.byte),
         around_others=frozenset(i.frame.decoder.name for i in message_frames if not i.byte),
         trims=frozenset(item.frame.decoder.name for item in message_frames if item.is_trimmed),
-        cuts_sent=any(item.sends and item.is_trimmed for item in message_frames),
+        cuts_sent=any(item.streams and item.is_trimmed for item in message_frames),
         idle_checks=frozenset(
             item.frame.decoder.name for item in message_frames if item.needs_idle_check
         ),

@@ -24,6 +24,9 @@ from protogen.targets.c.payload.message_names import FrameNames
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.payload.one_byte import only_byte
 
+_GREATEST_COPY = 256
+"""Bytes of a frame that may be put on the stack before it is sent."""
+
 
 class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     """The functions for one message, from senders of one frame."""
@@ -193,9 +196,14 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
         return " || ".join(too_long + self._cut_elsewhere)
 
     @cached_property
-    def sends(self) -> bool:
-        """True if the frame can be handed over byte by byte."""
+    def streams(self) -> bool:
+        """True if each byte of the frame is known before those behind it."""
         return self.frame.plan.streams and not self.is_refused
+
+    @property
+    def sends(self) -> bool:
+        """True if the frame can be handed over byte by byte, at least from a copy on the stack."""
+        return self.streams or self.room <= _GREATEST_COPY
 
     # --- written in place -------------------------------------------------------------------------
 
@@ -229,6 +237,13 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     def send_arguments(self, put: str) -> tuple[str, ...]:
         """Parameters of the function that sends."""
         return (*self._given(), f"{put} put", "void *user")
+
+    @property
+    def copied(self) -> str:
+        """What fills a buffer with the frame that a function which sends was called for."""
+        given = ("message",) if self.view.parameter else ()
+        names = (*given, *(item.name for item in self.arguments), "frame", "sizeof frame")
+        return f"{self.called.function}({', '.join(names)})"
 
     @property
     def end_arguments(self) -> tuple[str, ...]:
