@@ -464,8 +464,8 @@ def _covered(item: ChecksumPlan) -> set[str]:
 
 
 _WORDS = (
-    "byte capacity code content due frame from full high index length literal low message payload "
-    "put result seen size sum tail to user wire writer"
+    "added before byte capacity code content due frame from full high i index kept length literal "
+    "low message payload put result seen size stuffed sum sum_at tail to user wire writer written"
 )
 _LOCAL = frozenset(_WORDS.split())
 """Names of the functions' own variables."""
