@@ -309,6 +309,15 @@ transparency: slip
 messages:
   ping: {id: 1, from: station, parts: {extra: 50}, fields: {text: {type: ascii, size: 2}}}
 """
+NOTHING_BUT_A_LITERAL_BEHIND_A_START = """
+byte_bits: 7
+frame:
+  start: {type: byte, id: true, range: [0x80, 0xFF]}
+  version: {literal: 1}
+  payload: {}
+messages:
+  state: {id: 0x8E, from: station, fields: {level: sint7}}
+"""
 
 
 def protocol_of(text: str, folder: Path) -> Protocol:
@@ -356,6 +365,16 @@ def test_a_part_that_needs_a_payload_may_never_be_there(tmp_path: Path) -> None:
         check_events(process, module, "station", [("feed", data), ("flush",)])
     process.close()
     assert frame == bytes.fromhex("7E 0A")
+
+
+def test_a_start_that_tells_the_message_may_have_a_literal_behind_it(tmp_path: Path) -> None:
+    protocol = protocol_of(NOTHING_BUT_A_LITERAL_BEHIND_A_START, tmp_path)
+    process = Process(protocol, COptions(events="messages"))
+    with imported(protocol) as module:
+        data = bytes.fromhex("8E 01 07  8E 02 07  8F 01 07  8E 8E 01 7F  01 05")
+        steps = [("push", data), ("feed", data), ("flush",)]
+        check_events(process, module, "station", steps)
+    process.close()
 
 
 def test_bits_are_checked_behind_a_checksum_that_may_be_absent(tmp_path: Path) -> None:
