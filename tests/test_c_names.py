@@ -193,7 +193,7 @@ def test_parts_may_be_called_like_any_variable_of_the_source(framing: str, tmp_p
     words = sorted(word for word in words if not word.startswith("demo"))
     assert len(words) > 40
     for chosen in (words[::2], words[1::2]):
-        named_parts(text, chosen, tmp_path)
+        named_parts(text, [*chosen, "size_part", "wire_part"], tmp_path)
         command = [require_tool("cc"), *FLAGS, "-fsyntax-only", "demo.c"]
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr) == (0, "")

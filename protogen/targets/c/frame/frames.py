@@ -472,8 +472,11 @@ _LOCAL = frozenset(_WORDS.split())
 
 
 def argument_name(part: str, names: Names) -> str:
-    """Name of the argument for a part that the caller gives."""
-    return f"{part}_part" if part in _LOCAL else names.member(part)
+    """Name of the argument for a part that the caller gives: one for each part."""
+    word = part
+    while word.endswith("_part"):
+        word = word.removesuffix("_part")
+    return f"{part}_part" if word in _LOCAL else names.member(part)
 
 
 def one_of(argument: Argument, part: IdentityPart, runs: Runs) -> Argument:
