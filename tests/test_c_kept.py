@@ -38,6 +38,7 @@ endpoints:
   long_line: End of two bytes, and no start
   long_word: End of one byte behind an identity
   long_free: Nothing but a payload and its sum
+  seal: Bytes behind the payload that are the same in each frame
   narrow: Length of one byte
   wide: Length of two bytes, and end of two
   late: Identity behind the payload
@@ -92,6 +93,12 @@ frame:
   long_free:
     payload: {}
     check: {type: uint8, algorithm: sum-8, covers: payload}
+  seal:
+    start: {literal: 2, unprotected: anywhere}
+    payload: {}
+    version: {literal: 4}
+    number: {type: uint8, digits: base10, range: [0, 5], default: 2}
+    check: {type: uint8, algorithm: sum-8, covers: payload..number}
   narrow:
     start: {literal: 2, unprotected: anywhere}
     length: {type: uint8, counts: payload}
@@ -137,6 +144,7 @@ messages:
   ahead: {id: 2, from: long_word, fields: {left: uint16, right: uint16}}
   aside: {id: 4, from: long_word, fields: {angle: uint32}}
   spring: {from: long_free, fields: {rate: uint16, level: uint32}}
+  valve: {from: seal, fields: {opening: uint8}}
   small: {id: 2, from: [narrow, wide, late], fields: {one: uint8}}
   mode:
     id: 3
@@ -169,7 +177,7 @@ decisions:
 """
 SMALL = {"lamp": 2, "dial": 2, "line": 2, "word": 1, "pair": 1, "twin": 2, "three": 1, "free": 2}
 """Senders whose frames have up to five bytes, and the size of all their payloads."""
-ONE_SIZE = {**SMALL, "long_lamp": 4, "long_line": 4, "long_word": 4, "long_free": 6}
+ONE_SIZE = {**SMALL, "long_lamp": 4, "long_line": 4, "long_word": 4, "long_free": 6, "seal": 1}
 """Senders whose payloads all have a size, and that size."""
 SIZED = ("narrow", "wide", "late", "bare", "table")
 SENDERS = (*ONE_SIZE, *SIZED)

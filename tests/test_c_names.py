@@ -7,10 +7,11 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from c_library import write_sources
+from c_library import FLAGS, write_sources
 from compiled import ROOT, SCHEMAS, protocol_of
 from tooling import require_tool
 
+from protogen.compiler import compile_file
 from protogen.model.protocol import Protocol
 from protogen.targets.c.emit import emit
 from protogen.targets.c.options import COptions
@@ -84,3 +85,128 @@ def test_messages_may_be_called_like_functions_of_the_source(tmp_path: Path) -> 
     flags = ["-Wall", "-Wextra", "-Werror", "-fsyntax-only"]
     for command in (["cc", "-std=gnu99", "demo.c"], ["c++", "-std=c++11", "main.cpp"]):
         subprocess.run([require_tool(command[0]), *flags, *command[1:]], cwd=tmp_path, check=True)
+
+
+FRAMINGS = {
+    "flags": """
+frame:
+  opening: {literal: 0x7E}
+  id: {type: uint8, id: true}
+PARTS
+  payload: {}
+  crc: {type: uint16, algorithm: CRC-16/MODBUS, covers: id..payload}
+  closing: {literal: 0x7E}
+transparency: hdlc
+""",
+    "zeros": """
+frame:
+  id: {type: uint8, id: true}
+PARTS
+  payload: {}
+  crc: {type: uint16, algorithm: CRC-16/MODBUS, covers: id..payload}
+  closing: {literal: 0}
+transparency: {encoding: cobs}
+""",
+    "digits": """
+frame:
+  opening: {literal: 2}
+  id: {type: uint8, id: true}
+PARTS
+  payload: {}
+  crc: {type: uint16, algorithm: CRC-16/MODBUS, covers: id..payload}
+  closing: {literal: 3}
+transparency: {covers: id..crc, encoding: base16-upper}
+""",
+    "a length over the wire": """
+frame:
+  opening: {literal: {hex: FF FD}, unprotected: accepted}
+  number: {type: uint8, range: [0, 252], default: 7}
+  long: {type: uint16, counts: id..last, over: wire}
+  id: {type: uint8, id: true}
+PARTS
+  payload: {}
+  last: {type: uint8, default: 0}
+  crc: {type: uint16, algorithm: sum-16, covers: id..last, over: wire}
+transparency: {covers: id..last, substitute: {FF FD: FF FD FD}}
+""",
+    "a length": """
+frame:
+  opening: {literal: 0x7E, unprotected: accepted}
+  id: {type: uint8, id: true}
+PARTS
+  long: {type: uint16, counts: payload}
+  payload: {}
+  crc: {type: uint16, algorithm: CRC-16/MODBUS, covers: id..payload}
+""",
+    "trimmed": """
+frame:
+  opening: {literal: 0x7E, unprotected: accepted}
+  id: {type: uint8, id: true}
+PARTS
+  long: {type: uint16, counts: payload}
+  payload: {trailing_zeros: trimmed}
+  crc: {type: uint16, algorithm: CRC-16/MODBUS, covers: id..payload}
+""",
+}
+DEMO = """
+protocol: demo
+endpoints: {host: Host}
+byte_order: big
+max_frame: 700
+"""
+DECISIONS = "decisions: {accepted: {document: d, question: q, choice: c, because: b}}\n"
+OF_ONE_SIZE = """
+messages:
+  calm: {id: 1, from: host}
+  gust: {id: 2, from: host, fields: {speed: uint8}}
+  wind: {id: 3, from: host, fields: {speed: uint16, gauge: {type: uint8, range: [1, 5]}}}
+"""
+OF_ANY_SIZE = (
+    OF_ONE_SIZE
+    + """
+  rain:
+    id: 4
+    from: host
+    fields:
+      days: {type: uint8, range: [1, 40]}
+      fallen: {type: uint16, count: days}
+      least: {type: sint16, range: [1, 5], count: days}
+  log:
+    id: 5
+    from: host
+    fields: {day: {type: uint8, range: [1, 7]}, snow: {type: uint8, count: {fill: true, max: 90}}}
+"""
+)
+VARIABLE = re.compile(
+    r"\b(?:u?int\d+_t|size_t|ptrdiff_t|bool|char|demo_put|(?:struct|enum) \w+) "
+    r"\*?(?:const )?([a-z][a-z0-9]*(?:_[a-z0-9]+)*)\b(?! ?\()"
+)
+DIRECTIVES = {"after", "before", "remove", "rename", "replace"}
+"""Words of `extends` that are no names."""
+
+
+@pytest.mark.parametrize("framing", FRAMINGS)
+def test_parts_may_be_called_like_any_variable_of_the_source(framing: str, tmp_path: Path) -> None:
+    text = FRAMINGS[framing]
+    taken = {*re.findall(r"^  (\w+):", text, re.MULTILINE), *DIRECTIVES}
+    words = {*VARIABLE.findall(named_parts(text, ["plain"], tmp_path))} - taken
+    words = sorted(word for word in words if not word.startswith("demo"))
+    assert len(words) > 40
+    for chosen in (words[::2], words[1::2]):
+        named_parts(text, [*chosen, "size_part", "wire_part"], tmp_path)
+        command = [require_tool("cc"), *FLAGS, "-fsyntax-only", "demo.c"]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+def named_parts(framing: str, names: list[str], folder: Path) -> str:
+    """Header and source of a frame with parts of these names, which are written."""
+    parts = "\n".join(f"  {name}: {{type: uint8, default: 1}}" for name in names)
+    messages = OF_ONE_SIZE if "trimmed" in framing else OF_ANY_SIZE
+    decisions = DECISIONS if "accepted" in framing else ""
+    path = folder / "demo.yaml"
+    path.write_text(DEMO + decisions + framing.replace("PARTS", parts) + messages, encoding="utf-8")
+    protocol = compile_file(path).protocol
+    assert protocol is not None
+    file = write_sources(protocol, folder)
+    return "".join((folder / f"{file}.{kind}").read_text(encoding="utf-8") for kind in "hc")

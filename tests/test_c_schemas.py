@@ -31,7 +31,7 @@ from protogen.model.protocol import Protocol, Sender
 from protogen.runtime.attributes import arguments, held_arguments
 from protogen.runtime.errors import EncodeError
 from protogen.runtime.framing.frame import LiteralPart
-from protogen.targets.c.options import COptions
+from protogen.targets.c.options import EVENTS, COptions, Events
 
 DRAWS = 26 if THOROUGH else 20
 """Few in one run, because what is drawn from one seed grows alike."""
@@ -309,6 +309,36 @@ transparency: slip
 messages:
   ping: {id: 1, from: station, parts: {extra: 50}, fields: {text: {type: ascii, size: 2}}}
 """
+NOTHING_BUT_A_LITERAL_BEHIND_A_START = """
+byte_bits: 7
+frame:
+  start: {type: byte, id: true, range: [0x80, 0xFF]}
+  version: {literal: 1}
+  payload: {}
+messages:
+  state: {id: 0x8E, from: station, fields: {level: sint7}}
+"""
+A_START_OF_THREE_BYTES_THAT_ENDS_FRAMES = """
+frame:
+  start: {literal: {hex: AA 55 00}, unprotected: accepted}
+  version: {literal: 1}
+  id: {type: uint8, id: true}
+  payload: {}
+  sum: {type: uint8, algorithm: CRC-8/SMBUS, covers: id..payload}
+messages:
+  state: {id: 0x80, from: station, fields: {level: uint8}}
+  calm: {id: 1, from: station}
+"""
+STARTS_OF_FOUR_BYTES = """
+frame:
+  start: {literal: {any_of: [{hex: AA 55 00 01}, {hex: AA 55 00 02}]}, unprotected: accepted}
+  id: {type: uint8, id: true}
+  payload: {}
+  sum: {type: uint8, algorithm: CRC-8/SMBUS, covers: id..payload}
+messages:
+  state: {id: 0x80, from: station, fields: {level: uint8}}
+  calm: {id: 1, from: station}
+"""
 
 
 def protocol_of(text: str, folder: Path) -> Protocol:
@@ -356,6 +386,38 @@ def test_a_part_that_needs_a_payload_may_never_be_there(tmp_path: Path) -> None:
         check_events(process, module, "station", [("feed", data), ("flush",)])
     process.close()
     assert frame == bytes.fromhex("7E 0A")
+
+
+@pytest.mark.parametrize("events", EVENTS)
+@pytest.mark.parametrize(
+    "text", [A_START_OF_THREE_BYTES_THAT_ENDS_FRAMES, STARTS_OF_FOUR_BYTES], ids=["one", "several"]
+)
+def test_bytes_of_a_start_that_are_held_back_may_all_differ(
+    text: str, events: Events, tmp_path: Path
+) -> None:
+    protocol = protocol_of(text, tmp_path)
+    process = Process(protocol, COptions(events=events))
+    with imported(protocol) as module:
+        sender, frames = protocol.sender("station"), []
+        for message in sender.messages:
+            values, parts = next(samples(message, sender.frame, Random(1)))
+            frames.append(check_frame(process, module, sender, message, values, parts) or b"")
+        for size in range(1, 4):
+            begun = frames[0][:size]
+            data = frames[0] + begun + frames[1] + bytes.fromhex("AA 55 00 01 07 AA 55 00") + begun
+            steps = [("push", data), ("flush",), ("feed", data), ("flush",)]
+            check_events(process, module, "station", steps)
+    process.close()
+
+
+def test_a_start_that_tells_the_message_may_have_a_literal_behind_it(tmp_path: Path) -> None:
+    protocol = protocol_of(NOTHING_BUT_A_LITERAL_BEHIND_A_START, tmp_path)
+    process = Process(protocol, COptions(events="messages"))
+    with imported(protocol) as module:
+        data = bytes.fromhex("8E 01 07  8E 02 07  8F 01 07  8E 8E 01 7F  01 05")
+        steps = [("push", data), ("feed", data), ("flush",)]
+        check_events(process, module, "station", steps)
+    process.close()
 
 
 def test_bits_are_checked_behind_a_checksum_that_may_be_absent(tmp_path: Path) -> None:

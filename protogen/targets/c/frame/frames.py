@@ -464,16 +464,19 @@ def _covered(item: ChecksumPlan) -> set[str]:
 
 
 _WORDS = (
-    "byte capacity code content due frame from full high i index length literal low message "
-    "payload put result seen size sum tail to user wire writer"
+    "added before byte capacity code content due frame from full high i index kept length literal "
+    "low message payload put result seen size stuffed sum sum_at tail to user wire writer written"
 )
 _LOCAL = frozenset(_WORDS.split())
 """Names of the functions' own variables."""
 
 
 def argument_name(part: str, names: Names) -> str:
-    """Name of the argument for a part that the caller gives."""
-    return f"{part}_part" if part in _LOCAL else names.member(part)
+    """Name of the argument for a part that the caller gives: one for each part."""
+    word = part
+    while word.endswith("_part"):
+        word = word.removesuffix("_part")
+    return f"{part}_part" if word in _LOCAL else names.member(part)
 
 
 def one_of(argument: Argument, part: IdentityPart, runs: Runs) -> Argument:
