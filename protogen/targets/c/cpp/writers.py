@@ -34,7 +34,13 @@ class CppWriter(msgspec.Struct, frozen=True):
     @property
     def begin(self) -> str:
         """The call of C's function that begins a frame."""
-        return f"::{self.item.called.begin}(frame.data(), frame.size())"
+        known = {"frame": "frame.data()", "capacity": "frame.size()"}
+        return call_of(self.item.called.begin, self.item.begin_arguments, known)
+
+    @property
+    def first(self) -> str:
+        """Parameters of the constructor, in front of the buffer: numbers that are given first."""
+        return "".join(f"{item}, " for item in self.item.begin_given)
 
     @property
     def given(self) -> str:

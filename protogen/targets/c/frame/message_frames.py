@@ -231,6 +231,17 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
         return (*self._given(), f"{put} put", "void *user")
 
     @property
+    def begin_arguments(self) -> tuple[str, ...]:
+        """Parameters of the function that begins a frame in its buffer."""
+        return (*self.begin_given, "uint8_t *frame", "size_t capacity")
+
+    @property
+    def begin_given(self) -> tuple[str, ...]:
+        """Those for numbers of elements that are given first."""
+        first = self.in_place.first if self.in_place else ()
+        return tuple(f"{item.type} {item.name}" for item in first)
+
+    @property
     def end_arguments(self) -> tuple[str, ...]:
         """Parameters of the function that ends a frame that was begun in its buffer."""
         return (*self.end_given, "uint8_t *frame")
