@@ -32,8 +32,19 @@ def made(schema: str, folder: Path, options: COptions = BOARD) -> Path:
     return folder
 
 
+DOUBLED = """
+  doubled:
+    id: 0x20
+    from: board
+    fields:
+      n: {type: uint8, range: [1, 20]}
+      x: {type: uint16, count: n * 2}
+      tail: {type: sint16, default: -7}
+"""
+
+
 def schema_in(frame: str) -> str:
-    return f"protocol: place{FRAMES[frame]}{MESSAGES.rstrip()}{VARIED}"
+    return f"protocol: place{FRAMES[frame]}{MESSAGES.rstrip()}{VARIED.rstrip()}{DOUBLED}"
 
 
 def ran(folder: Path, text: str, *flags: str) -> None:
@@ -387,6 +398,7 @@ WRITES = """
 #include "place.hpp"
 #include <cstdio>
 #include <cstring>
+#include <type_traits>
 #define EXPECT(condition) \\
     do { \\
         if (!(condition)) { std::printf("line %d: %s\\n", __LINE__, #condition); return 1; } \\
@@ -413,11 +425,18 @@ int main() {
     EXPECT(writer.set_points(2, all.points[2]) && writer.set_gains(0, all.gains[0]));
     EXPECT(!writer.set_points(3, all.points[2]) && !writer.set_level(4) && writer.set_level(9));
     all.level = 9;
+    static_assert(!std::is_copy_constructible<place::all_writer>::value &&
+                  !std::is_copy_assignable<place::all_writer>::value &&
+                  !std::is_move_constructible<place::all_writer>::value, "one writes a frame");
+    EXPECT(writer.get_level() == 9 && writer.get_on() && writer.get_at().y == -3);
+    EXPECT(writer.get_points(2).x == -9 && writer.get_points(3).x == 0);
+    EXPECT(writer.get_gains(0) >= 0.25 && writer.get_three(2) == 3 && writer.get_three(3) == 0);
     const place::framed made = writer.end();
     const place::framed expected = place::frame(all, other);
     EXPECT(made && expected && made.size() == expected.size());
     EXPECT(std::memcmp(frame, other, made.size()) == 0);
     EXPECT(!writer && !writer.set_level(7) && !writer.end()); /* It is gone. */
+    EXPECT(writer.get_level() == 0 && writer.get_points(2).x == 0);
 
     place::scan scan{};
     place::scan_writer one(scans);
@@ -442,6 +461,12 @@ int main() {
     EXPECT(dump);
     EXPECT(dump.set_data(97, data) && !dump.set_data(98, data));
     EXPECT(dump.set_again(0, "abc", 3) && dump.end(100));
+
+    place::doubled_writer doubled(2, scans);
+    EXPECT(doubled && doubled.get_n() == 2 && doubled.get_tail() == -7);
+    EXPECT(doubled.set_x(3, 1000) && !doubled.set_x(4, 1000) && doubled.end());
+    place::doubled_writer none(9, {scans, 20}), refused(200, scans);
+    EXPECT(!none && !none.set_x(0, 5) && !refused && !refused.end() && refused.get_n() == 0);
 
     place::log_writer log({scans, 5});
     EXPECT(!log && !log.set_level(1) && !log.set_text(0, "a", 1));

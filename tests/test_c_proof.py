@@ -47,6 +47,8 @@ ELEMENTS = ROOT / "tests" / "c_schemas" / "elements.yaml"
 """Floats in arrays."""
 WRITTEN = ROOT / "tests" / "c_proof" / "written.yaml"
 """Arrays whose number of elements varies, in frames that are stuffed and that are not."""
+NUMBERS_FIRST = ROOT / "tests" / "c_proof" / "first.yaml"
+"""Arrays whose numbers of elements are given first."""
 TRIMMED = ROOT / "tests" / "framings" / "trimmed_stuffed.yaml"
 """Payloads that a decoder fills up in its buffer."""
 DIGITS = ROOT / "tests" / "framings" / "digit_words.yaml"
@@ -323,7 +325,11 @@ def test_no_input_harms_a_decoder_that_keeps_the_last_bytes(tmp_path: Path) -> N
 BEGUN = [
     (path, machine) for path in (ROOT / "schemas" / "rn1.yaml", ELEMENTS) for machine in MACHINES
 ]
-BEGUN += [(WRITTEN, machine) for machine in (MACHINES if ALL else MACHINES[:1])]
+BEGUN += [
+    (path, machine)
+    for path in (WRITTEN, NUMBERS_FIRST)
+    for machine in (MACHINES if ALL else MACHINES[:1])
+]
 """Numbers of elements that vary take half a minute for each machine."""
 
 

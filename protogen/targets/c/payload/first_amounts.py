@@ -12,6 +12,7 @@ from protogen.c_language.numbers import hexadecimal, unsigned, unsigned_type
 from protogen.model.constants import raw_bytes
 from protogen.model.initial_payload import initial_bytes
 from protogen.model.payload_plan import RepeatStep
+from protogen.model.types import NumberType
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.given_amounts import (
     CheckedAmounts,
@@ -21,7 +22,8 @@ from protogen.targets.c.payload.given_amounts import (
     sizes_of,
 )
 from protogen.targets.c.payload.helpers import Helpers
-from protogen.targets.c.payload.storing import Store
+from protogen.targets.c.payload.number_bytes import cut, parted
+from protogen.targets.c.payload.storing import Store, raw_of
 from protogen.targets.c.payload.walk import amount, times
 from protogen.targets.c.payload.written_places import Amount, Place, Places
 
@@ -34,6 +36,13 @@ class StoreAt(Store):
     ) -> None:
         super().__init__(helpers, lines)
         self._name, self._offset, self._index = start, at, " + ".join(ahead)
+
+    def _number(self, type_: NumberType, value: str) -> None:
+        if not self._index:
+            super()._number(type_, value)
+            return
+        for place, byte in enumerate(parted(cut(type_), raw_of(type_, value))):
+            self.lines.add(f"{self.byte(place)} = {byte};")
 
 
 class FirstAmounts:

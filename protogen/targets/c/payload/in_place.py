@@ -35,7 +35,7 @@ from protogen.targets.c.payload.number_bytes import cut, parted
 from protogen.targets.c.payload.records import Records
 from protogen.targets.c.payload.storing import Store, raw_of
 from protogen.targets.c.payload.validating import Validate
-from protogen.targets.c.payload.walk import times
+from protogen.targets.c.payload.walk import amount, times
 from protogen.targets.c.payload.written_places import Amount, Place, Places, written_places
 from protogen.targets.c.spelling import Names
 from protogen.targets.naming import inside
@@ -73,11 +73,23 @@ class Setter(msgspec.Struct, frozen=True):
     text: str
 
 
+class Getter(msgspec.Struct, frozen=True):
+    """An inline function that reads what was written: a number, a struct, or an element."""
+
+    field: str
+    name: str
+    value: AnyStep
+    most: str
+    """How many elements there are or can be; empty if there is no index."""
+
+
 class InPlace(msgspec.Struct, frozen=True):
     """What is printed for a message that can be written in its place."""
 
-    getters: tuple[str, ...]
-    """Inline functions that read what is no array."""
+    reading: tuple[str, ...]
+    """Inline functions that read what no other function of the message does."""
+    getters: tuple[Getter, ...]
+    """Those that read what does not move when the frame is ended, and has no worked out number."""
     setters: tuple[Setter, ...]
     begins: tuple[str, ...]
     """Statements that store the defaults at `at`, where all is 0."""
@@ -257,7 +269,8 @@ class _Writing:
         unset = [it for it in settable if begins_refused(it.step, given)]
         segments = () if places.first else tuple(self._segments())
         return InPlace(
-            getters=tuple(text for it in held if not it.moves for text in self._getters(it)),
+            reading=tuple(text for it in held if not it.moves for text in self._reading(it)),
+            getters=tuple(getter for it in held if (getter := self._getter(it))),
             setters=tuple(map(self._setter, settable)),
             begins=tuple(line for it in placed for line in self._first.begun(it)),
             unset=_claim_unset(self._names, self._item) if unset else "",
@@ -308,19 +321,30 @@ class _Writing:
 
     # --- reading ----------------------------------------------------------------------------------
 
-    def _getters(self, place: Place) -> Iterator[str]:
+    def _getter(self, place: Place) -> Getter | None:
+        """The function that reads a field, or an element in bounds that are always the same."""
+        step, name = place.step, self._names_of(place)[0]
+        if place.moves or isinstance(step, BytesStep):
+            return None
+        if not isinstance(step, RepeatStep):
+            return Getter(step.name, name, step, "")
+        if place.varies and self._places.first:
+            return None
+        return Getter(step.name, name, step.element, amount(place.most))
+
+    def _reading(self, place: Place) -> Iterator[str]:
         """The functions that read a field, an element of it, or a number in it."""
         step, name = place.step, place.step.name
         if isinstance(step, IntegerStep | FloatStep | RecordStep):
-            yield from self._getter(place, self._names_of(place)[0], name, step)
+            yield from self._reader(place, self._names_of(place)[0], name, step)
         elif isinstance(step, RepeatStep) and not is_readable(step):
-            yield from self._getter(place, self._names_of(place)[0], f"{name}[index]", step.element)
+            yield from self._reader(place, self._names_of(place)[0], f"{name}[index]", step.element)
         for it in self._first.members_of(place):
             assert it.step is not None
             read = _claim_amount(self._names, self._item.name, it)
-            yield from self._getter(place, read, it.name, it.step, it.at)
+            yield from self._reader(place, read, it.name, it.step, it.at)
 
-    def _getter(
+    def _reader(
         self, place: Place, name: str, what: str, step: AnyStep, offset: int = 0
     ) -> Iterator[str]:
         body = Lines()
@@ -442,7 +466,11 @@ class _Writing:
             accepts.bytes(step, "value", "size")
             copy = self._helpers.copy()
             at = self._first.address(place, "payload", reading)
-        body.add(f"{copy}({_element(at, place)}, value, size);")
+        at = _element(at, place)
+        if place.ahead:
+            body.add(f"uint8_t *at = {at};")
+            at = "at"
+        body.add(f"{copy}({at}, value, size);")
         body.add("return true;")
         what = "characters" if isinstance(step.type, Text) else "bytes"
         doc = (

@@ -137,7 +137,7 @@ class MessagePrinter(msgspec.Struct, frozen=True):
         place = in_place(item, names, self.helpers, self.records, list(map(names.member, parts)))
         accessors = tuple(text for text in read if text)
         if place is not None:
-            accessors += (*place.getters, *(setter.text for setter in place.setters))
+            accessors += (*place.reading, *(setter.text for setter in place.setters))
         zeros = f"{names.prefix.upper()}_ZEROS"
         struct = f"struct {tag}" if has_struct(item) else ""
         codec = _Codec(self, item, struct, called)
