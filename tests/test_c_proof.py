@@ -394,6 +394,12 @@ def test_an_index_that_is_too_great_by_one_is_found(tmp_path: Path) -> None:
     assert any("out of bounds write" in found for found in prove_in_place(made, first=True).found)
 
 
+def test_an_index_past_a_number_that_was_worked_out_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(NUMBERS_FIRST), tmp_path)
+    changed(made.header, r"if \(index >= amount\)", "if (index > amount)")
+    assert any("out of bounds write" in found for found in prove_in_place(made, first=True).found)
+
+
 def test_a_buffer_that_is_too_small_by_a_byte_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(MATTY), tmp_path)
     header = changed(made.header, r"uint8_t buffer\[126\];", "uint8_t buffer[125];")

@@ -38,7 +38,9 @@ static void prove_{begin}(void) {{
     uint8_t frame[{room}];
     size_t size = Frama_C_unsigned_int_interval(0, {room});
     uint8_t *payload;
-{first}    payload = {begin}({given}&frame[{room} - size], size);
+{first}    //@ split size;
+    payload = {begin}({given}&frame[{room} - size], size);
+    //@ merge size;
     payload = {begin}({given}frame, {room});
     if (payload != NULL) {{
         while (any != 0) {{

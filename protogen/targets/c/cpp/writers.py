@@ -13,7 +13,7 @@ from protogen.targets import naming
 from protogen.targets.c.cpp.calls import call_of
 from protogen.targets.c.cpp.names import CppNames
 from protogen.targets.c.frame.message_frames import MessageFrame
-from protogen.targets.c.payload.in_place import Getter, Setter
+from protogen.targets.c.payload.in_place_view import Getter, Setter
 
 
 class CppSetter(msgspec.Struct, frozen=True):

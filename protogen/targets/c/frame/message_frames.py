@@ -19,7 +19,7 @@ from protogen.model.types import Field
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.frames import Argument, FrameView, argument_of, one_of
 from protogen.targets.c.frame.virtual import value_of
-from protogen.targets.c.payload.in_place import InPlace
+from protogen.targets.c.payload.in_place_view import InPlace
 from protogen.targets.c.payload.message_names import FrameNames
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.payload.one_byte import only_byte

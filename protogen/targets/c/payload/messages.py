@@ -22,7 +22,8 @@ from protogen.targets.c.payload.checking import Checker
 from protogen.targets.c.payload.held import HeldNumber, from_parts, held_numbers
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.images import copied, is_image, last_place
-from protogen.targets.c.payload.in_place import InPlace, in_place
+from protogen.targets.c.payload.in_place import in_place
+from protogen.targets.c.payload.in_place_view import InPlace
 from protogen.targets.c.payload.initial import initialiser
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.measuring import Measure
