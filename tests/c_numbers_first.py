@@ -106,9 +106,10 @@ NUMBERS_FIRST = {
     "pair": ("n", "m"),
     "named": ("n",),
     "noted": ("n", "m"),
-    "counted": ("count", "length", "other_length"),  # Of the sampler.
 }
 """The numbers that `begin` of each message takes."""
+OTHERS_FIRST = {"struct sampler_counted": ("count", "length", "other_length")}
+"""Those of messages of other schemas, by their structs."""
 BITS = {"key.size": "(message->key & 15U)"}
 """The C of numbers that are some bits of a field."""
 FILLED = ("named", "noted")

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import pytest
 from c_in_place_frames import FRAMES, TYPES
 from c_library import FLAGS, OK, write_sources
-from c_numbers_first import BITS, FILLED, NUMBERS_FIRST, first_schema
+from c_numbers_first import BITS, FILLED, NUMBERS_FIRST, OTHERS_FIRST, first_schema
 from c_structs import Unfit, Values, count_name, fill, structure_of
 from compiled import ROOT, module_at, protocol_of
 from hypothesis import given, settings
@@ -139,6 +139,8 @@ class Way(NamedTuple):
     """What tells the frame from the message's others."""
     room: int
     parts: tuple[str, ...]
+    first: tuple[str, ...]
+    """The numbers that are given first."""
 
     def write(
         self, values: Values, parts: Values, capacity: int | None = None, skipped: int = -1
@@ -248,7 +250,7 @@ def ways(path: Path) -> list[Way]:
         programs.append(written(item))
         parts = tuple(argument.part for argument in item.arguments)
         sender, suffix = item.decoder.name, item.called.suffix
-        found.append((sender, item.message, suffix, item.room, parts))
+        found.append((sender, item.message, suffix, item.room, parts, first_of(item)))
     (place / "shim.c").write_text("".join(programs), encoding="utf-8")
     command = [require_tool("cc"), *FLAGS, "-O1", "-fPIC", "-shared", "shim.c", "-o", "shim.so"]
     done = subprocess.run(command, cwd=place, capture_output=True, text=True, check=False)
@@ -257,11 +259,17 @@ def ways(path: Path) -> list[Way]:
     return [Way(path, sender, it, library, *others) for sender, it, *others in found]
 
 
+def first_of(item: MessageFrame) -> tuple[str, ...]:
+    """The numbers of a message that `begin` takes."""
+    others = OTHERS_FIRST.get(item.view.struct, ())
+    return NUMBERS_FIRST.get(item.message.name, others)
+
+
 def written(item: MessageFrame) -> str:
     """The C that writes a message field by field out of a struct."""
     given = [argument.name for argument in item.arguments]
     fields = [field for field in item.message.fields if field.const is None]
-    first, numbers = NUMBERS_FIRST.get(item.message.name, ()), numbers_of(fields)
+    first, numbers = first_of(item), numbers_of(fields)
     settable = [it for it in fields if it.name not in (*numbers.values(), *first)]
     last = [it for name, it in numbers.items() if not first or it.startswith(f"{name}_")]
     prefix = item.view.struct[7:]
@@ -415,7 +423,7 @@ def test_a_buffer_that_is_too_short_is_left_alone(name: str) -> None:
         values, parts = way.samples(Random(name), 1)[-1]
         frame = way.frame(values, parts)
         assert frame is not None
-        needed = len(frame) if way.message.name in NUMBERS_FIRST else way.room
+        needed = len(frame) if way.first else way.room
         for capacity in (0, needed - 1):
             assert way.write(values, parts, capacity) == (_NO_ROOM, b"")
 
