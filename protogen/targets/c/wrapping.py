@@ -15,7 +15,7 @@ _HEAD = re.compile(r"(?P<function>\w[\w *]*)\((?P<arguments>[^()]+)\)(?P<end>;| 
 """The head of a function without functions among its arguments."""
 _VALUE = re.compile(r"\s*(?:return |[^=(]* = )?")
 """Text in front of a value outside of brackets."""
-_OPERATOR = re.compile(r"(?:&&| \|| \+|\|\|)$")
+_OPERATOR = re.compile(r"(?:&&| \||\|\|)$")
 """Operators behind which a line is broken."""
 _CONDITION = re.compile(r"(?:&&|\|\|)$")
 """Operators behind which it is broken even where what stands in front is too long."""

@@ -13,7 +13,7 @@ from protogen.model.constants import raw_bytes
 from protogen.model.initial_payload import initial_bytes
 from protogen.model.payload_plan import RepeatStep
 from protogen.model.types import NumberType
-from protogen.targets.c.lines import Lines
+from protogen.targets.c.lines import WIDTH, Lines
 from protogen.targets.c.payload.given_amounts import (
     CheckedAmounts,
     GivenAmount,
@@ -26,6 +26,9 @@ from protogen.targets.c.payload.number_bytes import cut, parted
 from protogen.targets.c.payload.storing import Store, raw_of
 from protogen.targets.c.payload.walk import amount, times
 from protogen.targets.c.payload.written_places import Amount, Place, Places
+
+_LONG = 60
+"""Columns of an address that leave room for a declaration and an index."""
 
 
 class StoreAt(Store):
@@ -64,7 +67,13 @@ class FirstAmounts:
 
     def address(self, place: Place, start: str, reading: ReadAmounts, offset: int = 0) -> str:
         """Where a field stands, or something in it."""
-        return " + ".join([offset_by(start, place.at + offset), *sizes_of(reading, place.ahead)])
+        sizes = sizes_of(reading, place.ahead)
+        at = " + ".join([offset_by(start, place.at + offset), *sizes])
+        if len(at) <= _LONG:
+            return at
+        terms = [unsigned(place.at + offset), *sizes]
+        _add_up(reading.lines, "size_t ahead", terms, "const ")
+        return f"{start} + ahead"
 
     def most(self, place: Place, body: Lines, reading: ReadAmounts) -> list[str]:
         """How many elements a place has, or can have: no more than each of these."""
@@ -109,7 +118,7 @@ class FirstAmounts:
         is_bounded = most > places.size
         name = "needed" if fills or kind != "size_t" else "payload"
         if is_bounded or not fills:
-            lines.add(f"const {kind} {name} = {' + '.join(terms)};")
+            _add_up(lines, f"{kind} {name}", terms, "const ")
         if is_bounded:
             with lines.block(f"if ({name} > {unsigned(places.size)})"):
                 lines.add("return NULL;")
@@ -150,13 +159,24 @@ class FirstAmounts:
                     lines.add("return 0U;")
                 sizes.append(str(times(number, place.width)))
         start = [unsigned(places.fixed)] if places.fixed else []
-        lines.add(f"payload = {' + '.join([*start, *sizes])};")
+        _add_up(lines, "payload", [*start, *sizes])
         return tuple(lines.lines)
 
 
 def offset_by(start: str, offset: int) -> str:
     """So many bytes behind a place."""
     return f"{start} + {unsigned(offset)}" if offset else start
+
+
+def _add_up(lines: Lines, variable: str, terms: Sequence[str], constant: str = "") -> None:
+    """Give a variable the sum: in one statement, or in several where that is too long a line."""
+    whole = f"{constant}{variable} = {' + '.join(terms)};"
+    if len(lines.margin + whole) <= WIDTH:
+        lines.add(whole)
+        return
+    lines.add(f"{variable} = {terms[0]};")
+    name = variable.rpartition(" ")[2]
+    lines.add(*(f"{name} += {term};" for term in terms[1:]))
 
 
 def _wide(count: int | str, width: int, kind: str) -> str:

@@ -43,7 +43,7 @@ _CALL = re.compile(r"\w\(")
 _TAKEN = frozenset({"frame", "payload", "size", "to", "wire", "written", "i", "at", "NULL"})
 """Names that a parameter may not have."""
 _TAKEN_FIRST = frozenset(
-    {"index", "value", "out", "raw", "extended", "bits", "most", "needed", "capacity"}
+    {"index", "value", "out", "raw", "extended", "bits", "most", "needed", "ahead", "capacity"}
 )
 """Names that a variable may not have either, for a number that is given first."""
 
