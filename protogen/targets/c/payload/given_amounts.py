@@ -6,13 +6,19 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
-from protogen.c_language.numbers import constant, counting_type, integer_type, unsigned
+from protogen.c_language.numbers import (
+    constant,
+    counting_type,
+    integer_type,
+    unsigned,
+    unsigned_type,
+)
 from protogen.model.payload_plan import Count, Formula, Reference
 from protogen.model.types import counting_bits
 from protogen.targets.c.lines import Lines
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.validating import Validate
-from protogen.targets.c.payload.walk import Walk, times
+from protogen.targets.c.payload.walk import Walk, is_unfit, times, type_of
 from protogen.targets.c.payload.written_places import Amount, Place
 
 
@@ -85,6 +91,13 @@ class CheckedAmounts(Validate):
         """Refuse what the field itself can't be."""
         assert amount.step is not None
         self.number(amount.step, self._amounts[amount.name].name)
+
+    def worked_out(self, count: Count, by: Formula) -> str:
+        """A variable with a number that is not below 0 any more."""
+        name, type_ = self.declared(by), type_of(by)
+        self._refuse(is_unfit(name, count, by))
+        cast = f"({unsigned_type(type_.bits)})" if type_.signed else ""
+        return f"(size_t){cast}{name}"
 
     def referred(self, number: Reference) -> str:
         """The parameter."""

@@ -18,6 +18,7 @@ from protogen.model.payload_plan import (
     BytesStep,
     FloatStep,
     IntegerStep,
+    NumberStep,
     RecordStep,
     RepeatStep,
 )
@@ -101,6 +102,13 @@ class _Put(Store):
             self.record(plan_of_struct(step.type).steps, f"{name}->")
         else:
             self.step(step, name)
+
+    def number(self, step: NumberStep, place: str) -> None:
+        """A number; a bool that is no member is not cast, as MISRA wants it."""
+        if step.type.role == "bool" and step.type.size == 1 and "->" not in place:
+            self._byte(f"{place} ? 1U : 0U")
+        else:
+            super().number(step, place)
 
     def _number(self, type_: NumberType, value: str) -> None:
         if _CALL.search(value):
