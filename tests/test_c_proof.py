@@ -48,6 +48,8 @@ ELEMENTS = ROOT / "tests" / "c_schemas" / "elements.yaml"
 """Floats in arrays."""
 WRITTEN = ROOT / "tests" / "c_proof" / "written.yaml"
 """Arrays whose number of elements varies, in frames that are stuffed and that are not."""
+NUMBERS_FIRST = ROOT / "tests" / "c_proof" / "first.yaml"
+"""Arrays whose numbers of elements are given first."""
 TRIMMED = ROOT / "tests" / "framings" / "trimmed_stuffed.yaml"
 """Payloads that a decoder fills up in its buffer."""
 DIGITS = ROOT / "tests" / "framings" / "digit_words.yaml"
@@ -348,7 +350,11 @@ def test_no_input_harms_a_decoder_that_keeps_the_last_bytes(tmp_path: Path) -> N
 BEGUN = [
     (path, machine) for path in (ROOT / "schemas" / "rn1.yaml", ELEMENTS) for machine in MACHINES
 ]
-BEGUN += [(WRITTEN, machine) for machine in (MACHINES if ALL else MACHINES[:1])]
+BEGUN += [
+    (path, machine)
+    for path in (WRITTEN, NUMBERS_FIRST)
+    for machine in (MACHINES if ALL else MACHINES[:1])
+]
 """Numbers of elements that vary take half a minute for each machine."""
 
 
@@ -410,6 +416,12 @@ def test_a_frame_that_needs_more_than_it_asks_for_is_found(
 def test_an_index_that_is_too_great_by_one_is_found(tmp_path: Path) -> None:
     made = generate(protocol_of(ROOT / "schemas" / "rn1.yaml"), tmp_path)
     changed(made.header, r"if \(index >= 360U\)", "if (index > 360U)")
+    assert any("out of bounds write" in found for found in prove_in_place(made, first=True).found)
+
+
+def test_an_index_past_a_number_that_was_worked_out_is_found(tmp_path: Path) -> None:
+    made = generate(protocol_of(NUMBERS_FIRST), tmp_path)
+    changed(made.header, r"if \(index >= amount\)", "if (index > amount)")
     assert any("out of bounds write" in found for found in prove_in_place(made, first=True).found)
 
 

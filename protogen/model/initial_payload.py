@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from protogen.model.constants import raw_bytes
 from protogen.model.meanings import Enum
 from protogen.model.payload_plan import (
@@ -49,9 +51,9 @@ def _of_others(step: AnyStep) -> bytes | None:
     return None
 
 
-def begins_refused(step: AnyStep) -> bool:
-    """True if an encoder refuses what such a step begins with."""
-    if not step.is_refusable:
+def begins_refused(step: AnyStep, given: Sequence[IntegerStep] = ()) -> bool:
+    """True if an encoder refuses what such a step begins with, numbers aside that are given."""
+    if not step.is_refusable or step in given:
         return False
     match step:
         case IntegerStep():
@@ -61,7 +63,7 @@ def begins_refused(step: AnyStep) -> bool:
             is_above = least is None or number >= least
             return not (is_above and (greatest is None or number <= greatest))
         case RecordStep():
-            return any(map(begins_refused, step.steps))
+            return any(begins_refused(item, given) for item in step.steps)
         case RepeatStep():
             return step.field.default is None and begins_refused(step.element)
     return False

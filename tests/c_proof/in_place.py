@@ -12,7 +12,9 @@ from c_proof.drivers import HEAD, STATES, Driver, program
 from protogen.copying import replace
 from protogen.model.protocol import Protocol
 
-_BEGIN = re.compile(r"uint8_t \*((\w+)_begin)\( ?uint8_t \*frame, size_t capacity\);")
+_BEGIN = re.compile(
+    r"uint8_t \*((\w+)_begin)\( ?((?:\w+ \w+, )*)uint8_t \*frame, size_t capacity\);"
+)
 _END = re.compile(r"size_t (\w+)_end\( ?((?:\w+ \w+, )*)uint8_t \*frame\);")
 _SET = re.compile(r"static inline bool (\w+_set(?:_at)?)\( ?uint8_t \*payload, ([^)]*)\) \{")
 _GET = re.compile(r"static inline (?!void)\w+ (\w+_get)\( ?const uint8_t \*payload\) \{")
@@ -31,13 +33,31 @@ static void prove_{begin}(void) {{
     //@ assert size <= {room};
 }}
 """
+_WRITE_FIRST = """
+static void prove_{begin}(void) {{
+    uint8_t frame[{room}];
+    size_t size = Frama_C_unsigned_int_interval(0, {room});
+    uint8_t *payload;
+{first}    //@ split size;
+    payload = {begin}({given}&frame[{room} - size], size);
+    //@ merge size;
+    payload = {begin}({given}frame, {room});
+    if (payload != NULL) {{
+        while (any != 0) {{
+{sets}        }}
+{numbers}        size = {prefix}_end({parts}frame);
+        //@ assert size <= {room};
+    }}
+}}
+"""
+"""Numbers that are given first stay what they are."""
 _NUMBER = """    {type} {name} = ({type})any;
     if ({name} <= {followed}) {{
         //@ split {name};
         ;
     }}
 """
-"""What `end` is given: numbers of elements, of which EVA follows each alone."""
+"""Numbers of elements that are given, of which EVA follows each alone."""
 _FOLLOWED = 8
 """The greatest of them."""
 _CALL = """        if (any != 0) {{
@@ -63,28 +83,39 @@ def in_place_driver(protocol: Protocol, header: str) -> Driver:
     rooms = dict(_ROOM.findall(flat))
     ends = dict(_END.findall(flat))
     parts, proofs = [HEAD.format(name=protocol.name, upper=protocol.name.upper())], []
-    for begin, prefix in _BEGIN.findall(flat):
+    for begin, prefix, first in _BEGIN.findall(flat):
         own = [found for found in _SET.findall(flat) if found[0].startswith(f"{prefix}_")]
         reads = [name for name in _GET.findall(flat) if name.startswith(f"{prefix}_")]
         sets = [_call(name, arguments.split(", ")) for name, arguments in own]
         sets += [f"        sink = {name}(payload) != 0;\n" for name in reads]
-        given = re.findall(r"(\w+) (\w+),", ends[prefix])
-        room = rooms[f"{prefix.upper()}_FRAME_ROOM"]
         parts.append(
-            _WRITE.format(
+            (_WRITE_FIRST if first else _WRITE).format(
                 begin=begin,
                 prefix=prefix,
-                room=room,
+                room=rooms[f"{prefix.upper()}_FRAME_ROOM"],
                 sets="".join(sets),
-                numbers="".join(
-                    _NUMBER.format(type=type_, name=name, followed=_FOLLOWED)
-                    for type_, name in given
-                ),
-                parts="".join(f"{name}, " for _, name in given),
+                first=_numbers(first),
+                given=_names(first),
+                numbers=_numbers(ends[prefix]),
+                parts=_names(ends[prefix]),
             )
         )
         proofs.append(begin)
-    return replace(program(parts, proofs), options=(STATES,))
+    # Where numbers are given first, states are kept apart by these alone.
+    depths = ",".join(f"prove_{begin}:0" for begin, _, first in _BEGIN.findall(flat) if first)
+    options = (STATES, *[f"-eva-slevel-function={depths}"] * bool(depths))
+    return replace(program(parts, proofs), options=options)
+
+
+def _numbers(parameters: str) -> str:
+    """Any values for parameters that are numbers."""
+    found = re.findall(r"(\w+) (\w+),", parameters)
+    return "".join(_NUMBER.format(type=kind, name=name, followed=_FOLLOWED) for kind, name in found)
+
+
+def _names(parameters: str) -> str:
+    """Parameters as arguments in front of others."""
+    return "".join(f"{name}, " for _, name in re.findall(r"(\w+) (\w+),", parameters))
 
 
 def _call(name: str, arguments: list[str]) -> str:

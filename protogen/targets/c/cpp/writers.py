@@ -6,13 +6,14 @@ from collections.abc import Iterator
 
 import msgspec
 
-from protogen.model.payload_plan import BytesStep, RecordStep
+from protogen.c_language.numbers import integer_type
+from protogen.model.payload_plan import BytesStep, FloatStep, IntegerStep, RecordStep
 from protogen.model.types import Text
 from protogen.targets import naming
 from protogen.targets.c.cpp.calls import call_of
 from protogen.targets.c.cpp.names import CppNames
 from protogen.targets.c.frame.message_frames import MessageFrame
-from protogen.targets.c.payload.in_place import Setter
+from protogen.targets.c.payload.in_place_view import Getter, Setter
 
 
 class CppSetter(msgspec.Struct, frozen=True):
@@ -23,6 +24,19 @@ class CppSetter(msgspec.Struct, frozen=True):
     call: str
 
 
+class CppGetter(msgspec.Struct, frozen=True):
+    """A function that reads a field, or an element of one."""
+
+    name: str
+    type: str
+    parameters: str
+    condition: str
+    """The condition that there is something to read."""
+    call: str
+    is_struct: bool
+    """True if the call takes the place for the value."""
+
+
 class CppWriter(msgspec.Struct, frozen=True):
     """The class for the frames of a message from senders of one kind of frame."""
 
@@ -30,11 +44,18 @@ class CppWriter(msgspec.Struct, frozen=True):
     message: str
     item: MessageFrame
     setters: tuple[CppSetter, ...]
+    getters: tuple[CppGetter, ...]
 
     @property
     def begin(self) -> str:
         """The call of C's function that begins a frame."""
-        return f"::{self.item.called.begin}(frame.data(), frame.size())"
+        known = {"frame": "frame.data()", "capacity": "frame.size()"}
+        return call_of(self.item.called.begin, self.item.begin_arguments, known)
+
+    @property
+    def first(self) -> str:
+        """Parameters of the constructor, in front of the buffer: numbers that are given first."""
+        return "".join(f"{item}, " for item in self.item.begin_given)
 
     @property
     def given(self) -> str:
@@ -58,7 +79,33 @@ def cpp_writers(
                 message=messages[item.message.name],
                 item=item,
                 setters=tuple(_setter(setter, cpp) for setter in item.in_place.setters),
+                getters=tuple(_getter(getter, cpp) for getter in item.in_place.getters),
             )
+
+
+def _getter(getter: Getter, cpp: CppNames) -> CppGetter:
+    condition, index = "payload_ != nullptr", ""
+    if getter.most:
+        condition, index = f"{condition} && index < {getter.most}", ", index"
+    is_struct = isinstance(getter.value, RecordStep)
+    match getter.value:
+        case RecordStep() as step:
+            name = cpp.of(naming.named_type(step.type.name), step.type.name)
+            kind = f"::{cpp.space}::{name}"
+        case IntegerStep() as step:
+            kind = integer_type(step.type)
+        case FloatStep() as step:
+            kind = "float" if step.type.bits == 32 else "double"
+        case _:
+            raise AssertionError(getter)
+    return CppGetter(
+        name=f"get_{getter.field}",
+        type=kind,
+        parameters="size_t index" if getter.most else "",
+        condition=condition,
+        call=f"::{getter.name}(payload_{index}{', &value' if is_struct else ''})",
+        is_struct=is_struct,
+    )
 
 
 def _setter(setter: Setter, cpp: CppNames) -> CppSetter:

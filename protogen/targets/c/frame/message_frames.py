@@ -19,7 +19,7 @@ from protogen.model.types import Field
 from protogen.targets.c.decoders.decoder import DecoderView
 from protogen.targets.c.frame.frames import Argument, FrameView, argument_of, one_of
 from protogen.targets.c.frame.virtual import value_of
-from protogen.targets.c.payload.in_place import InPlace
+from protogen.targets.c.payload.in_place_view import InPlace
 from protogen.targets.c.payload.message_names import FrameNames
 from protogen.targets.c.payload.messages import MessageView
 from protogen.targets.c.payload.one_byte import only_byte
@@ -244,6 +244,17 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
         given = ("message",) if self.view.parameter else ()
         names = (*given, *(item.name for item in self.arguments), "frame", "sizeof frame")
         return f"{self.called.function}({', '.join(names)})"
+
+    @property
+    def begin_arguments(self) -> tuple[str, ...]:
+        """Parameters of the function that begins a frame in its buffer."""
+        return (*self.begin_given, "uint8_t *frame", "size_t capacity")
+
+    @property
+    def begin_given(self) -> tuple[str, ...]:
+        """Those for numbers of elements that are given first."""
+        first = self.in_place.first if self.in_place else ()
+        return tuple(f"{item.type} {item.name}" for item in first)
 
     @property
     def end_arguments(self) -> tuple[str, ...]:

@@ -59,22 +59,27 @@ def accessor(
     place = f"{start} + {f'{unsigned(size)} * index' if size > 1 else 'index'}"
     doc = f"Reads {field.name}[index] from a payload that was received, unchecked."
     name = claim_accessor(names, record, field.name)
-    return reader(name, ("size_t index",), place, doc, step.element, helpers, records)
+    return reader(name, ("size_t index",), pointing(place), doc, step.element, helpers, records)
+
+
+def pointing(place: str, body: Lines | None = None) -> Lines:
+    """Statements behind which `at` points to a place; those in front declare what that needs."""
+    lines = Lines() if body is None else body
+    lines.add(f"const uint8_t *at = {place};")
+    return lines
 
 
 def reader(
     name: str,
     arguments: tuple[str, ...],
-    place: str,
+    body: Lines,
     doc: str,
     element: AnyStep,
     helpers: Helpers,
     records: Records,
 ) -> str | None:
-    """The inline function that reads what lies at a place of a payload; None if that is nothing."""
-    declaration = f"const uint8_t *at = {place};"
-    body = Lines()
-    body.add(declaration)
+    """The inline function that reads what lies where `body` points to; None if that is nothing."""
+    declaration = body.lines[-1]
     arguments = ("const uint8_t *payload", *arguments)
     with helpers.public():
         match element:
@@ -97,7 +102,7 @@ def reader(
             case _:
                 raise AssertionError(element)
     body.drop_unused_places()
-    if declaration not in map(str.strip, body.lines):
+    if declaration not in body.lines:
         return None
     return "\n".join([*comment([doc]), function(f"static inline {type_} {name}", arguments, body)])
 

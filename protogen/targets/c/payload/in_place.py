@@ -8,17 +8,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-import msgspec
-
-from protogen.c_language.numbers import (
-    constant,
-    counting_type,
-    hexadecimal,
-    integer_type,
-    unsigned,
-)
-from protogen.model.constants import raw_bytes
-from protogen.model.initial_payload import begins_refused, initial_bytes
+from protogen.c_language.numbers import integer_type, unsigned
+from protogen.model.initial_payload import begins_refused
 from protogen.model.messages import Message
 from protogen.model.names import free_name
 from protogen.model.payload_builder import plan_of_struct
@@ -27,15 +18,19 @@ from protogen.model.payload_plan import (
     BytesStep,
     FloatStep,
     IntegerStep,
+    NumberStep,
     RecordStep,
     RepeatStep,
 )
-from protogen.model.types import NumberType, Text, counting_bits
+from protogen.model.types import NumberType, Text
 from protogen.targets import naming
 from protogen.targets.c.comments import comment
 from protogen.targets.c.lines import Lines, function, mentions
-from protogen.targets.c.payload.accessors import claim_accessor, reader
+from protogen.targets.c.payload.accessors import claim_accessor, is_readable, pointing, reader
+from protogen.targets.c.payload.first_amounts import FirstAmounts, StoreAt, offset_by
+from protogen.targets.c.payload.given_amounts import GivenAmount, given_amount
 from protogen.targets.c.payload.helpers import Helpers
+from protogen.targets.c.payload.in_place_view import Getter, InPlace, Segment, Setter
 from protogen.targets.c.payload.number_bytes import cut, parted
 from protogen.targets.c.payload.records import Records
 from protogen.targets.c.payload.storing import Store, raw_of
@@ -48,94 +43,10 @@ from protogen.targets.naming import inside
 _CALL = re.compile(r"\w\(")
 _TAKEN = frozenset({"frame", "payload", "size", "to", "wire", "written", "i", "at", "NULL"})
 """Names that a parameter may not have."""
-
-
-class GivenAmount(msgspec.Struct, frozen=True):
-    """A number of elements or bytes, as a parameter."""
-
-    name: str
-    type: str
-    number: str
-    """The expression of a `size_t`."""
-    refused: str
-    """The condition that no frame has so many; empty if there is none."""
-
-
-class Segment(msgspec.Struct, frozen=True):
-    """Bytes of the payload that stand behind each other however many elements there are."""
-
-    at: int
-    """Where they stand while it is written."""
-    size: str
-
-
-class Setter(msgspec.Struct, frozen=True):
-    """An inline function that writes a field, an element of one, or a piece of its bytes."""
-
-    field: str
-    name: str
-    indexed: bool
-    """True if it takes the index of an element, or of the first of several bytes."""
-    value: AnyStep
-    """What its value is."""
-    type: str
-    """The type of that, or of the pointer to it."""
-    pieces: bool
-    """True if it takes the number of bytes, too."""
-    text: str
-
-
-class InPlace(msgspec.Struct, frozen=True):
-    """What is printed for a message that can be written in its place."""
-
-    getters: tuple[str, ...]
-    """Inline functions that read what is no array."""
-    setters: tuple[Setter, ...]
-    begins: tuple[str, ...]
-    """Statements that store the defaults at `at`, where all is 0."""
-    unset: str
-    """The name of the function that says whether a field still has to be set; empty: none has."""
-    unset_function: str
-    written: tuple[str, ...]
-    """Functions for it that read what stands elsewhere in a frame that was ended."""
-    room: int
-    """Bytes of the payload, with the most elements that it can have."""
-    amounts: tuple[GivenAmount, ...]
-    """The numbers that are given when the frame is ended."""
-    size: str
-    """The bytes of the payload, worked out of them."""
-    stores: tuple[str, ...]
-    """Statements that put them into the payload at `written`."""
-    segments: tuple[Segment, ...]
-
-    @property
-    def given(self) -> str:
-        """The numbers as arguments behind others."""
-        return "".join(f", {item.name}" for item in self.amounts)
-
-    def closes_up(self, *, is_moved: bool) -> bool:
-        """True if bytes have to move when the frame is ended."""
-        return bool(self.amounts) and (is_moved or len(self.segments) > 1)
-
-    def closing(self, place: str, *, is_moved: bool) -> tuple[str, ...]:
-        """Statements that move the bytes to where the frame has them.
-
-        None of them moves towards the end. `place` is the payload's, where all of it moves.
-        """
-        if not self.closes_up(is_moved=is_moved):
-            return ()
-        lines, segments = Lines(), self.segments
-        if is_moved:
-            lines.add(f"to = {place};")
-        else:
-            lines.add(f"to = &written[{segments[0].size}];")
-            segments = segments[1:]
-        for segment in segments:
-            with lines.block(f"for (size_t i = 0; i < {segment.size}; i++)"):
-                lines.add(f"to[i] = written[{_index(segment.at, 'i')}];")
-            if segment is not segments[-1]:
-                lines.add(f"to += {segment.size};")
-        return lines.lines
+_TAKEN_FIRST = frozenset(
+    {"index", "value", "out", "raw", "extended", "bits", "most", "needed", "ahead", "capacity"}
+)
+"""Names that a variable may not have either, for a number that is given first."""
 
 
 def in_place(
@@ -152,6 +63,8 @@ def claim_in_place(names: Names, item: Message) -> None:
     for place in () if places is None else places.places:
         if place.step.holds_values:
             _claim(names, item.name, place)
+    for number in () if places is None else places.first:
+        _claim_amount(names, item.name, number)
     _claim_unset(names, item)
 
 
@@ -165,8 +78,14 @@ def _claim(names: Names, record: str, place: Place) -> tuple[str, str]:
         reader = claim_accessor(names, record, step.name)
     else:
         reader = names.claim(thing, record, step.name, "get")
-    word = "set_at" if isinstance(step, RepeatStep) or place.amount else "set"
+    word = "set_at" if isinstance(step, RepeatStep) or place.varies else "set"
     return reader, names.claim(thing, record, step.name, word)
+
+
+def _claim_amount(names: Names, record: str, amount: Amount) -> str:
+    """The name of the function that reads a number that is given first."""
+    words = amount.name.split(".")
+    return names.claim(inside(record, "field", *words), record, *words, "get")
 
 
 def _claim_unset(names: Names, item: Message) -> str:
@@ -183,6 +102,13 @@ class _Put(Store):
             self.record(plan_of_struct(step.type).steps, f"{name}->")
         else:
             self.step(step, name)
+
+    def number(self, step: NumberStep, place: str) -> None:
+        """A number; a bool that is no member is not cast, as MISRA wants it."""
+        if step.type.role == "bool" and step.type.size == 1 and "->" not in place:
+            self._byte(f"{place} ? 1U : 0U")
+        else:
+            super().number(step, place)
 
     def _number(self, type_: NumberType, value: str) -> None:
         if _CALL.search(value):
@@ -204,14 +130,6 @@ class _Accepts(Validate):
             self.record(plan_of_struct(step.type).steps, name)
 
 
-class _StoreAt(Store):
-    """Stores values at a place behind a variable."""
-
-    def __init__(self, helpers: Helpers, lines: Lines, start: str, at: int) -> None:
-        super().__init__(helpers, lines)
-        self._name, self._offset = start, at
-
-
 class _Writing:
     """Prints the functions of one message."""
 
@@ -230,63 +148,61 @@ class _Writing:
         self._helpers = helpers
         self._records = records
         taken = {*_TAKEN, *parts, *(f"{part}_part" for part in parts)}
+        taken |= _TAKEN_FIRST if places.first else set()
         self._amounts: dict[str, GivenAmount] = {}
         for it in places.amounts:
-            member = names.member(it.name)
+            member = "_".join(map(names.member, it.name.split(".")))
             name = free_name(f"{member}_field" if member in taken else member, taken)
             taken.add(name)
-            self._amounts[it.name] = self._given(it, name)
+            fills = next((p.step.count for p in places.places if p.amount == it.name), None)
+            read = _claim_amount(names, item.name, it) if it.place else ""
+            self._amounts[it.name] = given_amount(it, name, fills, read)
+        self._first = FirstAmounts(places, self._amounts, helpers)
 
     def view(self) -> InPlace:
         """All of them."""
-        counting = {it.name for it in self._places.amounts}
-        placed = self._places.places
+        places = self._places
+        counting = {it.name for it in places.amounts}
+        placed = places.places
         held = [it for it in placed if it.step.holds_values]
         settable = [it for it in held if it.step.name not in counting]
-        unset = [it for it in settable if begins_refused(it.step)]
-        segments = tuple(self._segments())
+        given = [it.step for it in places.first if it.step is not None]
+        unset = [it for it in settable if begins_refused(it.step, given)]
+        segments = () if places.first else tuple(self._segments())
         return InPlace(
-            getters=tuple(text for it in held if not it.moves and (text := self._getter(it))),
+            reading=tuple(text for it in held if not it.moves for text in self._reading(it)),
+            getters=tuple(getter for it in held if (getter := self._getter(it))),
             setters=tuple(map(self._setter, settable)),
-            begins=tuple(line for it in placed for line in _begins(it)),
+            begins=tuple(line for it in placed for line in self._first.begun(it)),
             unset=_claim_unset(self._names, self._item) if unset else "",
             unset_function=self._unset(unset) if unset else "",
             written=tuple(self._written(it) for it in unset if it.moves),
-            room=self._places.size,
-            amounts=tuple(self._amounts.values()),
+            room=places.size,
+            amounts=self._last,
             size=" + ".join(it.size for it in segments),
-            stores=tuple(line for it in self._places.amounts for line in self._stored(it)),
+            stores=tuple(line for it in places.last for line in self._stored(it)),
             segments=segments,
+            first=tuple(self._amounts[it.name] for it in places.first),
+            sizing=self._first.sizing,
+            measuring=self._first.measuring(),
         )
+
+    @property
+    def _last(self) -> tuple[GivenAmount, ...]:
+        """The numbers that are given at the end."""
+        return tuple(self._amounts[it.name] for it in self._places.last)
 
     def _names_of(self, place: Place) -> tuple[str, str]:
         return _claim(self._names, self._item.name, place)
 
     # --- numbers of elements ----------------------------------------------------------------------
 
-    def _given(self, item: Amount, name: str) -> GivenAmount:
-        """The parameter for a number of elements or bytes."""
-        if item.step is None:
-            fills = next(it for it in self._places.places if it.amount == item.name)
-            assert fills.step.count is not None
-            bits = counting_bits(fills.step.count.greatest)
-            kind, spelled = counting_type(fills.step.count.greatest), unsigned
-            least, greatest = 0, (1 << bits) - 1
-        else:
-            type_ = item.step.type
-            kind, spelled = integer_type(type_), lambda value: constant(value, type_)
-            least, greatest = type_.machine_bounds
-        below = f"{name} < {spelled(item.least)}" if item.least > least else ""
-        above = f"{name} > {spelled(item.greatest)}" if item.greatest < greatest else ""
-        number = name if kind in ("uint8_t", "uint16_t") else f"(size_t){name}"
-        return GivenAmount(name, kind, number, " || ".join(filter(None, (below, above))))
-
     def _stored(self, item: Amount) -> Sequence[str]:
         """Statements that store a number in the field that says it."""
         if item.step is None:
             return ()
         lines = Lines()
-        store = _StoreAt(self._helpers, lines, "written", item.at)
+        store = StoreAt(self._helpers, lines, "written", item.at)
         store.step(item.step, self._amounts[item.name].name)
         return lines.lines
 
@@ -306,41 +222,74 @@ class _Writing:
 
     # --- reading ----------------------------------------------------------------------------------
 
-    def _getter(self, place: Place) -> str | None:
-        """The function that reads a field; arrays have one for their elements."""
-        step = place.step
-        if not isinstance(step, IntegerStep | FloatStep | RecordStep):
+    def _getter(self, place: Place) -> Getter | None:
+        """The function that reads a field, or an element in bounds that are always the same."""
+        step, name = place.step, self._names_of(place)[0]
+        if place.moves or isinstance(step, BytesStep):
             return None
-        name, at = self._names_of(place)[0], _sum("payload", place.at)
-        doc = f"Reads {step.name} from a payload that was received, unchecked."
-        return reader(name, (), at, doc, step, self._helpers, self._records)
+        if not isinstance(step, RepeatStep):
+            return Getter(step.name, name, step, "")
+        if place.varies and self._places.first:
+            return None
+        return Getter(step.name, name, step.element, amount(place.most))
+
+    def _reading(self, place: Place) -> Iterator[str]:
+        """The functions that read a field, an element of it, or a number in it."""
+        step, name = place.step, place.step.name
+        if isinstance(step, IntegerStep | FloatStep | RecordStep):
+            yield from self._reader(place, self._names_of(place)[0], name, step)
+        elif isinstance(step, RepeatStep) and not is_readable(step):
+            yield from self._reader(place, self._names_of(place)[0], f"{name}[index]", step.element)
+        for it in self._first.members_of(place):
+            assert it.step is not None
+            read = _claim_amount(self._names, self._item.name, it)
+            yield from self._reader(place, read, it.name, it.step, it.at)
+
+    def _reader(
+        self, place: Place, name: str, what: str, step: AnyStep, offset: int = 0
+    ) -> Iterator[str]:
+        body = Lines()
+        with self._helpers.public():
+            at = self._first.address(place, "payload", self._first.reading(body), offset)
+        is_element = isinstance(place.step, RepeatStep)
+        at = _element(at, place) if is_element else at
+        doc = f"Reads {what} from a payload that was received, unchecked."
+        arguments = ("size_t index",) * is_element
+        at_place = pointing(at, body)
+        text = reader(name, arguments, at_place, doc, step, self._helpers, self._records)
+        if text:
+            yield text
 
     def _written(self, place: Place) -> str:
         """The function that reads what was written, and will move when the frame is ended."""
-        step, at = place.step, _sum("payload", place.at)
+        step, at = place.step, offset_by("payload", place.at)
         element, doc = step, f"Reads {step.name} from a frame that was begun."
         arguments: tuple[str, ...] = ()
         if isinstance(step, RepeatStep):
             element, arguments = step.element, ("size_t index",)
             at, doc = _element(at, place), f"Reads {step.name}[index] from a frame that was begun."
         name = self._names_of(place)[0]
-        return reader(name, arguments, at, doc, element, self._helpers, self._records) or ""
+        body = pointing(at)
+        return reader(name, arguments, body, doc, element, self._helpers, self._records) or ""
 
     def _unset(self, places: Sequence[Place]) -> str:
         """The function that looks at fields whose default an encoder refuses."""
         lines = Lines()
+        reading = self._first.reading(lines)
         for number, place in enumerate(places):
             step, name = place.step, f"value_{number}"
             if isinstance(step, RepeatStep):
                 given = self._amounts.get(place.amount)
-                count = amount(place.most) if given is None else given.number
+                [count] = (
+                    self._first.most(place, lines, reading) if given is None else [given.number]
+                )
                 with lines.block(f"for (size_t i = 0; i < {count}; i++)"):
                     self._look(lines, place, step.element, name)
             else:
                 self._look(lines, place, step, name)
         lines.add("return false;")
         head = f"static bool {_claim_unset(self._names, self._item)}"
-        text, amounts = "\n".join(lines.lines), self._amounts.values()
+        text, amounts = "\n".join(lines.lines), self._last
         lines.put_first(*(f"(void){it.name};" for it in amounts if not mentions(text, it.name)))
         arguments = ("const uint8_t *payload", *(f"{it.type} {it.name}" for it in amounts))
         return function(head, arguments, lines)
@@ -362,21 +311,28 @@ class _Writing:
     def _setter(self, place: Place) -> Setter:
         """The function that writes a field, or an element of one."""
         step = place.step
-        if isinstance(step, BytesStep) and place.amount:
+        if isinstance(step, BytesStep) and place.varies:
             return self._piece_setter(step, place)
         element, name = step, step.name
         arguments = ["uint8_t *payload"]
-        body, at, refused = Lines(), _sum("payload", place.at), "the value is"
+        body, refused = Lines(), "the value is"
+        reading = self._first.reading(body)
         if isinstance(step, RepeatStep):
             element, name = step.element, f"{name}[index]"
             arguments.append("size_t index")
-            at, refused = _element(at, place), "the value or the index is"
-            with body.block(f"if (index >= {amount(place.most)})"):
+            refused = "the value or the index is"
+            with self._helpers.public():
+                most = self._first.most(place, body, reading)
+            with body.block(f"if ({' || '.join(f'index >= {it}' for it in most)})"):
                 body.add("return false;")
         is_record = isinstance(element, RecordStep)
         with self._helpers.public():
             accepts = _Accepts(self._helpers, body, lambda _: "false")
             accepts.value(element, "value->" if is_record else "value")
+            for it in self._first.members_of(place):
+                self._keep(it, body)
+            at = self._first.address(place, "payload", reading)
+            at = _element(at, place) if isinstance(step, RepeatStep) else at
             body.add(f"uint8_t *at = {at};")
             _Put(self._helpers, body).value(element, "value")
         body.drop_unused_places()
@@ -386,19 +342,36 @@ class _Writing:
         )
         if isinstance(element, BytesStep):
             doc += _size_of(element)
+        for it in self._first.members_of(place):
+            doc += f" {it.name} has to be what the frame was begun with."
         return self._inline(place, doc, element, arguments, body)
+
+    def _keep(self, item: Amount, body: Lines) -> None:
+        """Refuse a struct that has another number than the payload."""
+        members = map(self._names.member, item.name.split(".")[1:])
+        read = self._amounts[item.name].read
+        with body.block(f"if (value->{'.'.join(members)} != {read}(payload))"):
+            body.add("return false;")
 
     def _piece_setter(self, step: BytesStep, place: Place) -> Setter:
         """The function that writes bytes, or characters, from one on."""
         body = Lines()
-        most = unsigned(place.most)
-        with body.block(f"if (index > {most} || size > {most} - index)"):
+        with self._helpers.public():
+            reading = self._first.reading(body)
+            most = self._first.most(place, body, reading)
+        unfit = (f"index > {it} || size > {it} - index" for it in most)
+        with body.block(f"if ({' || '.join(unfit)})"):
             body.add("return false;")
         with self._helpers.public():
             accepts = _Accepts(self._helpers, body, lambda _: "false")
             accepts.bytes(step, "value", "size")
             copy = self._helpers.copy()
-        body.add(f"{copy}({_element(_sum('payload', place.at), place)}, value, size);")
+            at = self._first.address(place, "payload", reading)
+        at = _element(at, place)
+        if place.ahead:
+            body.add(f"uint8_t *at = {at};")
+            at = "at"
+        body.add(f"{copy}({at}, value, size);")
         body.add("return true;")
         what = "characters" if isinstance(step.type, Text) else "bytes"
         doc = (
@@ -411,7 +384,7 @@ class _Writing:
         self, place: Place, doc: str, value: AnyStep, arguments: list[str], body: Lines
     ) -> Setter:
         name, kind = self._names_of(place)[1], self._type(value)
-        pieces = isinstance(value, BytesStep) and bool(place.amount)
+        pieces = isinstance(value, BytesStep) and place.varies
         if isinstance(value, BytesStep) and not pieces:
             given = [f"{kind.removesuffix('*')}value[{value.count.greatest}]"]
         else:
@@ -448,42 +421,7 @@ def _size_of(step: BytesStep) -> str:
     return f" All {step.count.greatest} bytes are read."
 
 
-def _sum(start: str, offset: int) -> str:
-    return f"{start} + {unsigned(offset)}" if offset else start
-
-
-def _index(offset: int, index: str) -> str:
-    return f"{unsigned(offset)} + {index}" if offset else index
-
-
 def _element(start: str, place: Place) -> str:
     """The address of an element."""
     is_wide = place.width > 1
     return f"{start} + {unsigned(place.width)} * index" if is_wide else f"{start} + index"
-
-
-def _begins(place: Place) -> Iterator[str]:
-    """Statements that store what is not 0 of a default."""
-    step, at = place.step, place.at
-    if isinstance(step, RepeatStep) and step.field.default is None:
-        element = initial_bytes(step.element)
-        assert element is not None
-        places = [(index, byte) for index, byte in enumerate(element) if byte]
-        if places:
-            yield f"for (size_t i = 0; i < {amount(place.most)}; i++) {{"
-            for index, byte in places:
-                start = f"{len(element)}U * i" if len(element) > 1 else "i"
-                yield f"    at[{_sum(start, at + index)}] = {hexadecimal(byte)};"
-            yield "}"
-        return
-    for index, byte in enumerate(_default(place)):
-        if byte:
-            yield f"at[{at + index}] = {hexadecimal(byte)};"
-
-
-def _default(place: Place) -> bytes:
-    """The bytes that a field begins with."""
-    step, given = place.step, place.step.field.default
-    if place.amount and isinstance(given, str | bytes):
-        return raw_bytes(step.type, given)
-    return initial_bytes(step) or b""

@@ -22,7 +22,8 @@ from protogen.targets.c.payload.checking import Checker
 from protogen.targets.c.payload.held import HeldNumber, from_parts, held_numbers
 from protogen.targets.c.payload.helpers import Helpers
 from protogen.targets.c.payload.images import copied, is_image, last_place
-from protogen.targets.c.payload.in_place import InPlace, in_place
+from protogen.targets.c.payload.in_place import in_place
+from protogen.targets.c.payload.in_place_view import InPlace
 from protogen.targets.c.payload.initial import initialiser
 from protogen.targets.c.payload.loading import Load
 from protogen.targets.c.payload.measuring import Measure
@@ -137,7 +138,7 @@ class MessagePrinter(msgspec.Struct, frozen=True):
         place = in_place(item, names, self.helpers, self.records, list(map(names.member, parts)))
         accessors = tuple(text for text in read if text)
         if place is not None:
-            accessors += (*place.getters, *(setter.text for setter in place.setters))
+            accessors += (*place.reading, *(setter.text for setter in place.setters))
         zeros = f"{names.prefix.upper()}_ZEROS"
         struct = f"struct {tag}" if has_struct(item) else ""
         codec = _Codec(self, item, struct, called)
