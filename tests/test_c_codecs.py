@@ -631,6 +631,7 @@ int main(void) {
         0 -SAMPLER_RANGES_ANGLE_MIN != 1800 || SAMPLER_RANGES_ANGLE_MAX != 1800 ||
         0 -SAMPLER_RANGES_OFFSET_OFFSET_NUM != 40 ||
         RN1_BAUD != 115200 || strcmp(RN1_PROTOGEN_VERSION, PROTOGEN) != 0 ||
+        RN1_PROTOGEN_VERSION_NUMBER != PROTOGEN_NUMBER ||
         SAMPLER_FAR_FAR != 0x80000000u || RN1_LIDAR_DISTANCES_NO_DATAPOINT != 0u) {
         return 6;
     }
@@ -651,7 +652,10 @@ MACHINES = {"little": ("cc", []), "big": ("s390x-linux-gnu-gcc", ["qemu-s390x"])
 def test_macros_and_inline_functions(machine: str, tmp_path: Path) -> None:
     for path in (SAMPLER, ROOT / "schemas" / "rn1.yaml"):
         written(path, tmp_path)
-    (tmp_path / "main.c").write_text(f'#define PROTOGEN "{VERSION}"\n{PROGRAM}')
+    major, minor, patch = map(int, VERSION.split("."))
+    known = f'#define PROTOGEN "{VERSION}"\n'
+    known += f"#define PROTOGEN_NUMBER {major * 10000 + minor * 100 + patch}\n"
+    (tmp_path / "main.c").write_text(f"{known}{PROGRAM}")
     execute(machine, ["main.c", "rn1.c", "sampler.c"], tmp_path)
 
 

@@ -7,51 +7,55 @@ from statistics import median
 
 from c_costs.measure import Results
 from c_costs.protocols import FED_KINDS, HAS_SSE2, KINDS, PROTOCOLS
-from c_costs.speeds import Speed
 from c_costs.tables import NOTHING, Ratio, header, messages, row
 
 SHARE = 2
 """The most time that a fed buffer may take, by that of the expert with SSE2."""
 FED = 1000
 """The megabytes a second that a buffer is to be fed at."""
+_HEAD = "ns per frame (MB/s / ratio)"
 
 
 def speed_table(results: Results, what: str) -> str:
-    lines = header("ns per frame (MB/s)", "bytes", *KINDS.values(), "ratio to expert")
+    lines = header(_HEAD, "bytes", *KINDS.values())
     for protocol, _, message in messages():
         name = f"{protocol.label} {message}"
-        cells = _speeds(results, name, KINDS, what)
-        lines.append(row([name, *cells, f"{time_ratio(results, name, what):.2f}"]))
+        lines.append(row([name, *_speeds(results, name, KINDS, what)]))
     return "\n".join(lines)
 
 
 def feed_table(results: Results) -> str:
-    last = ("ratio to expert", "to half the speed of SSE2")
-    lines = header("ns per frame (MB/s)", "bytes", *FED_KINDS.values(), *last)
+    lines = header(_HEAD, "bytes", *FED_KINDS.values(), "to half the speed of SSE2")
     for protocol, _, message in messages():
         name = f"{protocol.label} {message}"
         halves = HAS_SSE2 and protocol.has_peers
         half = f"{_half_ratio(results, name):.2f}" if halves else NOTHING
         cells = _speeds(results, name, FED_KINDS, "feed")
-        lines.append(row([name, *cells, f"{time_ratio(results, name, 'feed'):.2f}", half]))
+        lines.append(row([name, *cells, half]))
     return "\n".join(lines)
 
 
 def _speeds(results: Results, name: str, kinds: Mapping[str, str], what: str) -> list[str]:
     """The bytes of a frame, and each contender's time for it."""
-    found = [results.speeds.get((kind, name)) for kind in kinds]
-    cells = [_speed(item, getattr(item, what)) if item else NOTHING for item in found]
+    cells = [
+        _speed(results, kind, name, what) if (kind, name) in results.speeds else NOTHING
+        for kind in kinds
+    ]
     return [f"{results.speeds['messages', name].bytes:.1f}", *cells]
 
 
-def _speed(item: Speed, rounds: list[float]) -> str:
-    time = median(rounds)
-    return f"{time:,.1f} ({item.bytes / time * 1000:,.0f})"
+def _speed(results: Results, kind: str, name: str, what: str) -> str:
+    item = results.speeds[kind, name]
+    time = median(getattr(item, what))
+    speed = f"{item.bytes / time * 1000:,.0f}"
+    if kind == "expert":
+        return f"{time:,.1f} ({speed})"
+    return f"{time:,.1f} ({speed} / {time_ratio(results, name, what, kind):.2f})"
 
 
-def time_ratio(results: Results, name: str, what: str) -> float:
-    """The median of the rounds' ratios."""
-    own: list[float] = getattr(results.speeds["messages", name], what)
+def time_ratio(results: Results, name: str, what: str, kind: str = "messages") -> float:
+    """The median of the rounds' ratios of a contender's time to the expert's."""
+    own: list[float] = getattr(results.speeds[kind, name], what)
     expert: list[float] = getattr(results.speeds["expert", name], what)
     return median(mine / theirs for mine, theirs in zip(own, expert, strict=True))
 

@@ -165,9 +165,9 @@ The same programs in Unicorn {unicorn}, with the cycles of each instruction as A
 ## This machine
 
 `-O2`, one core, a clean stream of frames of random values, messages decoded into a struct. Medians
-of {rounds} rounds; in each round every program has its turn. The ratio is that of `--events
-messages` to the expert, in time: less is faster. It is the median of the rounds' ratios, which need
-not be the ratio of the medians.
+of {rounds} rounds; in each round every program has its turn. The ratio is that to the expert, in
+time for a frame: less is faster. It is the median of the rounds' ratios, which need not be the
+ratio of the medians.
 
 ### push, byte by byte
 
@@ -175,7 +175,7 @@ not be the ratio of the medians.
 
 ### feed, a whole buffer
 
-The aim for protogen is {fed:,} MB/s and half the speed of the expert with SSE2: the second ratio is
+The aim for protogen is {fed:,} MB/s and half the speed of the expert with SSE2: the last column is
 the time of protogen with `NAME_SSE2`, which is `--events messages` too, to twice that expert's.
 
 {feed}

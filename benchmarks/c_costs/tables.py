@@ -121,10 +121,17 @@ def bytes_table(results: Results, protocols: Sequence[Protocol] = PROTOCOLS) -> 
     heads = [f"{SMALL_KINDS[kind]}, {TITLES[build]}" for build in BUILDS for kind in kinds]
     lines = header("cycles a byte", *heads)
     for protocol, which, message in messages(protocols):
-        cells = []
+        cells: list[str] = []
         for build in BUILDS:
             items = _kinds_of(results.avr_cycles, build, protocol)
-            cells += [_per_byte(items[kind][which]) if items else NOTHING for kind in kinds]
+            if not items:
+                cells += [NOTHING for _ in kinds]
+                continue
+            own, expert = (items[kind][which] for kind in kinds)
+            cells += [
+                f"{_per_byte(own)} ({ratio(own.decode, expert.decode)})",
+                _per_byte(expert),
+            ]
         lines.append(row([f"{protocol.label} {message}", *cells]))
     return "\n".join(lines)
 

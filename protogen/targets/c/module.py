@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from math import ceil
@@ -37,6 +38,8 @@ class Module(msgspec.Struct, frozen=True):
     spec_hash: str
     version: str | None
     made_by: str
+    made_by_number: int
+    """The same version as a number, which the preprocessor can compare."""
     """The version of protogen."""
     baud: str | None
     idle_timeout_ms: str | None
@@ -97,6 +100,7 @@ def view(protocol: Protocol, options: COptions, names: Names, helpers: Helpers) 
         spec_hash=protocol.spec_hash,
         version=None if protocol.version is None else string(protocol.version),
         made_by=VERSION,
+        made_by_number=_number_of(VERSION),
         baud=_baud(protocol.link),
         idle_timeout_ms=_milliseconds(protocol.link.idle_timeout),
         enums=enums,
@@ -119,6 +123,12 @@ def _assertions(floats: set[int], names: Names) -> Iterator[str]:
         type_ = "float" if bits == 32 else f"{names.prefix}_float64"
         name = names.claim_helper(f"float{bits}", "size")
         yield assertion(name, f"sizeof({type_}) == {bits // 8}U")
+
+
+def _number_of(version: str) -> int:
+    """A version as one number, in which minor and patch have two digits each."""
+    major, minor, patch = map(int, re.findall(r"\d+", version)[:3])
+    return (major * 100 + minor) * 100 + patch
 
 
 def _baud(link: Link) -> str | None:
