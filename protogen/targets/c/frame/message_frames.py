@@ -17,7 +17,8 @@ from protogen.model.protocol import Sender
 from protogen.model.transparency import FULL_GROUP
 from protogen.model.types import Field
 from protogen.targets.c.decoders.decoder import DecoderView
-from protogen.targets.c.frame.frames import Argument, FrameView, argument_of, one_of
+from protogen.targets.c.frame.arguments import Argument, argument_of, one_of
+from protogen.targets.c.frame.frames import FrameView
 from protogen.targets.c.frame.virtual import value_of
 from protogen.targets.c.payload.in_place_view import InPlace
 from protogen.targets.c.payload.message_names import FrameNames
